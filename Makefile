@@ -1,0 +1,36 @@
+# Every target makes the environment in .venv/ when it is missing or stale, and needs nothing but make and a Python.
+VENV := .venv
+RUN := $(VENV)/bin
+# Without PYTHON=... an environment that is there keeps its Python, whatever other environment the shell has activated.
+PYTHON ?= $(shell test -x $(RUN)/python && echo $(RUN)/python || echo python3)
+WITH_PATH := PATH="$(CURDIR)/$(RUN):$$PATH"
+# A sourced ROS 2 brings pytest plugins that are not made for this pytest.
+PYTEST_OPTIONS := $(if $(ROS_DISTRO),-p no:launch_testing -p no:launch_ros)
+TYPED := eha_core/eha_core eha_sim_node/eha_sim_node rclpy_dds/rclpy_dds tools
+
+.DEFAULT_GOAL := help
+.PHONY: help env test lint demo demo-realtime bench
+
+help:  ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 24
+
+env:  ## make .venv/, or bring it up to date; PYTHON=... makes it anew with another interpreter (3.10 to 3.13)
+	@$(PYTHON) tools/make_env.py $(VENV)
+
+test: lint  ## lint, types, architecture and every test
+	$(WITH_PATH) $(RUN)/python -m pytest $(PYTEST_OPTIONS)
+
+lint: env  ## style, types and the walls between the packages
+	$(RUN)/ruff check .
+	$(RUN)/mypy $(TYPED)
+	$(RUN)/lint-imports --no-cache
+
+demo: env  ## the paper's experiment over DDS, then a rig with concealed physics diagnosed; all in out/demo/
+	$(WITH_PATH) $(RUN)/python examples/paper_demo.py
+	$(WITH_PATH) $(RUN)/python examples/concealed_demo.py
+
+demo-realtime: env  ## the same against the wall clock
+	$(WITH_PATH) $(RUN)/python examples/paper_demo.py --realtime
+
+bench: env  ## speed as ratios to named peers
+	$(WITH_PATH) $(RUN)/eha bench
