@@ -1,0 +1,65 @@
+"""The command line `eha`: one verb, one file in this folder, no list of them.
+
+A verb's module offers `add_parser(subparsers)`, which adds the verb under the module's name, and
+`run(arguments) -> int`, which returns the exit status.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import pkgutil
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import NoReturn
+
+from eha_core.errors import EhaError
+
+UNUSABLE = 2
+"""Exit status where the input or the arguments cannot be used."""
+
+_INTERRUPTED = 130
+_UNREAD = 141  # what a shell reports of a program that SIGPIPE ended
+
+
+class _Parser(argparse.ArgumentParser):
+    """Refuses arguments in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(UNUSABLE, f"{self.prog}: {message}; see `{self.prog} --help`\n")
+
+
+def verbs() -> list[str]:
+    """The verbs, which are the modules of this package."""
+    return sorted(module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_"))
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status; `words` defaults to those of the process."""
+    words = sys.argv[1:] if words is None else words
+    parser = _Parser(prog="eha", description="The virtual electro-hydraulic actuator and what it is compared with.")
+    known = verbs()
+    if not words or not (words[0].startswith("-") or words[0] in known):
+        parser.error(f"{words[0]!r} is no verb; choose {', '.join(known)}" if words else f"choose {', '.join(known)}")
+    # A verb that is named is the only one imported: others may load compilers and plotting.
+    wanted = [words[0]] if words[0] in known else known
+    subparsers = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
+    modules = {verb: import_module(f"{__name__}.{verb}") for verb in wanted}
+    for module in modules.values():
+        module.add_parser(subparsers)
+    arguments = parser.parse_args(words)
+    try:
+        status: int = modules[arguments.verb].run(arguments)
+        sys.stdout.flush()
+    except EhaError as error:
+        print(f"eha {arguments.verb}: {error}", file=sys.stderr)
+        return UNUSABLE
+    except KeyboardInterrupt:
+        print(f"eha {arguments.verb}: interrupted", file=sys.stderr)
+        return _INTERRUPTED
+    except BrokenPipeError:
+        # The reader, `head` perhaps, has seen enough; what is still buffered must not fail again when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _UNREAD
+    return status

@@ -1,0 +1,86 @@
+"""`eha diagnose`: say where a model departs from a recording, which physics it leaves out, and show the fit improve."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from eha_core.errors import EhaError
+from eha_core.parameters import NOMINAL, changed, load_parameters, nominal_values
+from eha_core.recording import Recording, read_recording
+
+DAMAGED = 3
+"""Exit status where the recording was damaged and the diagnosis rests on the part that could be read."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb."""
+    parser = subparsers.add_parser(
+        "diagnose",
+        help="say which physics a model leaves out of a recording",
+        description=__doc__,
+        epilog="Several recordings of one rig are judged together. Without --nominal the model is the one whose"
+        " parameters the recording carries, effects left out, or else the catalogue's nominal actuator.",
+    )
+    add = parser.add_argument
+    add("recordings", nargs="+", type=Path, metavar="RECORDING", help=".mcap, rosbag2 folder, .db3 or .csv")
+    add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
+    add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
+    add("--out", type=Path, metavar="DIR", help="folder for the report (default out/diagnosis/<recording>)")
+    add("--json", metavar="FILE|-", help="write diagnosis.json there (- is standard output) and no report")
+    add("--jobs", type=int, default=2, metavar="N", help="threads that simulate side by side (default 2)")
+    add("--seed", type=int, default=0, metavar="N", help="kept with the result; no stage draws at random")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the verb."""
+    if arguments.jobs < 1:
+        raise EhaError(f"--jobs {arguments.jobs} is no number of threads; give 1 or more")
+    recordings = [read_recording(path, arguments.topics) for path in arguments.recordings]
+    nominal = _nominal(arguments.nominal, recordings[0])
+    # compilers and plotting load slowly; bad input should be told at once
+    from eha_core.diagnosis import diagnose_together
+    from eha_core.diagnosis.document import as_json
+    from eha_core.report.account import account
+    from eha_core.report.files import write_report
+
+    diagnosis = diagnose_together(recordings, nominal, progress=_progress(), jobs=arguments.jobs)
+    written: tuple[Path, ...] = ()
+    if arguments.json is None or arguments.out is not None:
+        folder = arguments.out or Path("out") / "diagnosis" / arguments.recordings[0].stem
+        written = write_report(diagnosis, folder)
+    if arguments.json == "-":
+        print(as_json(diagnosis))
+    else:
+        if arguments.json is not None:
+            written = (*written, _write(Path(arguments.json), as_json(diagnosis)))
+        print(account(diagnosis, written))
+    return DAMAGED if any(recording.damaged for recording in recordings) else 0
+
+
+def _nominal(path: Path | None, recording: Recording) -> Mapping[str, float]:
+    if path is not None:
+        return changed(nominal_values(), load_parameters(path))
+    names = {row.name for row in NOMINAL}
+    return changed(nominal_values(), {name: value for name, value in recording.parameters.items() if name in names})
+
+
+def _write(path: Path, text: str) -> Path:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise EhaError(f"{path}: cannot be written ({error.strerror}); choose another --json") from error
+    return path
+
+
+def _progress() -> Callable[[str], None]:
+    """Tell each stage on standard error: over one line on a terminal, not at all elsewhere."""
+    if not sys.stderr.isatty():
+        return lambda _: None
+
+    def show(message: str) -> None:
+        print(f"\r\x1b[K  {message} ...", end="", file=sys.stderr, flush=True)
+
+    return show

@@ -1,0 +1,80 @@
+"""`eha effects`: what the catalogue of effects holds."""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+from difflib import get_close_matches
+from importlib import import_module
+
+from eha_core.effects import effects
+from eha_core.effects.declaration import SITES, Effect
+from eha_core.errors import ParameterError
+from eha_core.parameter import Parameter
+from eha_core.parameters import catalogue
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb to the command line."""
+    parser = subparsers.add_parser(
+        "effects",
+        help="list the physical effects that the simulator can add",
+        description="Lists the catalogue of physical effects by where in the actuator they sit, or shows one in full.",
+    )
+    parser.add_argument("id", nargs="?", help="show this effect: what it does, its equation, its parameters")
+    parser.add_argument("--parameters", action="store_true", help="list every parameter, the nominal plant's first")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the catalogue, one effect, or the parameters."""
+    if arguments.id:
+        print(_one(_find(arguments.id)))
+    elif arguments.parameters:
+        print("\n".join(_row(name, row) for name, row in catalogue().items() if not _of_curve(name)))
+    else:
+        print(_listing())
+    return 0
+
+
+def _listing() -> str:
+    named = [effect for effect in effects() if effect.named]
+    width = max(len(effect.id) for effect in named)
+    lines = []
+    for site in SITES:
+        lines.append(site)
+        lines += [f"  {effect.id:{width}}  {_summary(effect)}" for effect in named if effect.site == site]
+    lines += ["", "`eha effects ID` shows one in full; `eha effects --parameters` lists all parameters."]
+    return "\n".join(lines)
+
+
+def _one(effect: Effect) -> str:
+    rows = zip(effect.parameter_names(), effect.parameters, strict=True)
+    lines = [f"{effect.id} ({effect.site})", "", _docstring(effect), "", effect.equation, ""]
+    return "\n".join([*lines, *(_row(name, row) for name, row in rows)])
+
+
+def _row(name: str, row: Parameter) -> str:
+    range_text = f"{row.lower:g} to {row.upper:g}"
+    return f"{name} [{row.unit}] = {row.nominal:g}, {range_text}: {row.meaning} ({row.source})"
+
+
+def _docstring(effect: Effect) -> str:
+    return inspect.getdoc(import_module(f"eha_core.effects.{effect.id}")) or ""
+
+
+def _summary(effect: Effect) -> str:
+    return " ".join(_docstring(effect).partition("\n\n")[0].split())
+
+
+def _of_curve(name: str) -> bool:
+    """A recovered curve's knots are no parameters that one would set by hand."""
+    return name.partition(".")[0] in {effect.id for effect in effects() if not effect.named}
+
+
+def _find(identifier: str) -> Effect:
+    known = {effect.id: effect for effect in effects()}
+    if identifier not in known:
+        near = get_close_matches(identifier, known, n=1)
+        remedy = f"did you mean {near[0]}?" if near else "`eha effects` lists them"
+        raise ParameterError(f"there is no effect named {identifier}; {remedy}")
+    return known[identifier]

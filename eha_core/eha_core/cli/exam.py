@@ -1,0 +1,128 @@
+"""`eha exam`: make recordings that conceal an effect, have them diagnosed as a user would, and score the answers."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eha_core.errors import EhaError
+from eha_core.exam.peers import PEERS
+from eha_core.exam.tiers import MEANINGS
+
+if TYPE_CHECKING:
+    from eha_core.exam.summary import Summary
+
+OWN = "eha diagnose"
+DIAGNOSE = "{python} -m eha_core.cli diagnose {recording} --json {answer} --jobs 1"
+"""The command of the project's own diagnosis, as a user would type it."""
+BELOW_THE_MARK = 1
+"""Exit status where the score is below --require."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb."""
+    tiers = "\n".join(f"  {tier:16s}{meaning}" for tier, meaning in MEANINGS.items())
+    parser = subparsers.add_parser(
+        "exam",
+        help="score the diagnosis on recordings with concealed effects",
+        description=__doc__,
+        epilog=f"tiers:\n{tiers}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--cases", type=int, default=100, metavar="N", help="number of recordings (default 100)")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="seed of the exam (default 0)")
+    parser.add_argument("--tier", metavar="T", help="one tier alone")
+    parser.add_argument("--jobs", type=int, default=1, metavar="J", help="recordings worked on at once (default 1)")
+    parser.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler whose workers see --out")
+    parser.add_argument("--out", type=Path, default=Path("out/exam"), metavar="DIR", help="folder (default out/exam)")
+    parser.add_argument("--peers", action="store_true", help="score the other methods on the same recordings too")
+    parser.add_argument(
+        "--tool",
+        action="append",
+        default=[],
+        metavar="NAME=COMMAND",
+        help="score another tool too; {recording} and {answer} in its command are replaced by paths",
+    )
+    parser.add_argument("--emps", type=Path, metavar="DIR", help="show the measured EMPS data in this folder too")
+    parser.add_argument("--bags", type=Path, metavar="DIR", help="show the project's own recordings in this folder too")
+    parser.add_argument("--lost", type=int, default=0, metavar="N", help="write the reports of the first N lost cases")
+    parser.add_argument("--require", type=float, metavar="SHARE", help="fail when fewer of all cases are right")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the verb; the exit status says whether --require was met."""
+    # The truth's integrator and compiler load slowly; no other verb should wait for them.
+    from eha_core.exam.real import show_bags, show_emps
+    from eha_core.exam.sitting import Exam, Workers, report_lost, sit
+    from eha_core.exam.summary import summarise
+    from eha_core.exam.tables import as_html, as_json, as_markdown
+
+    if arguments.cases < 1 or arguments.jobs < 1:
+        raise EhaError(f"--cases {arguments.cases} --jobs {arguments.jobs}: give 1 or more of each")
+    exam = Exam(arguments.out, arguments.cases, arguments.seed, arguments.tier)
+    tools = _tools(arguments)
+    marks = sit(exam, tools, Workers(arguments.jobs, arguments.dask), _show)
+    summaries = [summarise(tool, marks[tool]) for tool in tools]
+    shown = show_emps(arguments.emps, _show) if arguments.emps else []
+    shown += show_bags(arguments.bags, _show) if arguments.bags else []
+    reports = report_lost(exam, summaries[0].lost[: arguments.lost])
+    about = {
+        "command": " ".join(["eha", "exam", *sys.argv[2:]]),
+        "commit": _commit(),
+        "cases": arguments.cases,
+        "seed": arguments.seed,
+        "plants and recordings": "simulated by the exam's own truth",
+    }
+    for name, text in (
+        ("table.md", as_markdown(summaries, about, shown)),
+        ("table.json", as_json(summaries, marks, about, shown)),
+        ("table.html", as_html(summaries, about, reports, shown)),
+    ):
+        (exam.folder / name).write_text(text, encoding="utf-8")
+    for summary in summaries:
+        _account(summary)
+    print(f"tables: {exam.folder}/table.md, table.json, table.html")
+    share = summaries[0].rows[0].right.value or 0.0
+    if arguments.require is not None and share < arguments.require:
+        print(f"eha exam: {share:.3f} of the cases are right, below the mark of {arguments.require}", file=sys.stderr)
+        return BELOW_THE_MARK
+    return 0
+
+
+def _tools(arguments: argparse.Namespace) -> dict[str, str]:
+    tools = {OWN: DIAGNOSE}
+    if arguments.peers:
+        tools |= PEERS
+    for entry in arguments.tool:
+        name, separator, command = entry.partition("=")
+        if not separator or "{recording}" not in command or "{answer}" not in command:
+            raise EhaError(f"--tool {entry!r}: give NAME=COMMAND with {{recording}} and {{answer}} in the command")
+        tools[name] = command
+    return tools
+
+
+def _show(stage: str, done: int, of: int) -> None:
+    end = "\n" if done == of else ""
+    print(f"\r{stage}: {done} of {of}", end=end, file=sys.stderr, flush=True)
+
+
+def _account(summary: Summary) -> None:
+    print(f"\n{summary.tool}")
+    for row in summary.rows:
+        print(
+            f"  {row.group:28s} right {row.right!s:34s} "
+            f"abstained {row.abstained.successes:4d}  wrong {row.wrong.successes:4d}"
+        )
+
+
+def _commit() -> str:
+    """The commit the exam ran on, where it runs from a git checkout."""
+    try:
+        here = Path(__file__).parent
+        command = ["git", "-C", str(here), "rev-parse", "--short", "HEAD"]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "not a git checkout"

@@ -1,0 +1,121 @@
+"""`eha simulate`: drive the virtual actuator with a command and record it, far faster than real time."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from eha_core.errors import EhaError, ParameterError, RecordingError
+from eha_core.parameters import load_parameters
+from eha_core.recording import read_recording
+from eha_core.recording.recording import FloatArray
+from eha_core.recording.simulated import Experiment, simulate, write_simulated
+from eha_core.signals import from_text, signals
+
+_SIGNAL_DURATION = 10.0
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb to the command line."""
+    parser = subparsers.add_parser(
+        "simulate",
+        help="drive the virtual actuator with a command and record it",
+        description="Simulates the actuator far faster than real time and records it with the simulator node's topics.",
+    )
+    parser.add_argument(
+        "--command",
+        required=True,
+        metavar="RECORDING|FILE.csv|SIGNAL",
+        help=f"voltages of a recording or a CSV file, or a signal such as sine:amplitude=8.4e-3,frequency=1"
+        f" (signals: {', '.join(signals())})",
+    )
+    parser.add_argument("--out", required=True, type=Path, metavar="FILE.mcap", help="the recording to write")
+    parser.add_argument("--duration", type=float, metavar="S", help="simulated time (default: the command's, or 10 s)")
+    parser.add_argument("--nominal", type=Path, metavar="FILE", help="parameters file in ROS 2's YAML form")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE[@S]",
+        help="a parameter's value, from the start or from an instant on; may be given again",
+    )
+    parser.add_argument(
+        "--topics", type=Path, metavar="FILE", help="topics file that says where the voltage is recorded"
+    )
+    parser.add_argument("--step", type=float, default=1e-4, metavar="S", help="the plant's step (default: %(default)s)")
+    parser.add_argument("--rate", type=float, default=500.0, metavar="HZ", help="recorded rate (default: %(default)s)")
+    parser.add_argument(
+        "--noise", type=float, default=0.0, metavar="FACTOR", help="sensor noise; 1 is 10 um, 1 mm/s and 0.01 MPa"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="seed of the noise (default: %(default)s)")
+    parser.add_argument("--initial-position", type=float, default=0.0, metavar="M", help="where the piston starts")
+    parser.add_argument(
+        "--instruments-only", action="store_true", help="record what a rig's instruments give, nothing of the model"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Simulate and record; return the exit status."""
+    started = perf_counter()
+    _check(arguments)
+    start, changes = _settings(arguments.set)
+    parameters = {**(load_parameters(arguments.nominal) if arguments.nominal else {}), **start}
+    times, voltages, duration = _command(arguments)
+    experiment = Experiment(
+        times, voltages, duration, parameters, changes, arguments.step, arguments.rate, arguments.noise,
+        arguments.seed, arguments.initial_position,
+    )  # fmt: skip
+    record = simulate(experiment)
+    count = write_simulated(arguments.out, record, arguments.instruments_only)
+    took = perf_counter() - started
+    print(f"{arguments.out}: {duration:g} s in {count} messages, simulated and written in {took:.2f} s")
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    for name, lower, upper in (("duration", 1e-3, 3600.0), ("rate", 0.1, 1e4), ("noise", 0.0, 1e6), ("seed", 0, 2**63)):
+        value = getattr(arguments, name)
+        if value is not None and not lower <= value <= upper:
+            raise ParameterError(f"--{name} {value:g} is out of range; give {lower:g} to {upper:g}")
+
+
+def _settings(words: list[str]) -> tuple[dict[str, float], list[tuple[float, str, float]]]:
+    """Parameters from the start, and those that change later as (instant [s], name, value)."""
+    start: dict[str, float] = {}
+    changes: list[tuple[float, str, float]] = []
+    for word in words:
+        name, equals, rest = word.partition("=")
+        value, at, instant = rest.partition("@")
+        try:
+            if not equals:
+                raise ValueError
+            if at and not 0.0 <= float(instant) < float("inf"):
+                raise ValueError
+            if at:
+                changes.append((float(instant), name, float(value)))
+            else:
+                start[name] = float(value)
+        except ValueError:
+            raise ParameterError(f"--set {word!r} is no NAME=VALUE or NAME=VALUE@SECONDS") from None
+    return start, changes
+
+
+def _command(arguments: argparse.Namespace) -> tuple[FloatArray, FloatArray, float]:
+    """Instants [s], voltages [V] and the duration [s]."""
+    words: str = arguments.command
+    if words.partition(":")[0] in signals() and not Path(words).exists():
+        signal = from_text(words)
+        duration = arguments.duration or _SIGNAL_DURATION
+        times = np.arange(round(duration * arguments.rate)) / arguments.rate
+        return times, signal.value(times), duration
+    if not Path(words).exists():
+        raise EhaError(f"--command {words}: neither a file nor a signal; signals are {', '.join(signals())}")
+    channel = read_recording(words, arguments.topics).channels.get("voltage_command")
+    if channel is None:
+        raise RecordingError(f"{words}: no voltage_command was recorded; a topics file (--topics) can name the topic")
+    end = float(channel.time[-1])
+    duration = arguments.duration or max(np.ceil(end * arguments.rate + 1) / arguments.rate, 1.0 / arguments.rate)
+    return channel.time, channel.values, duration

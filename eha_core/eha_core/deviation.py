@@ -1,0 +1,99 @@
+"""Which of the model's equations a measurement departs from, beside a simulation of the same command.
+
+With e = measured - simulated, the difference of the two sets of equations, linear in e, is held against the measured
+channels in its weak form: multiplied by a smooth bump in time and integrated, derivatives fall on the bump. What one
+equation lacks is then left in that equation alone, in units of what the sensors' noise leaves in it, and where the
+simulation was started from cancels out. After D. A. Messenger and D. M. Bortz, "Weak SINDy", Multiscale Modeling &
+Simulation 19 (2021).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.plant import Trajectory
+
+Array = NDArray[np.float64]
+
+CHANNELS = ("position", "pressure_a", "pressure_b")
+EQUATIONS = ("force balance", "chamber a", "chamber b")
+
+_HALF_WIDTH = 0.06  # s of the bumps: averages noise, and is short against the time between two reversals
+_LOWEST_DROP = 1e5  # Pa over an orifice below which its flow is not corrected for the measured pressure
+
+
+def equation_residuals(
+    errors: Mapping[str, Array],
+    noises: Mapping[str, float],
+    model: Trajectory,
+    parameters: Mapping[str, float],
+    period: float,
+) -> dict[str, Array]:
+    """What each of EQUATIONS lacks over time, in units of its noise.
+
+    Args:
+        errors: measured minus simulated of each of CHANNELS, (n,).
+        noises: standard deviation of each channel's noise.
+        model: the simulated rows, n of them, `period` [s] apart.
+        parameters: the model's.
+
+    Returns (n - 2 half,) values each, at the bumps' centres; nothing where the rows are shorter than a bump.
+    """
+    half = max(8, round(_HALF_WIDTH / period))
+    if len(model.time) <= 2 * half:
+        return {}
+    at = np.arange(-half, half + 1) / half
+    width = half * period
+    inside = 1.0 - at**2
+    bump, slope = inside**4, -8.0 * at * inside**3 / width
+    curvature = (48.0 * at**2 * inside**2 - 8.0 * inside**3) / width**2
+    x, a, b = (errors[name] for name in CHANNELS)
+    bulk, leak, outside = (parameters[name] for name in ("bulk_modulus", "internal_leakage", "external_leakage"))
+    area_a, area_b = parameters["piston_area"], parameters["piston_area_b"]
+    mass, damping, spring = (parameters[name] for name in ("moving_mass", "damping_coefficient", "spring_stiffness"))
+    stroke, line = parameters["actuator_displacement"], parameters["line_volume"]
+    volume_a = line + area_a * (stroke + model.position)
+    volume_b = line + area_b * (stroke - model.position)
+    more_a, more_b = _flow_changes(model, a, b)
+    inertia = mass * curvature - damping * slope + spring * bump
+    terms = {
+        "force balance": ((bump, area_a * a - area_b * b), (-inertia, x)),
+        "chamber a": (
+            (bump, more_a - leak * (a - b) - outside * a + area_a / bulk * model.velocity * a),
+            (slope, area_a * x + volume_a / bulk * a),
+        ),
+        "chamber b": (
+            (bump, -more_b + leak * (a - b) - outside * b - area_b / bulk * model.velocity * b),
+            (slope, -area_b * x + volume_b / bulk * b),
+        ),
+    }
+    of_x, of_a, of_b = (noises[name] for name in CHANNELS)
+    variances = {
+        "force balance": _power(bump, (area_a * of_a) ** 2 + (area_b * of_b) ** 2) + _power(inertia, of_x**2),
+        "chamber a": _power(slope, (area_a * of_x) ** 2 + (float(np.mean(volume_a)) / bulk * of_a) ** 2),
+        "chamber b": _power(slope, (area_b * of_x) ** 2 + (float(np.mean(volume_b)) / bulk * of_b) ** 2),
+    }
+    return {
+        name: sum(np.correlate(values, weight, mode="valid") for weight, values in parts) / np.sqrt(variances[name])
+        for name, parts in terms.items()
+    }
+
+
+def _flow_changes(model: Trajectory, a: Array, b: Array) -> tuple[Array, Array]:
+    """How much more flows into port A and out of port B at the measured pressures than at the simulated ones."""
+    opens = model.spool_position >= 0.0
+    drop_a = np.where(opens, model.supply_pressure - model.pressure_a, model.pressure_a - model.return_pressure)
+    drop_b = np.where(opens, model.pressure_b - model.return_pressure, model.supply_pressure - model.pressure_b)
+    ratio_a = (drop_a + np.where(opens, -a, a)) / np.maximum(drop_a, _LOWEST_DROP)
+    ratio_b = (drop_b + np.where(opens, b, -b)) / np.maximum(drop_b, _LOWEST_DROP)
+    return (
+        np.where(drop_a > _LOWEST_DROP, model.flow_a * (np.sqrt(np.maximum(ratio_a, 0.0)) - 1.0), 0.0),
+        np.where(drop_b > _LOWEST_DROP, model.flow_b * (np.sqrt(np.maximum(ratio_b, 0.0)) - 1.0), 0.0),
+    )
+
+
+def _power(weight: Array, variance: float) -> float:
+    return float(np.sum(weight**2)) * variance

@@ -1,0 +1,204 @@
+"""Stages 5 and 6, model and show: the evidence turned into the frozen result that the presenters know."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from eha_core.diagnosis.calibrate import UNITS, corrected_noise, has_changed, identifiable
+from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.experiment import propose
+from eha_core.diagnosis.fit import Fit, fit, with_noise
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.problem import Problem
+from eha_core.diagnosis.result import (
+    Alternative,
+    ChannelFit,
+    Diagnosis,
+    Experiment,
+    FittedParameter,
+    FittedValue,
+    Location,
+    NamedEffect,
+    Pictures,
+    UnknownLaw,
+)
+from eha_core.diagnosis.shooting import Shooting, cut, held_out
+from eha_core.diagnosis.tournament import Entry
+from eha_core.diagnosis.validate import channel_rmse, judge, split
+from eha_core.diagnosis.verdict import Decision, whiteness
+from eha_core.parameters import catalogue, nominal_values
+from eha_core.recording import Recording
+
+FINAL_STEP = 1e-4
+"""s; the winner is fitted once more at this step, so that its parameters and intervals owe nothing to the coarser
+one."""
+
+
+def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
+    """Polish the winner, measure what it is worth on data it was not fitted to, and put everything into words."""
+    progress("polishing the winner and its intervals")
+    decision = evidence.decision
+    final = polish(evidence, decision.winner)
+    before, calibrated = evidence.calibration.nominal, evidence.tournament.nominal.fit
+    training, held_out = _channel_fits(evidence, before, calibrated, decision)
+    experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
+    effects = () if decision.verdict == "unknown_physics" else _named(decision.winner, final)
+    location = _ordered(evidence.location, decision.winner)
+    return Diagnosis(
+        path=str(recording.path),
+        duration=recording.duration,
+        channels=evidence.observation.channels,
+        not_examined=evidence.observation.not_examined,
+        remarks=evidence.observation.remarks,
+        damaged=recording.damaged,
+        verdict=decision.verdict,
+        summary=_summary(decision, effects, evidence),
+        location=location if decision.verdict not in ("consistent", "parameters") else (),
+        parameters=_parameters(final, evidence.nominal),
+        effects=effects,
+        alternatives=tuple(Alternative(entry.ids, gap) for entry, gap in decision.rivals),
+        unknown=_unknown(evidence),
+        training=training,
+        held_out=held_out,
+        next_experiment=experiment,
+        rivals=tuple((entry.ids, entry.score) for entry in evidence.tournament.entries),
+        whiteness=dict(zip(evidence.calibration.shooting.names, whiteness(decision.winner.fit.residuals), strict=True)),
+        fitted_values=_changed_values(final),
+        pictures=_pictures(evidence, before, calibrated, decision.winner.fit),
+        start_stamp=recording.start_stamp,
+    )
+
+
+def polish(evidence: Evidence, winner: Entry) -> Fit:
+    """The winner fitted once more at the final step."""
+    shooting = cut(evidence.observation, evidence.nominal, FINAL_STEP)
+    # under the winner the residual is noise at last, so its roughness is measured best there
+    shooting = with_noise(shooting, corrected_noise(evidence.calibration.shooting, winner.fit))
+    problem = Problem(shooting, np.arange(shooting.windows))
+    return fit(problem, winner.fit.values, winner.fit.free, winner.fit.states, iterations=4)
+
+
+def _channel_fits(
+    evidence: Evidence, before: Fit, calibrated: Fit, decision: Decision
+) -> tuple[dict[str, ChannelFit], dict[str, ChannelFit]]:
+    """RMSE of every channel before, calibrated and after, on the windows fitted to and on those held out."""
+    shooting = evidence.calibration.shooting
+    judged_nominal = decision.judged_nominal or judge(shooting, calibrated)
+    judged_winner = decision.judged_winner or judged_nominal
+    training, judged = split(shooting)
+    parts = (
+        (channel_rmse(training, before.residuals), judged_nominal.training, judged_winner.training),
+        (channel_rmse(judged, before.residuals), judged_nominal.held_out, judged_winner.held_out),
+    )
+    noise = {name: one.noise for name, one in zip(shooting.names, shooting.samplings, strict=True)}
+    made = [
+        {name: ChannelFit(first[name], second[name], third[name], noise[name]) for name in shooting.names}
+        for first, second, third in parts
+    ]
+    return made[0], made[1]
+
+
+def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParameter, ...]:
+    found = []
+    for one in final.free:
+        if one.name not in UNITS:
+            continue
+        note = "" if identifiable(final, one.name) else "this recording does not tell it; held near its nominal value"
+        found.append(
+            FittedParameter(
+                one.name,
+                nominal[one.name],
+                final.values[one.name],
+                final.deviation(one.name),
+                UNITS[one.name],
+                has_changed(final, nominal, one.name),
+                note,
+            )
+        )
+    return tuple(found)
+
+
+def _named(winner: Entry, final: Fit) -> tuple[NamedEffect, ...]:
+    found = []
+    for effect in winner.effects:
+        values = {
+            row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
+            for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)
+        }
+        statement = effect.describe({name: value.value for name, value in values.items()})
+        found.append(NamedEffect(effect.id, effect.site, effect.equation, values, winner.score, statement))
+    return tuple(found)
+
+
+def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, ...]:
+    """The named effect's site first: where the name is certain, so is the site."""
+    sites = {effect.site for effect in winner.effects}
+    return tuple(sorted(location, key=lambda one: (one.site not in sites, -one.share)))
+
+
+def _unknown(evidence: Evidence) -> UnknownLaw | None:
+    recovery = evidence.recovery
+    if evidence.decision.verdict != "unknown_physics" or recovery is None:
+        return None
+    return UnknownLaw(recovery.effect.site, recovery.variable, "", recovery.share, recovery.knots)
+
+
+def _summary(decision: Decision, effects: tuple[NamedEffect, ...], evidence: Evidence) -> str:
+    if decision.verdict == "consistent":
+        return "The nominal model explains the recording down to its noise; nothing is missing."
+    if decision.verdict == "parameters":
+        return "No physics is missing: parameter values differ from the nominal ones."
+    if decision.verdict == "unknown_physics":
+        assert evidence.recovery is not None
+        return (
+            f"Something is missing that the catalogue does not name: {evidence.recovery.effect.statement}, "
+            f"as a function of {evidence.recovery.variable}."
+        )
+    named = "; and ".join(effect.statement for effect in effects)
+    if decision.verdict == "ambiguous":
+        others = ", ".join(" + ".join(entry.ids) for entry, _ in decision.rivals)
+        return f"Physics is missing, most likely: {named}. This recording cannot tell it from {others}."
+    return f"Physics is missing: {named}."
+
+
+def _changed_values(final: Fit) -> dict[str, float]:
+    """What a simulator needs beside the catalogue's nominal values to be the fitted plant."""
+    nominal = nominal_values()
+    return {name: final.values[name] for name in catalogue() if final.values[name] != nominal[name]}
+
+
+def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
+    shooting = evidence.calibration.shooting
+    noises = {name: one.noise for name, one in zip(shooting.names, shooting.samplings, strict=True)}
+    voltage = shooting.inputs[0]
+    level = float(np.std(voltage)) or 0.01
+    limit = max(float(np.max(np.abs(voltage))), 3.0 * level)
+    rivals = [(decision.winner.ids, decision.winner.fit), *((entry.ids, entry.fit) for entry, _ in decision.rivals)]
+    return propose(rivals, noises, level, limit)
+
+
+def _pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pictures:
+    """Series for the report: measured channels and the three models' at the same times, windows restarted."""
+    shooting = evidence.calibration.shooting
+    models = [_modelled(shooting, one) for one in (before, calibrated, after)]
+    times = {name: (one.row + 1 + one.late) * shooting.every * shooting.step_size
+             for name, one in zip(shooting.names, shooting.samplings, strict=True)}  # fmt: skip
+    measured = {name: one.values for name, one in zip(shooting.names, shooting.samplings, strict=True)}
+    variables: dict[str, Array] = {}
+    if len(evidence.facts.rows):
+        for name in ("velocity", "spool_position", "position", "pressure_a", "pressure_b"):
+            variables[name] = evidence.facts.column(name)
+        variables["time"] = np.asarray((np.arange(len(evidence.facts.rows)) + 1) * shooting.every * shooting.step_size)
+    if evidence.observation.drive == "voltage":
+        times["voltage_command"], measured["voltage_command"] = evidence.observation.inputs[0]
+    equations = {one.equation: (one.time, one.residual) for one in evidence.equations}
+    edges = shooting.edges * shooting.step_size
+    judged = tuple((float(edges[window]), float(edges[window + 1])) for window in held_out(shooting.windows))
+    return Pictures(times, measured, models[0], models[1], models[2], variables, equations, judged)
+
+
+def _modelled(shooting: Shooting, result: Fit) -> dict[str, Array]:
+    pairs = zip(shooting.names, shooting.samplings, result.residuals, strict=True)
+    return {name: one.values - residual * one.noise for name, one, residual in pairs}

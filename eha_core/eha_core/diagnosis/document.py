@@ -1,0 +1,80 @@
+"""A diagnosis as the document that `diagnosis.json` holds, schema "eha.diagnosis/1"."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from eha_core.diagnosis.result import ChannelFit, Diagnosis, NamedEffect
+
+SCHEMA = "eha.diagnosis/1"
+
+
+def document(diagnosis: Diagnosis) -> dict[str, Any]:
+    """The diagnosis as plain JSON types, SI throughout. A number that is not finite, so not known, becomes null."""
+    plain: dict[str, Any] = _plain(
+        {
+            "schema": SCHEMA,
+            "recording": {
+                "path": diagnosis.path,
+                "duration_s": diagnosis.duration,
+                "channels": diagnosis.channels,
+                "not_examined": diagnosis.not_examined,
+                "remarks": diagnosis.remarks,
+                "damaged": diagnosis.damaged,
+            },
+            "verdict": diagnosis.verdict,
+            "summary": diagnosis.summary,
+            "location": _rows(diagnosis.location, ("site", "share", "where", "when", "statement")),
+            "parameters": _rows(diagnosis.parameters, ("name", "nominal", "fitted", "std", "unit", "changed", "note")),
+            "effects": [_effect(one) for one in diagnosis.effects],
+            "alternatives": _rows(diagnosis.alternatives, ("effects", "evidence_gap")),
+            "unknown": _row(diagnosis.unknown, ("site", "function_of", "expression", "r_squared", "samples")),
+            "fit": {"training": _fits(diagnosis.training), "held_out": _fits(diagnosis.held_out)},
+            "next_experiment": _row(diagnosis.next_experiment, ("statement", "separates", "reference")),
+            "rivals": [{"effects": effects, "score": score} for effects, score in diagnosis.rivals],
+            "whiteness": diagnosis.whiteness,
+        }
+    )
+    return plain
+
+
+def as_json(diagnosis: Diagnosis) -> str:
+    """The document as text, ending with a newline."""
+    return json.dumps(document(diagnosis), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _rows(items: Iterable[Any], names: tuple[str, ...]) -> list[dict[str, Any]]:
+    return [{name: getattr(item, name) for name in names} for item in items]
+
+
+def _row(item: Any, names: tuple[str, ...]) -> dict[str, Any] | None:
+    return None if item is None else _rows([item], names)[0]
+
+
+def _effect(effect: NamedEffect) -> dict[str, Any]:
+    row = _rows([effect], ("id", "site", "equation", "evidence", "statement"))[0]
+    row["parameters"] = {name: _row(value, ("value", "std", "unit")) for name, value in effect.parameters.items()}
+    return row
+
+
+def _fits(fits: Mapping[str, ChannelFit]) -> dict[str, Any]:
+    names = ("rmse_before", "rmse_calibrated", "rmse_after", "noise")
+    return {channel: _row(one, names) for channel, one in fits.items()}
+
+
+def _plain(value: Any) -> Any:
+    """Mappings, sequences and NumPy's scalars as JSON's own types."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float):
+        return value if isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [_plain(item) for item in value]
+    return value

@@ -1,0 +1,60 @@
+"""What the recording's motion is like, computed once: the scales in which the catalogue's searches begin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.observation import Observation
+from eha_core.diagnosis.shooting import Shooting, smooth
+from eha_core.plant import COLUMNS
+
+SCALES = ("position", "time", "speed", "force", "spool", "pressure", "supply_flow", "leakage_flow")
+"""What a start can be relative to."""
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Origin and scale of each of SCALES, and the calibrated model's states over time (rows of COLUMNS, each a
+    sample)."""
+
+    scales: Mapping[str, tuple[float, float]]
+    rows: Array
+
+    def column(self, name: str) -> Array:
+        """One column of the calibrated model's rows."""
+        return self.rows[:, COLUMNS.index(name)]
+
+
+def gather(observation: Observation, shooting: Shooting, calibrated: Fit) -> Facts:
+    """Simulate the calibrated model once more, in full, and read the scales off it and off the measured position."""
+    position = observation.channel("position")
+    assert position is not None
+    low, high = np.quantile(position.values, [0.002, 0.998])
+    centre, half = 0.5 * (low + high), 0.5 * (high - low)
+    speed = float(np.std(smooth(position, 1)))
+    scales = {
+        "position": (float(centre), float(half)),
+        "time": (0.0, observation.duration),
+        "speed": (0.0, speed),
+    }
+    if observation.drive == "voltage":
+        rows, _ = shooting.simulate(calibrated.values, calibrated.states, full=True)
+        area = calibrated.values["piston_area"]
+        difference = rows[:, COLUMNS.index("pressure_a")] - rows[:, COLUMNS.index("pressure_b")]
+        pressure = float(np.std(difference))
+        flow = float(np.std(rows[:, COLUMNS.index("flow_a")]))
+        scales["force"] = (0.0, area * pressure + calibrated.values["damping_coefficient"] * speed)
+        scales["spool"] = (0.0, float(np.std(rows[:, COLUMNS.index("spool_position")])))
+        scales["pressure"] = (0.0, max(pressure, 0.01 * calibrated.values["supply_pressure"]))
+        scales["supply_flow"] = (0.0, calibrated.values["supply_pressure"] / flow)
+        scales["leakage_flow"] = (0.0, flow / max(pressure, 1e5))
+    else:
+        rows = np.empty((0, len(COLUMNS)))
+        drive = calibrated.values["piston_area"] * (shooting.inputs[0] - shooting.inputs[1])
+        scales["force"] = (0.0, float(np.std(drive)))
+    return Facts(scales, rows)

@@ -1,0 +1,243 @@
+"""Soft multiple shooting: parameters and the windows' states fitted together, the windows tied by weak links.
+
+Levenberg-Marquardt on finite differences; parameters that meet a bound stay there while the rest adapts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+
+from eha_core.diagnosis.freedom import LATE, Free
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.problem import (
+    Problem,
+    linearise,
+    normal_equations,
+    objective_of,
+    residuals,
+    simulate,
+    values_at,
+)
+from eha_core.diagnosis.shooting import STATE_SIZE, Shooting
+
+SETTLED = 0.5
+"""Chi^2; an iteration that gains less ends the fit."""
+
+WORTH = 2e-4
+"""Of what is left beside noise: a model that is far off is not worth its last digits."""
+
+HOPE = 4.0
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted model.
+
+    Attributes:
+        free: what was moved; `q` its coordinates, `covariance` of (q, free states).
+        values: every parameter of the plant.
+        states: (windows, 4) fitted starts.
+        objective: chi^2 of data, links and priors over the windows used; `data` of the data alone.
+        count: samples used.
+        residuals: measured less simulated over the noise, one array a channel (all windows).
+        converged: whether the last steps no longer helped; a fit that diverged says False.
+    """
+
+    free: tuple[Free, ...]
+    q: Array
+    values: Mapping[str, float]
+    states: Array
+    objective: float
+    data: float
+    count: int
+    residuals: tuple[Array, ...]
+    covariance: Array
+    converged: bool
+    iterations: int
+
+    def deviation(self, name: str) -> float:
+        """Standard deviation of a fitted parameter's value, from the curvature at the optimum."""
+        place = [one.name for one in self.free].index(name)
+        return float(np.sqrt(max(self.covariance[place, place], 0.0))) * self.free[place].slope(self.values[name])
+
+
+def fit(
+    problem: Problem,
+    values: Mapping[str, float],
+    free: Sequence[Free],
+    states: Array | None = None,
+    *,
+    iterations: int = 12,
+    give_up_above: float = np.inf,
+) -> Fit:
+    """Minimise data, links and priors over `free` and the states of the windows in use, from `values`.
+
+    Stops when an iteration gains too little (SETTLED, WORTH), or when ones to come, at HOPE times the last one's gain,
+    would not bring it below `give_up_above`.
+    """
+    shooting = problem.shooting
+    free = tuple(free)
+    states = (shooting.initial_states if states is None else states).copy()
+    q = np.array([one.coordinate(values[one.name]) for one in free])
+    resolution = np.array([one.resolution for one in free])
+    steps = np.maximum(1e-3, resolution)
+    rows, ends = simulate(shooting, values, free, q, states)
+    objective = objective_of(problem, free, q, states, rows, ends)
+    damping, converged, done = 1e-6, False, 0
+    normal = np.eye(len(free) + STATE_SIZE * shooting.windows)
+    for done in range(1, iterations + 1):
+        linear = linearise(problem, values, free, q, states, steps)
+        normal, gradient = normal_equations(problem, free, q, states, linear)
+        found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), normal, gradient, damping)
+        if found is None:
+            converged = True
+            break
+        new, move, damping = found
+        gain = objective - new.objective
+        q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
+        ratio = gain / max(float(move @ (2.0 * gradient - normal @ move)), 1e-300)
+        damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
+        spread = np.sqrt(1.0 / np.maximum(np.diag(normal)[: len(free)], 1e-12))
+        steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
+        if gain < max(SETTLED, WORTH * (objective - problem.count())):
+            converged = True
+            break
+        if done > 2 and objective - HOPE * gain > give_up_above:
+            break
+    return _finish(problem, values, free, q, states, rows, objective, normal, converged, done)
+
+
+def fit_in_stages(
+    problem: Problem,
+    values: Mapping[str, float],
+    free: Sequence[Free],
+    states: Array | None = None,
+    *,
+    iterations: int = 30,
+    give_up_above: float = np.inf,
+) -> Fit:
+    """`fit` from far away: the parameters of LATE stay where they are until the others have settled."""
+    early = [one for one in free if one.name not in LATE]
+    first = fit(problem, values, early, states, iterations=8)
+    return fit(problem, first.values, free, first.states, iterations=iterations, give_up_above=give_up_above)
+
+
+def refit_states(problem: Problem, result: Fit, iterations: int = 4) -> Fit:
+    """Keep the parameters of `result` and fit only the states of the problem's windows: so held-out data are judged."""
+    return fit(problem, result.values, (), result.states, iterations=iterations)
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Where the search stands."""
+
+    q: Array
+    states: Array
+    rows: Array
+    ends: Array
+    objective: float
+
+
+def _descend(
+    problem: Problem,
+    values: Mapping[str, float],
+    free: Sequence[Free],
+    at: _Point,
+    normal: Array,
+    gradient: Array,
+    damping: float,
+) -> tuple[_Point, Array, float] | None:
+    """The first point that lies lower as the damping grows, with the move to it and that damping; None if none does."""
+    growth = 4.0
+    for _ in range(10):
+        move = _step(normal, gradient, damping, free, at.q)
+        if move is not None:
+            q, states = _moved(problem, free, at.q, at.states, move)
+            rows, ends = simulate(problem.shooting, values, free, q, states)
+            objective = objective_of(problem, free, q, states, rows, ends)
+            if objective < at.objective:
+                return _Point(q, states, rows, ends, objective), move, damping
+        damping = max(damping * growth, 1e-8)
+        growth *= 2.0
+    return None
+
+
+def _step(normal: Array, gradient: Array, damping: float, free: Sequence[Free], q: Array) -> Array | None:
+    """The damped Gauss-Newton step; parameters that it would carry past a bound go to the bound, and the rest
+    adapts."""
+    scale = np.sqrt(np.diag(normal))
+    damped = normal + damping * np.diag(scale**2)
+    fixed = np.zeros(len(scale), dtype=np.bool_)
+    move = np.zeros(len(scale))
+    for _ in range(4):
+        rest = ~fixed
+        right = gradient[rest] - damped[np.ix_(rest, fixed)] @ move[fixed]
+        block = damped[np.ix_(rest, rest)] / np.outer(scale[rest], scale[rest])
+        try:
+            move[rest] = np.asarray(cho_solve(cho_factor(block), right / scale[rest])) / scale[rest]
+        except (LinAlgError, ValueError):
+            return None
+        crossing = False
+        for place, one in enumerate(free):
+            reached = float(q[place] + np.clip(move[place], -one.longest_move, one.longest_move))
+            inside = one.coordinate(one.value(reached))
+            if not fixed[place] and abs(inside - reached) > 1e-12:
+                move[place] = inside - q[place]
+                fixed[place] = crossing = True
+        if not crossing:
+            break
+    return move
+
+
+def _moved(problem: Problem, free: Sequence[Free], q: Array, states: Array, move: Array) -> tuple[Array, Array]:
+    longest = np.array([one.longest_move for one in free])
+    new_q = q + np.clip(move[: len(free)], -longest, longest)
+    new_states = states + np.where(problem.used()[:, None], move[len(free) :].reshape(states.shape), 0.0)
+    return new_q, new_states
+
+
+def _finish(
+    problem: Problem,
+    values: Mapping[str, float],
+    free: tuple[Free, ...],
+    q: Array,
+    states: Array,
+    rows: Array,
+    objective: float,
+    normal: Array,
+    converged: bool,
+    iterations: int,
+) -> Fit:
+    used = problem.used()
+    left = residuals(problem.shooting, rows)
+    data = sum(float(np.sum(r[used[one.window]] ** 2)) for one, r in zip(problem.shooting.samplings, left, strict=True))
+    covariance = _inverse(normal)
+    return Fit(
+        free,
+        q,
+        values_at(values, free, q),
+        states,
+        objective,
+        data,
+        problem.count(),
+        left,
+        covariance,
+        converged and np.isfinite(objective),
+        iterations,
+    )
+
+
+def _inverse(normal: Array) -> Array:
+    scale = np.sqrt(np.diag(normal))
+    inner = np.linalg.pinv(normal / np.outer(scale, scale), rcond=1e-13, hermitian=True)
+    return inner / np.outer(scale, scale)
+
+
+def with_noise(shooting: Shooting, noise: Sequence[float]) -> Shooting:
+    """The same recording with the channels' noise replaced."""
+    pairs = zip(shooting.samplings, noise, strict=True)
+    return replace(shooting, samplings=tuple(replace(one, noise=level) for one, level in pairs))

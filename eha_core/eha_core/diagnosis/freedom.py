@@ -1,0 +1,141 @@
+"""Which parameters a fit may move, in which coordinate, and how far it takes their nominal values on trust."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import exp, log
+
+from eha_core.effects import Effect
+from eha_core.parameters import catalogue
+
+
+@dataclass(frozen=True)
+class Free:
+    """One parameter that a fit moves, by q: value = reference exp(q) if logarithmic, else reference + scale q.
+
+    The prior says q = 0 with standard deviation `trust`. `lower` and `upper` bound the value. A derivative is taken
+    over no less than `resolution` in q: an instant acts from one step of the simulation to the next.
+    """
+
+    name: str
+    reference: float
+    logarithmic: bool
+    scale: float
+    trust: float
+    lower: float
+    upper: float
+    resolution: float = 0.0
+
+    @property
+    def longest_move(self) -> float:
+        """How far one iteration may carry the coordinate: a factor e, or ten scales."""
+        return 1.0 if self.logarithmic else 10.0
+
+    def value(self, q: float) -> float:
+        """The parameter's value at coordinate q, kept inside its bounds."""
+        value = self.reference * exp(min(max(q, -50.0), 50.0)) if self.logarithmic else self.reference + self.scale * q
+        return min(max(value, self.lower), self.upper)
+
+    def coordinate(self, value: float) -> float:
+        """The coordinate of a value."""
+        if self.logarithmic:
+            return log(max(value, self.lower, 1e-300) / self.reference)
+        return (value - self.reference) / self.scale
+
+    def slope(self, value: float) -> float:
+        """d value / d q, to carry a standard deviation from the coordinate to the value."""
+        return value if self.logarithmic else self.scale
+
+
+@dataclass(frozen=True)
+class Trust:
+    """How far a nominal value is taken on trust: by `trust` in its coordinate, and never beyond a factor of `reach`.
+
+    `scale` [SI] is the coordinate's unit where the parameter may be zero, and `reach` then counts such units (0: any);
+    a scale of 0 says that it moves by factors.
+    """
+
+    trust: float
+    reach: float
+    scale: float = 0.0
+
+
+NOMINAL_TRUST: Mapping[str, Trust] = {
+    "coil_inductance": Trust(0.3, 2.0),
+    "valve_damping_ratio": Trust(0.3, 2.5),
+    "valve_natural_frequency": Trust(0.3, 2.0),
+    "valve_gain": Trust(0.7, 4.0),
+    "bulk_modulus": Trust(0.7, 5.0),
+    "supply_pressure": Trust(0.4, 2.0),
+    "return_pressure": Trust(1.0, 10.0, 1e5),
+    "spring_stiffness": Trust(1.0, 0.0, 2e4),
+    "actuator_displacement": Trust(0.3, 2.0),
+    "moving_mass": Trust(0.7, 5.0),
+    "damping_coefficient": Trust(1.0, 8.0),
+    "internal_leakage": Trust(1.0, 0.0, 3e-11),
+}
+"""Assumed: how far data sheets and hand-over notes are off.
+
+Held, because a recording sees them only through the ones above: coil_resistance (through the gain), piston_area
+(through gain, mass and damping), line_volume (through stroke and bulk modulus). Held, because a departure from them is
+physics and has its name in the catalogue: external_leakage, and piston_area_b where the nominal cylinder is symmetric.
+"""
+
+LATE = ("coil_inductance", "valve_damping_ratio", "valve_natural_frequency", "actuator_displacement")
+"""Freed last: a fit that is still far off would bend the valve's dynamics or the stroke to imitate a wrong mass or
+oil."""
+
+TOUCHING = 0.985
+"""Share of the stroke beyond which the piston has been at its end: then the stroke is seen, and not fitted."""
+
+FORCE_ONLY = ("spring_stiffness", "moving_mass", "damping_coefficient")
+"""What a recording without the valve's command can tell."""
+
+
+def nominal_freedom(nominal: Mapping[str, float], drive: str, travel: float) -> tuple[Free, ...]:
+    """The nominal parameters that a recording with this drive may move; `travel` is the largest |position| seen [m]."""
+    free = []
+    for name, known in NOMINAL_TRUST.items():
+        if drive != "voltage" and name not in FORCE_ONLY:
+            continue
+        row = catalogue()[name]
+        reference = nominal[name]
+        logarithmic = known.scale == 0.0 and reference > 0.0
+        lower, upper = row.lower, row.upper
+        if logarithmic:
+            lower, upper = max(lower, reference / known.reach), min(upper, reference * known.reach)
+        if name == "actuator_displacement":
+            if travel > TOUCHING * reference:
+                continue
+            lower = max(lower, 1.01 * travel)
+        scale = 0.0 if logarithmic else max(known.scale or row.typical, abs(reference))
+        if not logarithmic and known.reach:
+            upper = min(upper, reference + known.reach * scale)
+        free.append(Free(name, reference, logarithmic, scale, known.trust, lower, max(lower, upper)))
+    if nominal["piston_area_b"] != nominal["piston_area"] and drive == "voltage":
+        row = catalogue()["piston_area_b"]
+        free.append(Free(row.name, nominal[row.name], True, 0.0, 0.3, row.lower, row.upper))
+    return tuple(free)
+
+
+EFFECT_TRUST = 30.0
+"""An effect's parameter may move by this many times its starting size, or by e^3 where it moves by factors."""
+
+
+SHORTEST_INSTANT = 0.01
+"""s; over this much an instant is moved to see what that changes."""
+
+
+def effect_freedom(effect: Effect, start: Mapping[str, float]) -> tuple[Free, ...]:
+    """An effect's parameters, free about `start` (full names)."""
+    free = []
+    for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
+        value = start[name]
+        if row.logarithmic and value > 0.0:
+            free.append(Free(name, value, True, 0.0, 3.0, row.lower, row.upper))
+        else:
+            scale = abs(value - row.nominal) or abs(row.typical) or 1.0
+            resolution = SHORTEST_INSTANT / scale if row.relative_to == "time" else 0.0
+            free.append(Free(name, value, False, scale, EFFECT_TRUST, row.lower, row.upper, resolution))
+    return tuple(free)

@@ -1,0 +1,45 @@
+"""What could be missing: each effect of the catalogue, and the points from which a search for it starts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+
+from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.observation import Observation
+from eha_core.effects import Effect, effects
+
+SITES_OF_DRIVE = {
+    "voltage": ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
+    "pressures": ("force", "sensor"),
+    "force": ("force", "sensor"),
+}
+"""Where a recording with this drive can show anything."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """An effect with values for its parameters (full names)."""
+
+    effect: Effect
+    values: Mapping[str, float]
+
+
+def candidates(observation: Observation) -> tuple[Effect, ...]:
+    """The effects that this recording could show: those of examined sites whose sensor was there."""
+    sites = SITES_OF_DRIVE[observation.drive]
+    found = [effect for effect in effects() if effect.site in sites and effect.named]
+    if observation.channel("pressure_a") is None and observation.channel("pressure_b") is None:
+        found = [effect for effect in found if "measured_pressure_a" not in effect.needs]
+    return tuple(found)
+
+
+def starts(effect: Effect, facts: Facts) -> tuple[Start, ...]:
+    """Every combination of the starts that the effect's parameters declare."""
+    choices = []
+    for row in effect.parameters:
+        origin, scale = facts.scales.get(row.relative_to, (0.0, row.typical))
+        choices.append([min(max(origin + scale * at, row.lower), row.upper) for at in row.starts])
+    names = effect.parameter_names()
+    return tuple(Start(effect, dict(zip(names, values, strict=True))) for values in product(*choices))

@@ -1,0 +1,68 @@
+"""Several recordings of one rig: what one cannot tell apart, another may."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.screen import Promise
+from eha_core.diagnosis.tournament import ENOUGH, Entry, Tournament, rank, scatter, try_effect
+from eha_core.diagnosis.verdict import decide
+
+
+def join(evidences: Sequence[Evidence]) -> Evidence:
+    """The evidence of the recording that tells most, with every score the sum over all recordings.
+
+    Each recording keeps its own nominal parameters; a hypothesis that one of them did not refit is refitted there.
+    """
+    if len(evidences) == 1:
+        return evidences[0]
+    wanted: dict[tuple[str, ...], Entry] = {}
+    for evidence in evidences:
+        for entry in evidence.tournament.entries:
+            if entry.score > ENOUGH and entry.score > evidence.tournament.entries[0].score - 10.0 * ENOUGH:
+                wanted.setdefault(entry.ids, entry)
+    completed = [_completed(evidence, wanted) for evidence in evidences]
+    lead = int(np.argmax([max([0.0, *(entry.score for entry in one.entries)]) for one in completed]))
+    totals = {ids: sum(_score(one, ids) for one in completed) for ids in wanted}
+    entries = sorted(
+        (replace(entry, score=totals[entry.ids]) for entry in completed[lead].entries if entry.ids in totals),
+        key=lambda entry: -entry.score,
+    )
+    chosen = evidences[lead]
+    tournament = replace(completed[lead], entries=tuple(entries))
+    recovery = chosen.recovery
+    if recovery is not None and len(entries):
+        # a curve's score is of one recording; hold the sum against as much of it
+        recovery = replace(
+            recovery, score=recovery.score * totals[entries[0].ids] / max(_score(completed[lead], entries[0].ids), 1.0)
+        )
+    decision = decide(chosen.calibration, chosen.nominal, tournament, recovery)
+    return replace(chosen, tournament=tournament, decision=decision)
+
+
+def _score(tournament: Tournament, ids: tuple[str, ...]) -> float:
+    return next((entry.score for entry in tournament.entries if entry.ids == ids), 0.0)
+
+
+def _completed(evidence: Evidence, wanted: Mapping[tuple[str, ...], Entry]) -> Tournament:
+    """The tournament with every wanted hypothesis in it."""
+    tournament, problem = evidence.tournament, evidence.calibration.problem
+    found = [(entry.effects, entry.fit) for entry in tournament.entries]
+    for ids, entry in wanted.items():
+        if any(ids == tuple(effect.id for effect in effects) for effects, _ in found):
+            continue
+        base = tournament.nominal.fit
+        for effect in entry.effects:
+            values = {name: entry.fit.values[name] for name in effect.parameter_names()}
+            promise = next((one for one in tournament.promises if one.start.effect.id == effect.id), None)
+            factor = promise.factor if promise is not None else 1.0
+            start = Promise(Start(effect, values), 0.0, 1.0 if factor > 0.0 else factor)
+            base = try_effect(problem, base, start, np.inf)
+        found.append((entry.effects, base))
+    entries = rank(problem, tournament.nominal.fit, found)
+    return replace(tournament, entries=entries, scatter=scatter(tournament.nominal.fit, entries))

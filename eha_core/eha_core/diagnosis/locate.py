@@ -1,0 +1,155 @@
+"""Stage 3, locate: which equation is violated, by how much of what is unexplained, where in state space, and when."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from eha_core.diagnosis.balance import Balance
+from eha_core.diagnosis.calibrate import Calibration
+from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.result import Location
+from eha_core.diagnosis.screen import Promise
+from eha_core.diagnosis.shooting import Shooting
+from eha_core.diagnosis.tournament import Tournament
+
+SLICE = 0.25
+"""s; resolution in time of "when"."""
+
+LOUD = 4.0
+"""A slice of the record is named when its residual energy is this many times what noise leaves."""
+
+DESCRIBED = {
+    "command": "between command and coil",
+    "spool": "between coil current and spool",
+    "orifice": "in the valve's flow",
+    "supply": "in supply or return line",
+    "chamber": "in the continuity of the chambers",
+    "force": "in the force balance of the piston",
+    "sensor": "in what a sensor reports",
+    "schedule": "in a parameter that changes in time",
+}
+
+
+@dataclass(frozen=True)
+class Region:
+    """A part of state space, the share of the record spent there, and of the unexplained energy."""
+
+    name: str
+    time_share: float
+    energy_share: float
+
+
+def locate(
+    calibration: Calibration, nominal: Fit, facts: Facts, tournament: Tournament, equations: Sequence[Balance]
+) -> tuple[Location, ...]:
+    """The sites by the share of the unexplained chi^2 that their best hypothesis takes away, the largest first."""
+    shooting = calibration.shooting
+    unexplained = max(nominal.objective - nominal.count, 1.0)
+    gains = _site_gains(tournament, equations)
+    where, when = _where(shooting, nominal, facts), _when(shooting, nominal)
+    found: list[Location] = []
+    for site, gain in sorted(gains.items(), key=lambda item: -item[1])[:4]:
+        share = float(np.clip(gain / unexplained, 0.0, 1.0))
+        if share < 0.01 and found:
+            continue
+        statement = (
+            f"{share:.0%} of what the calibrated model leaves unexplained sits {DESCRIBED[site]}, {where}{_times(when)}"
+        )
+        found.append(Location(site, share, where, when, statement))
+    return tuple(found)
+
+
+def _site_gains(tournament: Tournament, equations: Sequence[Balance]) -> dict[str, float]:
+    """The refitted gain of each site's best hypothesis, or else the promised one, which never counts as much."""
+    gains: dict[str, float] = {}
+    nominal = tournament.nominal.fit
+    refitted = {
+        entry.ids[0]: nominal.objective - entry.fit.objective for entry in tournament.entries if len(entry.ids) == 1
+    }
+    lowest = min([0.0, *(-gain for gain in refitted.values())])
+    for promise in tournament.promises:
+        effect = promise.start.effect
+        gain = refitted.get(effect.id)
+        if gain is None:
+            gain = min(_promised(promise), 0.5 * -lowest)
+        if gain > gains.get(effect.site, 0.0):
+            gains[effect.site] = gain
+    return gains
+
+
+def _promised(promise: Promise) -> float:
+    return promise.gain
+
+
+def _energy(shooting: Shooting, result: Fit) -> tuple[Array, Array]:
+    """Residual energy beyond the noise at every sample's time, all channels together: times and energies."""
+    times = [(one.row + 1 + one.late) * shooting.every * shooting.step_size for one in shooting.samplings]
+    return np.concatenate(times), np.concatenate([residual**2 for residual in result.residuals])
+
+
+def _when(shooting: Shooting, result: Fit) -> tuple[tuple[float, float], ...]:
+    """Spans of time in which the residual is loud; one span over everything if that is most of the record."""
+    times, energy = _energy(shooting, result)
+    end = float(shooting.edges[-1]) * shooting.step_size
+    edges = np.arange(0.0, end + SLICE, SLICE)
+    place = np.clip(np.digitize(times, edges) - 1, 0, len(edges) - 2)
+    counts = np.bincount(place, minlength=len(edges) - 1)
+    means = np.bincount(place, weights=energy, minlength=len(edges) - 1) / np.maximum(counts, 1)
+    loud = means > max(LOUD, 0.1 * float(means.max()))
+    if not loud.any():
+        return ()
+    if loud.mean() > 0.6:
+        return ((0.0, end),)
+    starts = np.flatnonzero(loud & ~np.concatenate([[False], loud[:-1]]))
+    stops = np.flatnonzero(loud & ~np.concatenate([loud[1:], [False]]))
+    spans = [(float(edges[first]), float(min(edges[last + 1], end))) for first, last in zip(starts, stops, strict=True)]
+    return tuple(spans)
+
+
+def _times(when: tuple[tuple[float, float], ...]) -> str:
+    if not when:
+        return ""
+    if len(when) == 1 and when[0][0] == 0.0:
+        return ", through the whole record"
+    if len(when) == 1:
+        return f", from {when[0][0]:.1f} s to {when[0][1]:.1f} s"
+    return f", in {len(when)} spans of time, the first from {when[0][0]:.1f} s"
+
+
+def regions(shooting: Shooting, result: Fit, facts: Facts) -> tuple[Region, ...]:
+    """How much of the time and of the unexplained energy fall into each part of state space that an engineer would
+    name."""
+    if not len(facts.rows):
+        return ()
+    sampling, residual = max(
+        zip(shooting.samplings, result.residuals, strict=True), key=lambda pair: float(np.mean(pair[1] ** 2))
+    )
+    at = sampling.row
+    energy = np.maximum(residual**2 - 1.0, 0.0)
+    total = float(energy.sum()) or 1.0
+    speed, spool, position = (facts.column(name)[at] for name in ("velocity", "spool_position", "position"))
+    pressure = np.maximum(facts.column("pressure_a")[at], facts.column("pressure_b")[at])
+    masks = {
+        "near zero speed": np.abs(speed) < 0.15 * np.std(speed),
+        "near the valve's null": np.abs(spool) < 0.15 * np.std(spool),
+        "at high speed": np.abs(speed) > 1.5 * np.std(speed),
+        "at large valve opening": np.abs(spool) > 1.5 * np.std(spool),
+        "at high pressure": pressure > np.quantile(pressure, 0.9),
+        "at the upper end of the travel": position > np.quantile(position, 0.92),
+        "at the lower end of the travel": position < np.quantile(position, 0.08),
+    }
+    return tuple(Region(name, float(mask.mean()), float(energy[mask].sum()) / total) for name, mask in masks.items())
+
+
+def _where(shooting: Shooting, result: Fit, facts: Facts) -> str:
+    """The region that holds most beyond its share of time, if any stands out."""
+    candidates = [one for one in regions(shooting, result, facts) if one.time_share > 0.005]
+    best = max(candidates, key=lambda one: one.energy_share / one.time_share, default=None)
+    if best is None or best.energy_share < 2.0 * best.time_share or best.energy_share < 0.15:
+        return "all over the states that were visited"
+    return best.name

@@ -1,0 +1,57 @@
+"""How noisy a channel is, from the channel alone."""
+
+from __future__ import annotations
+
+from math import comb, sqrt
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from eha_core.diagnosis.numbers import Array, Flags
+
+NORMAL_MEDIAN = 0.6744897501960817
+"""The median of |z| for a standard normal z."""
+
+
+def estimate_noise(values: Array, order: int = 4, blocks: int = 20) -> float:
+    """Standard deviation of white noise on a smooth signal.
+
+    Differences of the given order remove the signal where it is smooth; the lower quartile over blocks of the record
+    passes over the stretches where it is not. Never below what quantisation alone makes.
+    """
+    differences = np.diff(values, n=order)
+    scale = sqrt(comb(2 * order, order)) * NORMAL_MEDIAN
+    pieces = np.array_split(np.abs(differences), max(1, min(blocks, len(differences) // 50)))
+    deviations = [float(np.median(piece)) / scale for piece in pieces if len(piece)]
+    estimate = float(np.quantile(deviations, 0.35)) if deviations else 0.0
+    return max(estimate, quantisation(values) / sqrt(12.0), 1e-12 * float(np.max(np.abs(values)) or 1.0))
+
+
+def residual_noise(residual: Array, order: int = 2) -> float:
+    """Standard deviation of the white part of a fit's residual, whatever slow part a wrong model leaves in it."""
+    differences = np.abs(np.diff(residual, n=order))
+    return float(np.median(differences)) / (sqrt(comb(2 * order, order)) * NORMAL_MEDIAN)
+
+
+def quantisation(values: Array) -> float:
+    """The step of a quantised channel, or 0 where its values are not on a grid."""
+    distinct = np.unique(values)
+    if len(distinct) < 3 or len(distinct) > 0.25 * len(values):
+        return 0.0
+    return float(np.min(np.diff(distinct)))
+
+
+def find_outliers(values: Array, noise: float, limit: float = 8.0, width: int = 51) -> Flags:
+    """Lone samples that both neighbours contradict alike, by `limit` times the noise and times what is usual nearby.
+
+    A step of the signal is rough, too, but there the neighbours differ from each other; and where it rings, samples
+    further on are as surprising.
+    """
+    before = np.concatenate([values[1:2], values[:-1]])
+    after = np.concatenate([values[1:], values[-2:-1]])
+    surprise = np.abs(values - 0.5 * (before + after))
+    usual = median_filter(surprise, size=width, mode="nearest")
+    alone = np.abs(after - before) < 0.25 * surprise
+    for shift in range(2, 7):
+        alone &= np.maximum(np.roll(surprise, shift), np.roll(surprise, -shift)) < 0.3 * surprise
+    return np.asarray((surprise > limit * noise) & (surprise > limit * usual) & alone)

@@ -1,0 +1,139 @@
+"""Stage 1, read and align: a recording's channels on one clock, with the noise of each, ready to be simulated
+against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from eha_core.diagnosis.noise import estimate_noise, find_outliers
+from eha_core.diagnosis.numbers import Array
+from eha_core.errors import RecordingError
+from eha_core.recording import Channel, Recording
+
+SHORTEST = 1.0
+"""s; a shorter recording says too little about any parameter."""
+
+FITTED = ("position", "velocity", "pressure_a", "pressure_b")
+"""Channels that a simulation is compared with, in the order of the plant's measured columns."""
+
+RESOLVED = {"m": 1e-6, "m/s": 1e-3, "Pa": 3e3}
+"""Better than any sensor and coarser than the search's simulation: a recording without noise is not held to more."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One channel to be explained: `values` (n,) at `time` (n,) [s], with the standard deviation of its noise."""
+
+    name: str
+    column: int
+    time: Array
+    values: Array
+    noise: float
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What a recording offers.
+
+    Attributes:
+        path: where it was read from.
+        drive: what the simulation is driven by: "voltage", "pressures" or "force".
+        inputs: the driving channels, as (time, values); voltage is held between samples.
+        measured: the channels that are compared.
+        duration: [s].
+        not_examined: what could not be looked at and why, one line each.
+        remarks: what was put right or left out, one line each.
+    """
+
+    path: str
+    drive: str
+    inputs: tuple[tuple[Array, Array], ...]
+    measured: tuple[Measured, ...]
+    duration: float
+    channels: tuple[str, ...]
+    not_examined: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+    def channel(self, name: str) -> Measured | None:
+        """The measured channel of that name, if there is one."""
+        return next((channel for channel in self.measured if channel.name == name), None)
+
+
+def observe(recording: Recording) -> Observation:
+    """Choose what drives the simulation and what it is compared with; estimate noise; set outliers aside.
+
+    Raises RecordingError where no equation can be examined: too short, no position, nothing that drives it, or
+    constant.
+    """
+    channels = recording.channels
+    where = str(recording.path)
+    if recording.duration < SHORTEST:
+        raise RecordingError(
+            f"{where}: {recording.duration:.3g} s of data are too short to diagnose; record {SHORTEST:g} s or more"
+        )
+    if "position" not in channels:
+        raise RecordingError(
+            f"{where}: no position channel among {', '.join(channels) or 'none'}; map one to `position`"
+            " in a topics file"
+        )
+    drive, inputs, not_examined = _choose_drive(where, channels)
+    remarks: list[str] = list(recording.remarks)
+    measured = []
+    for column, name in enumerate(FITTED):
+        if name not in channels or (drive != "voltage" and name.startswith("pressure")):
+            continue
+        # a velocity computed from the position adds nothing and its noise is not independent
+        if name == "velocity":
+            continue
+        measured.append(_measured(channels[name], column, remarks))
+    position = measured[0]
+    if np.ptp(position.values) < 4.0 * position.noise:
+        raise RecordingError(
+            f"{where}: the position does not move (it spans {np.ptp(position.values):.3g} m, its noise is "
+            f"{position.noise:.3g} m); record a test that moves the piston"
+        )
+    for name in ("pressure_a", "pressure_b"):
+        if name not in channels and drive == "voltage":
+            not_examined.append(f"continuity of chamber {name[-1]}: {name} was not recorded")
+    return Observation(
+        where, drive, inputs, tuple(measured), recording.duration, tuple(channels), tuple(not_examined), tuple(remarks)
+    )
+
+
+def _choose_drive(
+    where: str, channels: Mapping[str, Channel]
+) -> tuple[str, tuple[tuple[Array, Array], ...], list[str]]:
+    """The best driving signal there is, and what its choice leaves unexamined."""
+    if "voltage_command" in channels:
+        command = channels["voltage_command"]
+        if np.ptp(command.values) == 0.0:
+            raise RecordingError(
+                f"{where}: the voltage command is constant at {command.values[0]:.3g} V; record a test that"
+                " excites the rig"
+            )
+        return "voltage", ((command.time, command.values),), []
+    unexamined = ["coil, spool and valve flow: no voltage_command was recorded"]
+    if "force" in channels:
+        force = channels["force"]
+        return (
+            "force",
+            ((force.time, force.values),),
+            [*unexamined, "continuity of both chambers: force alone was recorded"],
+        )
+    if "pressure_a" in channels and "pressure_b" in channels:
+        pair = tuple((channels[name].time, channels[name].values) for name in ("pressure_a", "pressure_b"))
+        return "pressures", pair, [*unexamined, "continuity of both chambers: their flows are not known"]
+    raise RecordingError(
+        f"{where}: nothing there drives the piston; record voltage_command, or force, or both chamber pressures"
+    )
+
+
+def _measured(channel: Channel, column: int, remarks: list[str]) -> Measured:
+    noise = max(estimate_noise(channel.values), RESOLVED[channel.unit])
+    bad = find_outliers(channel.values, noise)
+    if bad.any():
+        remarks.append(f"{channel.name}: {int(bad.sum())} outliers were set aside")
+    return Measured(channel.name, column, channel.time[~bad], channel.values[~bad], noise)

@@ -1,0 +1,145 @@
+"""What a diagnosis says: frozen facts that the terminal, diagnosis.json and the report present."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from eha_core.diagnosis.numbers import Array
+
+VERDICTS = ("consistent", "parameters", "missing_physics", "ambiguous", "unknown_physics")
+
+
+@dataclass(frozen=True)
+class Location:
+    """Where the nominal equations fail: site, its share of the unexplained energy, where in state space, and when
+    [s]."""
+
+    site: str
+    share: float
+    where: str
+    when: tuple[tuple[float, float], ...]
+    statement: str
+
+
+@dataclass(frozen=True)
+class FittedParameter:
+    """A nominal parameter after calibration, with its standard deviation; `changed` if it left its nominal value."""
+
+    name: str
+    nominal: float
+    fitted: float
+    std: float
+    unit: str
+    changed: bool
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class FittedValue:
+    """An effect's parameter with its standard deviation."""
+
+    value: float
+    std: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """A physical effect that the recording shows. `evidence` is its gain in chi^2 less what its freedom costs."""
+
+    id: str
+    site: str
+    equation: str
+    parameters: Mapping[str, FittedValue]
+    evidence: float
+    statement: str
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Effects that explain the recording as well as the named ones, but for `evidence_gap`."""
+
+    effects: tuple[str, ...]
+    evidence_gap: float
+
+
+@dataclass(frozen=True)
+class UnknownLaw:
+    """A law outside the catalogue, recovered as a curve over one variable, and as an expression where it is simple."""
+
+    site: str
+    function_of: str
+    expression: str
+    r_squared: float
+    samples: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class ChannelFit:
+    """RMSE of one channel [its unit]: nominal as given, calibrated, and with the named physics; and its noise."""
+
+    rmse_before: float
+    rmse_calibrated: float
+    rmse_after: float
+    noise: float
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A test for the rig whose outcome would tell the rivals apart, as parameters of the reference generator."""
+
+    statement: str
+    separates: tuple[str, ...]
+    reference: Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """The series that the report draws, by name; channels in SI, each over its own `time` [s].
+
+    `measured` has every channel that was used, the driving ones too; the three models have those that are compared.
+    `variables` (states of the calibrated model, by column name) stand over their own `time`. `equations` has each
+    equation's residual in units of its noise, as (time, residual). `held_out`: the spans of time used for judging [s].
+    """
+
+    time: Mapping[str, Array]
+    measured: Mapping[str, Array]
+    before: Mapping[str, Array]
+    calibrated: Mapping[str, Array]
+    after: Mapping[str, Array]
+    variables: Mapping[str, Array] = field(default_factory=dict)
+    equations: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
+    held_out: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The whole result of `eha diagnose` on one recording.
+
+    `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
+    calibrated model, less the cost of its freedom. `whiteness` is each channel's largest autocorrelation in units of
+    the deviation that white noise has. `start_stamp` is the instant [ns] of time zero.
+    """
+
+    path: str
+    duration: float
+    channels: tuple[str, ...]
+    not_examined: tuple[str, ...]
+    remarks: tuple[str, ...]
+    damaged: str | None
+    verdict: str
+    summary: str
+    location: tuple[Location, ...]
+    parameters: tuple[FittedParameter, ...]
+    effects: tuple[NamedEffect, ...]
+    alternatives: tuple[Alternative, ...]
+    unknown: UnknownLaw | None
+    training: Mapping[str, ChannelFit]
+    held_out: Mapping[str, ChannelFit]
+    next_experiment: Experiment | None
+    rivals: tuple[tuple[tuple[str, ...], float], ...]
+    whiteness: Mapping[str, float]
+    fitted_values: Mapping[str, float]
+    pictures: Pictures
+    start_stamp: int = 0

@@ -1,0 +1,107 @@
+"""Stage 4c, decide: name, abstain, or say that nothing is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from eha_core.curve import KNOTS
+from eha_core.diagnosis.calibrate import Calibration, has_changed
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.tournament import ENOUGH, TIE, Entry, Tournament, bounded, parameter_cost
+from eha_core.diagnosis.unknown import Recovery
+from eha_core.diagnosis.validate import Judged, judge
+
+HELD_OUT = 5.0
+"""A named effect must lower chi^2 on held-out windows by this."""
+
+EVENTFUL = frozenset({"schedule"})
+"""Sites whose effects happen at one time: a held-out window may hold the event, so they are judged on all data."""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The verdict, its winner (the nominal entry where nothing is named) and the rivals it was not told apart from."""
+
+    verdict: str
+    winner: Entry
+    rivals: tuple[tuple[Entry, float], ...]
+    judged_nominal: Judged | None
+    judged_winner: Judged | None
+
+
+UNKNOWN_MARGIN = 50.0
+"""A recovered curve must beat the best of the catalogue by this, its many knots paid for, before the catalogue is
+refused."""
+
+
+def decide(
+    calibration: Calibration, nominal: Mapping[str, float], tournament: Tournament, recovery: Recovery | None
+) -> Decision:
+    """Weigh the tournament's entries, the best first, and the recovered curve against them."""
+    if recovery is not None and _beats_the_catalogue(recovery, tournament):
+        entry = Entry((recovery.effect,), recovery.fit, recovery.score)
+        return Decision(
+            "unknown_physics",
+            entry,
+            (),
+            judge(calibration.shooting, tournament.nominal.fit),
+            judge(calibration.shooting, entry.fit),
+        )
+    standing = [entry for entry in tournament.entries if entry.score > ENOUGH and not bounded(entry)]
+    if not standing:
+        return _without_physics(calibration, nominal, tournament)
+    winner = standing[0]
+    judged_nominal = judge(calibration.shooting, tournament.nominal.fit)
+    judged_winner = judge(calibration.shooting, winner.fit)
+    gain = (judged_nominal.chi_square - judged_winner.chi_square) / tournament.scatter
+    eventful = any(effect.site in EVENTFUL for effect in winner.effects)
+    if gain < HELD_OUT and not eventful:
+        return _without_physics(calibration, nominal, tournament)
+    rivals = tuple((entry, winner.score - entry.score) for entry in standing[1:] if _is_rival(winner, entry))
+    verdict = "ambiguous" if rivals else "missing_physics"
+    return Decision(verdict, winner, rivals, judged_nominal, judged_winner)
+
+
+def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
+    """Whether the curve explains so much more than the best named effects that its many knots are paid for."""
+    best = tournament.entries[0] if tournament.entries else tournament.nominal
+    variance = max(1.0, recovery.fit.data / recovery.fit.count)
+    more = (best.fit.objective - recovery.fit.objective) / variance
+    knots = KNOTS - sum(len(effect.parameters) for effect in best.effects)
+    return recovery.score > ENOUGH and more > UNKNOWN_MARGIN + knots * parameter_cost(recovery.fit.count, variance)
+
+
+def _is_rival(winner: Entry, entry: Entry) -> bool:
+    """Another explanation as good as the winner's: not one that merely adds to it."""
+    return winner.score - entry.score < TIE and not set(winner.ids) <= set(entry.ids)
+
+
+def _without_physics(calibration: Calibration, nominal: Mapping[str, float], tournament: Tournament) -> Decision:
+    """Nothing is named: say whether parameters differ. A set of values differs if the data say so, taken together."""
+    result = tournament.nominal.fit
+    gain = calibration.nominal.objective - result.objective
+    changed = [one.name for one in result.free if has_changed(result, nominal, one.name)]
+    different = gain / tournament.scatter > ENOUGH + len(changed) * log(max(result.count, 2)) and changed
+    return Decision("parameters" if different else "consistent", tournament.nominal, (), None, None)
+
+
+def whiteness(residuals: Sequence[Array], lags: int = 20) -> list[float]:
+    """Largest autocorrelation of each channel's residual over the first lags, in units of its expected deviation 1/sqrt
+    n."""
+    found = []
+    for residual in residuals:
+        centred = residual - residual.mean()
+        power = float(centred @ centred) or 1.0
+        correlations = [float(centred[:-lag] @ centred[lag:]) / power for lag in range(1, min(lags, len(centred) - 1))]
+        found.append(max((abs(value) for value in correlations), default=0.0) * float(np.sqrt(len(centred))))
+    return found
+
+
+def unexplained(result: Fit) -> float:
+    """Chi^2 a sample that a model leaves, beside noise."""
+    return max(0.0, result.data / max(result.count, 1) - 1.0)

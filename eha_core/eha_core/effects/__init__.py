@@ -1,0 +1,32 @@
+"""The catalogue of effects: every module of this package that declares an `EFFECT`.
+
+A file added here is found; there is no list to edit. Each holds a docstring, an `EFFECT` and one compiled
+`contribution` whose head is the one of its site in `eha_core.plant.hooks`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from importlib import import_module
+from pkgutil import iter_modules
+
+from eha_core.effects.declaration import SITES, Effect
+
+__all__ = ["SITES", "Effect", "effect", "effects"]
+
+
+@cache
+def effects() -> tuple[Effect, ...]:
+    """All effects, by site, rank and id."""
+    found = []
+    for entry in iter_modules(__path__):
+        declared = getattr(import_module(f"{__name__}.{entry.name}"), "EFFECT", None)
+        if declared is not None:
+            found.append(replace(declared, id=entry.name))
+    return tuple(sorted(found, key=lambda effect: (SITES.index(effect.site), effect.order, effect.id)))
+
+
+def effect(identifier: str) -> Effect:
+    """The effect of that id; KeyError where the catalogue has none."""
+    return {entry.id: entry for entry in effects()}[identifier]

@@ -1,0 +1,53 @@
+"""A steady force on the piston: gravity, a counterweight, a tool that pushes.
+
+Signature: the mean pressure difference is not zero; the piston gives way to one side where oil leaks.
+Equation: - force.
+Sign: a positive load pushes back against extension.
+Validity: constant in time and place.
+Source: the load force of H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 6.
+"""
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+EFFECT = Effect(
+    site="force",
+    statement="a steady load of {force:.4g} N pushes against extension",
+    equation="M_p x_p'' = ... - force",
+    parameters=(
+        Parameter(
+            "force",
+            "F_L",
+            "N",
+            0.0,
+            -1e6,
+            1e6,
+            "load against extension",
+            ASSUMED,
+            typical=500.0,
+            switches=True,
+            relative_to="force",
+            starts=(-0.3, 0.3),
+        ),
+    ),
+)
+
+
+@inlined
+def contribution(
+    force,
+    damping,
+    stiffness,
+    dry_friction,
+    position,
+    velocity,
+    pressure_a,
+    pressure_b,
+    memory,
+    slot,
+    step_size,
+    load,
+):
+    """Take the load off the force."""
+    return force - load, damping, stiffness, dry_friction

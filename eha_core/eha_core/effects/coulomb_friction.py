@@ -1,0 +1,54 @@
+"""Dry friction of seals and guides: a constant force against motion that holds the piston until it is overcome.
+
+Signature: the pressure difference jumps at each reversal of the piston; the piston rests near the turning points.
+Equation: M_p x_p'' = A_p (P1 - P2) - ... - force sign(v); at rest any force up to `force` is balanced.
+Sign: a positive force opposes motion.
+Validity: speeds above the Stribeck region; break-away no higher than sliding friction.
+Source: H. Olsson, K. J. Astrom, C. Canudas de Wit, M. Gafvert, P. Lischinsky, "Friction models and friction
+compensation", European Journal of Control 4 (1998).
+"""
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+EFFECT = Effect(
+    site="force",
+    statement="the seals rub: {force:.4g} N of dry friction opposes motion and holds the piston at rest",
+    equation="M_p x_p'' = ... - force sign(x_p')",
+    parameters=(
+        Parameter(
+            "force",
+            "F_c",
+            "N",
+            0.0,
+            0.0,
+            1e5,
+            "dry friction force",
+            ASSUMED,
+            typical=200.0,
+            switches=True,
+            relative_to="force",
+            starts=(0.1, 0.4),
+        ),
+    ),
+)
+
+
+@inlined
+def contribution(
+    force,
+    damping,
+    stiffness,
+    dry_friction,
+    position,
+    velocity,
+    pressure_a,
+    pressure_b,
+    memory,
+    slot,
+    step_size,
+    friction_force,
+):
+    """Add to the dry friction of the piston."""
+    return force, damping, stiffness, dry_friction + friction_force

@@ -1,0 +1,50 @@
+"""What a file of the catalogue declares beside its compiled contribution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from eha_core.parameter import Parameter
+
+SITES = ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule")
+"""Where in the actuator an effect sits, in the order in which the signal passes: see `eha_core.plant.hooks`."""
+
+MEMORY_STARTS = ("zero", "current", "position", "velocity")
+"""What a memory slot of an effect can hold when the effect begins to act."""
+
+ASSUMED = "assumed: an order of magnitude for a bench actuator"
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One physical effect that the nominal equations leave out.
+
+    `statement` completes the sentence "the recording shows that ..." and may quote parameters by name, in SI units.
+    `memory` names what each of the effect's state slots starts from (one of MEMORY_STARTS). `order` ranks effects of
+    one site where their sequence matters physically; equal ranks go by id. `needs` lists measured columns without which
+    no recording can show the effect. `named` is False for a curve that stands for a law nobody has named. `id` is the
+    file's name, filled in on discovery.
+    """
+
+    site: str
+    statement: str
+    equation: str
+    parameters: tuple[Parameter, ...]
+    memory: tuple[str, ...] = ()
+    order: int = 0
+    needs: tuple[str, ...] = ()
+    named: bool = True
+    id: str = ""
+
+    def parameter_names(self) -> tuple[str, ...]:
+        """Full names, `<effect id>.<parameter>`, as ROS and parameter files carry them."""
+        return tuple(f"{self.id}.{row.name}" for row in self.parameters)
+
+    def is_active(self, values: Mapping[str, float]) -> bool:
+        """True unless every parameter that switches the effect stands at its neutral, that is nominal, value."""
+        return any(row.switches and values[f"{self.id}.{row.name}"] != row.nominal for row in self.parameters)
+
+    def describe(self, values: Mapping[str, float]) -> str:
+        """The statement with the given parameter values (short names) filled in."""
+        return self.statement.format(**values)

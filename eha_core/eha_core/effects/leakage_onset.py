@@ -1,0 +1,56 @@
+"""A seal that fails: the internal leakage jumps at one time and stays.
+
+Signature: all is as the model says up to a moment; from then on the piston loses speed under load.
+Equation: K_Lin -> internal_leakage for t >= time.
+Sign: the coefficient in force after the jump, not what it adds.
+Validity: a sudden failure, laminar before and after.
+Source: the leakage levels of Table 2 of the model's paper, entered during one run.
+"""
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+EFFECT = Effect(
+    site="schedule",
+    statement="the piston's seal fails at {time:.4g} s: internal leakage jumps to {internal_leakage:.3g} m^3/(s Pa)",
+    equation="K_Lin -> internal_leakage for t >= time",
+    parameters=(
+        Parameter(
+            "time",
+            "t_0",
+            "s",
+            0.0,
+            0.0,
+            1e6,
+            "when the leakage jumps",
+            ASSUMED,
+            typical=0.3,
+            relative_to="time",
+            starts=(0.2, 0.35, 0.5, 0.65, 0.8),
+        ),
+        Parameter(
+            "internal_leakage",
+            "K_1",
+            "m^3/(s Pa)",
+            0.0,
+            0.0,
+            1e-7,
+            "internal leakage from then on",
+            ASSUMED,
+            typical=1e-10,
+            switches=True,
+            relative_to="leakage_flow",
+            starts=(0.3,),
+        ),
+    ),
+    order=0,
+)
+
+
+@inlined
+def contribution(internal_leakage, damping, time, onset, leakage_after):
+    """Swap the coefficient once the time has come."""
+    if time >= onset:
+        internal_leakage = leakage_after
+    return internal_leakage, damping

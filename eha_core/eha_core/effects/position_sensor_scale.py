@@ -1,0 +1,33 @@
+"""Gain error of the position sensor.
+
+Signature: measured strokes and speeds are in one proportion too long or too short for the oil that was pressed in.
+Equation: y = (1 + ratio) x_p, and so for the velocity.
+Sign: a positive ratio reads too long.
+Validity: a linear sensor with its zero at the stroke's middle.
+Source: E. O. Doebelin, Measurement Systems, McGraw-Hill 1966, chapter 3 (static calibration).
+"""
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+EFFECT = Effect(
+    site="sensor",
+    statement="the position sensor reads too long by the ratio {ratio:.3g}",
+    equation="y = (1 + ratio) x_p",
+    parameters=(
+        Parameter(
+            "ratio", "r_y", "-", 0.0, -0.9, 9.0, "gain error", ASSUMED, typical=0.05, switches=True, starts=(-1.0, 1.0)
+        ),
+    ),
+    order=2,
+    # by position and force alone it is a lighter or heavier piston, less or more damped
+    needs=("measured_pressure_a",),
+)
+
+
+@inlined
+def contribution(position, velocity, pressure_a, pressure_b, memory, slot, step_size, ratio):
+    """Scale position and velocity."""
+    gain = 1.0 + ratio
+    return gain * position, gain * velocity, pressure_a, pressure_b

@@ -1,0 +1,130 @@
+"""Friction of bristles that bend before they slide: a spring for micrometres, dry friction for millimetres (LuGre).
+
+Signature: about each reversal the force turns over gradually with the displacement, and small loads move the piston a
+little and let it spring back.
+Equation: z' = v - stiffness |v| z / g(v), F_f = stiffness z + damping z',
+g(v) = force + (static_force - force) exp(-(v / stribeck_velocity)^2).
+Sign: positive z is a bristle bent along positive position; its force opposes.
+Validity: one bristle for the whole seal; no memory of earlier reversals beyond its state.
+Source: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, "A new model for control of systems with friction",
+IEEE Transactions on Automatic Control 40 (1995).
+"""
+
+from math import exp
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+LEAST_FORCE = 1e-6
+"""N; keeps the bristle's bend finite where the friction vanishes."""
+
+EFFECT = Effect(
+    site="force",
+    statement="the seals cling before they slide: {force:.4g} N of friction ({static_force:.4g} N to break away) "
+    "behind a spring of {stiffness:.3g} N/m",
+    equation="F_f = stiffness z + damping z', z' = x_p' - stiffness |x_p'| z / g(x_p')",
+    parameters=(
+        Parameter(
+            "force",
+            "F_c",
+            "N",
+            0.0,
+            0.0,
+            1e5,
+            "friction in motion",
+            ASSUMED,
+            typical=200.0,
+            switches=True,
+            relative_to="force",
+            starts=(0.1, 0.4),
+        ),
+        Parameter(
+            "static_force",
+            "F_s",
+            "N",
+            0.0,
+            0.0,
+            1e5,
+            "friction at break-away",
+            ASSUMED,
+            typical=300.0,
+            switches=True,
+            relative_to="force",
+            starts=(0.2,),
+        ),
+        Parameter(
+            "stribeck_velocity",
+            "v_s",
+            "m/s",
+            0.01,
+            1e-5,
+            10.0,
+            "speed over which friction falls",
+            ASSUMED,
+            typical=0.01,
+            logarithmic=True,
+            relative_to="speed",
+            starts=(0.2,),
+        ),
+        Parameter(
+            "stiffness",
+            "sigma_0",
+            "N/m",
+            5e6,
+            1e3,
+            1e9,
+            "stiffness of the bristles",
+            ASSUMED,
+            typical=5e6,
+            logarithmic=True,
+            starts=(0.2, 5.0),
+        ),
+        Parameter("damping", "sigma_1", "N s/m", 1e3, 0.0, 1e6, "damping of the bristles", ASSUMED, typical=1e3),
+    ),
+    memory=("zero",),
+)
+
+
+@inlined
+def yielding(velocity, sliding, static, stribeck_velocity, bristle_stiffness):
+    """How fast a bent bristle slips at that speed, in 1/s: stiffness |v| / g(v)."""
+    share = velocity / stribeck_velocity
+    level = max(LEAST_FORCE, sliding + (static - sliding) * exp(-share * share))
+    return bristle_stiffness * abs(velocity) / level
+
+
+@inlined
+def contribution(
+    force,
+    damping,
+    stiffness,
+    dry_friction,
+    position,
+    velocity,
+    pressure_a,
+    pressure_b,
+    memory,
+    slot,
+    step_size,
+    sliding,
+    static,
+    stribeck_velocity,
+    bristle_stiffness,
+    bristle_damping,
+):
+    """Bend with the motion since the last step, then offer force, damping and stiffness of the bend to come.
+
+    The bend keeps to its equation to second order in the step, and exactly where it has settled. Its force is taken
+    ahead, with the speed to come, by the share of a step in which it settles: so it is stable where it settles at once.
+    """
+    slip = yielding(velocity, sliding, static, stribeck_velocity, bristle_stiffness)
+    settled = step_size * slip
+    bend = memory[slot] + step_size * (1.0 + 0.5 * settled) * velocity
+    bend /= 1.0 + settled + 0.5 * settled * settled
+    memory[slot] = bend
+    held = 1.0 / (1.0 + settled)
+    ahead = step_size * held * held * settled
+    force -= (bristle_stiffness * (1.0 - slip * ahead) - bristle_damping * slip * held) * bend
+    damping += bristle_stiffness * ahead + bristle_damping * held
+    return force, damping, stiffness + bristle_stiffness * held * held, dry_friction

@@ -1,0 +1,54 @@
+"""Offset of a pressure sensor.
+
+Signature: the measured pressures balance no force at rest, by the same amount at any load.
+Equation: measured P1 = P1 + bias_a, measured P2 = P2 + bias_b.
+Sign: a positive bias reads too high.
+Validity: constant offset; the sensors' gains are right.
+Source: E. O. Doebelin, Measurement Systems, McGraw-Hill 1966, chapter 3 (static calibration).
+"""
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+EFFECT = Effect(
+    site="sensor",
+    statement="the pressure sensors are off: chamber A's by {bias_a:.3g} Pa, chamber B's by {bias_b:.3g} Pa",
+    equation="measured P1 = P1 + bias_a, measured P2 = P2 + bias_b",
+    parameters=(
+        Parameter(
+            "bias_a",
+            "b_1",
+            "Pa",
+            0.0,
+            -1e7,
+            1e7,
+            "offset of chamber A's sensor",
+            ASSUMED,
+            typical=3e5,
+            switches=True,
+            starts=(1.0, 0.0),
+        ),
+        Parameter(
+            "bias_b",
+            "b_2",
+            "Pa",
+            0.0,
+            -1e7,
+            1e7,
+            "offset of chamber B's sensor",
+            ASSUMED,
+            typical=-2e5,
+            switches=True,
+            starts=(1.0, 0.0),
+        ),
+    ),
+    order=3,
+    needs=("measured_pressure_a",),
+)
+
+
+@inlined
+def contribution(position, velocity, pressure_a, pressure_b, memory, slot, step_size, bias_a, bias_b):
+    """Shift both pressures."""
+    return position, velocity, pressure_a + bias_a, pressure_b + bias_b

@@ -1,0 +1,89 @@
+"""Dry friction that is higher at rest than in motion: break-away, then less resistance as a film of oil builds up.
+
+Signature: slow motion goes in jumps (stick-slip); the pressure difference peaks at the start of each motion.
+Equation: - (force + (static_force - force) exp(-(v / stribeck_velocity)^2)) sign(v); at rest up to static_force is
+balanced.
+Sign: positive forces oppose motion.
+Validity: friction that follows the speed at once; no presliding displacement.
+Source: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "A survey of models, analysis tools and compensation
+methods for the control of machines with friction", Automatica 30 (1994).
+"""
+
+from math import exp
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+EFFECT = Effect(
+    site="force",
+    statement="the seals rub and stick: {static_force:.4g} N to break away, {force:.4g} N in motion past "
+    "{stribeck_velocity:.3g} m/s",
+    equation="M_p x_p'' = ... - (force + (static_force - force) exp(-(x_p' / stribeck_velocity)^2)) sign(x_p')",
+    parameters=(
+        Parameter(
+            "force",
+            "F_c",
+            "N",
+            0.0,
+            0.0,
+            1e5,
+            "dry friction in motion",
+            ASSUMED,
+            typical=200.0,
+            switches=True,
+            relative_to="force",
+            starts=(0.1, 0.4),
+        ),
+        Parameter(
+            "static_force",
+            "F_s",
+            "N",
+            0.0,
+            0.0,
+            1e5,
+            "dry friction at rest",
+            ASSUMED,
+            typical=350.0,
+            switches=True,
+            relative_to="force",
+            starts=(0.2, 0.6),
+        ),
+        Parameter(
+            "stribeck_velocity",
+            "v_s",
+            "m/s",
+            0.01,
+            1e-5,
+            10.0,
+            "speed over which friction falls",
+            ASSUMED,
+            typical=0.01,
+            logarithmic=True,
+            relative_to="speed",
+            starts=(0.2,),
+        ),
+    ),
+)
+
+
+@inlined
+def contribution(
+    force,
+    damping,
+    stiffness,
+    dry_friction,
+    position,
+    velocity,
+    pressure_a,
+    pressure_b,
+    memory,
+    slot,
+    step_size,
+    sliding,
+    static,
+    stribeck_velocity,
+):
+    """Add the friction of the speed at the step's start; the step itself is too short for it to change much."""
+    share = velocity / stribeck_velocity
+    return force, damping, stiffness, dry_friction + sliding + (static - sliding) * exp(-share * share)

@@ -1,0 +1,64 @@
+"""Turbulent leakage between the chambers: a worn or torn piston seal that acts as an orifice.
+
+Signature: the piston loses speed under load, less than in proportion as the load grows.
+Equation: q12 += coefficient sign(P1 - P2) sqrt|P1 - P2|, smooth below about 0.01 MPa where the flow is laminar.
+Sign: positive from chamber A to B where A's pressure is higher.
+Validity: a sharp-edged gap; Reynolds numbers past the transition.
+Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 3 (orifice flow). The transition's form is
+assumed.
+"""
+
+from math import sqrt
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+TRANSITION_PRESSURE = 1e4
+"""Pa; below about this difference the flow turns laminar, as at the valve's ports."""
+
+EFFECT = Effect(
+    site="chamber",
+    statement="oil passes the piston as through an orifice: {coefficient:.3g} m^3/s per root of a Pa",
+    equation="q12 += coefficient sign(P1 - P2) sqrt|P1 - P2|",
+    parameters=(
+        Parameter(
+            "coefficient",
+            "C_t",
+            "m^3/(s Pa^0.5)",
+            0.0,
+            0.0,
+            1e-5,
+            "flow per root of the pressure difference",
+            ASSUMED,
+            typical=3e-8,
+            switches=True,
+            starts=(0.3, 3.0),
+        ),
+    ),
+)
+
+
+@inlined
+def contribution(
+    area_b,
+    bulk_a,
+    bulk_change_a,
+    bulk_b,
+    bulk_change_b,
+    cross_flow,
+    cross_slope,
+    leakage_a,
+    leakage_b,
+    pressure_a,
+    pressure_b,
+    atmospheric_pressure,
+    coefficient,
+):
+    """Add d / (d^2 + p^2)^(1/4) for the root of the difference d, p the transition pressure, and its derivative."""
+    difference = pressure_a - pressure_b
+    square = difference * difference + TRANSITION_PRESSURE * TRANSITION_PRESSURE
+    root = sqrt(sqrt(square))
+    cross_flow += coefficient * difference / root
+    cross_slope += coefficient * (1.0 - 0.5 * difference * difference / square) / root
+    return area_b, bulk_a, bulk_change_a, bulk_b, bulk_change_b, cross_flow, cross_slope, leakage_a, leakage_b

@@ -1,0 +1,117 @@
+"""Cases drawn from a seed: which rig, which test, what is concealed in it and what the diagnosis is told."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import replace
+
+import numpy as np
+
+from eha_core.exam.case import Case
+from eha_core.exam.concealed import OTHER_LAWS, Setting, draw_effect
+from eha_core.exam.excitation import SHAPES
+from eha_core.exam.plants import FAMILIES, draw_nominal, draw_rig
+from eha_core.exam.tiers import check_tier
+from eha_core.exam.truth.record import CATALOGUE, OUTSIDE, Effect
+
+WINDOWED = (
+    "coulomb_friction",
+    "constant_load",
+    "external_leakage",
+    "turbulent_leakage",
+    "valve_null_offset",
+    "supply_pressure_droop",
+    "quadratic_damping",
+    "pressure_sensor_bias",
+)
+"""Effects that a rig can have for a while: a seal that drags, a load that hangs, a valve that a relief opens."""
+
+TWINS = (
+    ("position_sensor_lag", "command_delay"),
+    ("command_delay", "position_sensor_lag"),
+)
+"""What a slow sine of command and position alone does not tell apart: (concealed, rival)."""
+
+NOISES = (1.0, 3.0, 10.0)
+FRICTION = {"coulomb_friction", "stribeck_friction", "presliding_friction"}
+
+
+def draw_case(tier: str, number: int, seed: int) -> Case:
+    """Case `number` of a tier; the same for the same seed, whatever else is drawn."""
+    check_tier(tier)
+    own_seed = int.from_bytes(hashlib.sha256(f"{seed} {tier} {number}".encode()).digest()[:6], "little")
+    g = np.random.default_rng(own_seed)
+    rig = draw_rig(str(g.choice(list(FAMILIES))), g)
+    duration = float(g.choice((12.0, 16.0, 20.0)))
+    amplitude = float(g.uniform(0.2, 0.5)) * rig.values["actuator_displacement"]
+    speed = min(float(g.uniform(0.06, 0.25)) * rig.top_speed, 6.0 * amplitude)
+    effects, windows = _conceal(tier, number, Setting(rig, amplitude, speed, duration), g)
+    loop = float(g.uniform(6.0, 15.0)) if tier == "tracking" else float(g.choice((0.0, 1.0, 1.0)))
+    rough = g.random() < 0.4
+    case = Case(
+        name=f"{tier}-{number:04d}",
+        tier=tier,
+        family=rig.family,
+        seed=own_seed,
+        plant=rig.values,
+        nominal=draw_nominal(rig, g, 0.0 if tier == "null" else 0.3, tier == "wrong_rig"),
+        effects=effects,
+        windows=windows,
+        shape=str(g.choice(SHAPES)),
+        amplitude=amplitude,
+        speed=speed,
+        loop=loop,
+        loop_integral=0.2 * loop * loop if tier == "tracking" else 0.0,
+        duration=duration,
+        rate=float(g.choice((500.0, 1000.0, 1000.0))),
+        noise=float(g.choice(NOISES)),
+        position_step=5e-6 if rough else 0.0,
+        pressure_step=5e3 if rough else 0.0,
+        jitter=1e-4 if rough else 0.0,
+        dropout=0.01 if rough else 0.0,
+        channels=("voltage_command", "position") if tier == "position_only" else Case.channels,
+    )
+    return _weakly_tested(case, TWINS[number % len(TWINS)][1]) if tier == "twins" else case
+
+
+def _weakly_tested(case: Case, rival: str) -> Case:
+    """The case under a slow sine with a noisy position sensor alone, where the rival looks the same."""
+    return replace(
+        case,
+        rivals=(rival,),
+        shape="slow",
+        loop=0.0,
+        noise=3.0,
+        position_step=0.0,
+        jitter=0.0,
+        dropout=0.0,
+        channels=("voltage_command", "position"),
+    )
+
+
+def _conceal(
+    tier: str, number: int, setting: Setting, g: np.random.Generator
+) -> tuple[tuple[Effect, ...], dict[str, tuple[float, float]]]:
+    equal = setting.rig.area_ratio == 1.0
+    catalogue = [name for name in CATALOGUE if equal or name != "unequal_piston_area"]
+    if tier in ("null", "null_parameters"):
+        return (), {}
+    if tier == "pair":
+        while True:
+            first, second = (str(name) for name in g.choice(catalogue, 2, replace=False))
+            if not {first, second} <= FRICTION:
+                return ((first, draw_effect(first, setting, g)), (second, draw_effect(second, setting, g))), {}
+    pools = {
+        "outside": list(OUTSIDE),
+        "other_law": list(OTHER_LAWS),
+        "window": list(WINDOWED),
+        "twins": [concealed for concealed, _ in TWINS],
+    }
+    pool = pools.get(tier, catalogue)
+    name = pool[number % len(pool)]
+    share = {"small": 0.15, "twins": 0.8}.get(tier, 1.0)
+    effect = (name, draw_effect(name, setting, g, share, other_law=tier == "other_law"))
+    if tier == "window":
+        start = float(g.uniform(0.2, 0.45)) * setting.duration
+        return (effect,), {name: (start, start + float(g.uniform(0.25, 0.4)) * setting.duration)}
+    return (effect,), {}

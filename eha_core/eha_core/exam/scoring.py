@@ -1,0 +1,221 @@
+"""What an opened diagnosis is worth: right, abstained or wrong, by rules stated before anything was diagnosed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from eha_core.exam.case import Case
+from eha_core.exam.concealed import EQUIVALENT, SITES
+from eha_core.exam.outside import curve_agreement
+
+OUTCOMES = ("right", "abstained", "wrong", "failed")
+DISCOVERIES = ("missing_physics", "unknown_physics")
+NORMAL_95 = 1.959963984540054
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a tool returned for one recording: its diagnosis (None where it made none), exit status and time [s]."""
+
+    diagnosis: Mapping[str, Any] | None
+    status: int
+    seconds: float
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """The score of one case.
+
+    `outcome` is one of OUTCOMES. `site_right`: the site named first is one where something is concealed (None where
+    nothing is). `in_stated_set`: an ambiguous verdict lists the truth (None for other verdicts). `discovery`: physics
+    was claimed where none is missing. `intervals`: for each parameter of a rightly named effect in the catalogue's own
+    law, whether its 95 % interval holds the truth. `nominal_intervals`: the same for the rig's parameters.
+    `held_out_ratio`: held-out error after over noise, worst channel. `curve_r_squared`: agreement of a recovered law.
+    `resolved`: whether the test that an ambiguous verdict prescribed led to the truth.
+    """
+
+    name: str
+    tier: str
+    noise: float
+    concealed: tuple[str, ...]
+    verdict: str
+    named: tuple[str, ...]
+    outcome: str
+    site_right: bool | None
+    in_stated_set: bool | None
+    discovery: bool
+    intervals: tuple[bool, ...]
+    nominal_intervals: tuple[bool, ...]
+    held_out_ratio: float | None
+    curve_r_squared: float | None
+    seconds: float
+    decidable: bool
+    resolved: bool | None = None
+
+
+def mark(case: Case, answer: Answer, second: Answer | None = None) -> Mark:
+    """Score one answer, and that to both recordings where an ambiguous one prescribed a second."""
+    diagnosis = answer.diagnosis or {}
+    verdict = str(diagnosis.get("verdict", "none"))
+    named = tuple(str(effect["id"]) for effect in diagnosis.get("effects") or ())
+    outcome = _outcome(case, verdict, named, diagnosis)
+    plain = not any("law" in values or "rounding" in values or "underlap" in values for _, values in case.effects)
+    return Mark(
+        name=case.name,
+        tier=case.tier,
+        noise=case.noise,
+        concealed=case.effect_ids,
+        verdict=verdict,
+        named=named,
+        outcome=outcome,
+        site_right=_site_right(case, diagnosis),
+        in_stated_set=_in_stated_set(case, diagnosis) if verdict == "ambiguous" else None,
+        discovery=not case.effects and verdict in DISCOVERIES,
+        intervals=_effect_intervals(case, diagnosis) if outcome == "right" and plain else (),
+        nominal_intervals=_nominal_intervals(case, diagnosis) if outcome == "right" and not case.windows else (),
+        held_out_ratio=_held_out_ratio(diagnosis),
+        curve_r_squared=_curve(case, diagnosis),
+        seconds=answer.seconds,
+        decidable=case.decidable,
+        resolved=_resolved(case, second) if verdict == "ambiguous" else None,
+    )
+
+
+def _resolved(case: Case, second: Answer | None) -> bool:
+    """Whether the prescribed test, once run, led to the truth; none prescribed resolves nothing."""
+    diagnosis = (second.diagnosis if second is not None else None) or {}
+    named = {str(effect["id"]) for effect in diagnosis.get("effects") or ()}
+    if not case.effects:
+        return diagnosis.get("verdict") in ("consistent", "parameters")
+    return diagnosis.get("verdict") == "missing_physics" and named in accepted(case)
+
+
+def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[str, Any]) -> str:
+    """The rule. Abstaining is "ambiguous" with the truth in the stated set, or seeing nothing of what is concealed.
+
+    Where the recording cannot hold enough to tell (an oracle that knows the form gains too little), not naming anything
+    is right. Where it cannot tell the truth from a rival, the right answer is to say so: a name is a guess, and wrong
+    even when lucky. An effect that acts for a while is no law of the catalogue as it stands: to locate it without a
+    name is to abstain. Nothing missing: "consistent" and "parameters" claim no physics, and either is right.
+    """
+    if verdict == "none":
+        return "failed"
+    silent = verdict in ("consistent", "parameters")
+    if not case.effects:
+        return "right" if silent else "abstained" if verdict == "ambiguous" else "wrong"
+    if verdict == "unknown_physics" and case.windows:
+        return "abstained" if _site_right(case, diagnosis) else "wrong"
+    if verdict == case.verdict == "unknown_physics":
+        return "right" if _site_right(case, diagnosis) else "wrong"
+    if verdict == "missing_physics":
+        return "right" if set(named) in accepted(case) and not case.rivals else "wrong"
+    if verdict == "ambiguous":
+        if not _in_stated_set(case, diagnosis):
+            return "wrong"
+        return "right" if case.rivals else "abstained"
+    if silent:
+        return "abstained" if case.decidable else "right"
+    return "wrong"
+
+
+def accepted(case: Case) -> list[set[str]]:
+    """The sets of effects that name what is concealed: its own, and what the catalogue calls the very same law."""
+    own = set(case.effect_ids)
+    return [own, *(set(EQUIVALENT[name]) for name in own if len(own) == 1 and name in EQUIVALENT)]
+
+
+def _in_stated_set(case: Case, diagnosis: Mapping[str, Any]) -> bool:
+    stated = [{str(effect["id"]) for effect in diagnosis.get("effects") or ()}]
+    stated += [set(option["effects"]) for option in diagnosis.get("alternatives") or ()]
+    return any(names in stated for names in accepted(case))
+
+
+def _site_right(case: Case, diagnosis: Mapping[str, Any]) -> bool | None:
+    if not case.effects or not diagnosis:
+        return None
+    unknown = diagnosis.get("unknown")
+    if unknown:
+        return unknown["site"] in case.sites
+    effects = diagnosis.get("effects") or ()
+    if effects:
+        return any(SITES.get(effect["id"], effect["site"]) in case.sites for effect in effects)
+    location = list(diagnosis.get("location") or [])
+    return bool(location) and location[0]["site"] in case.sites
+
+
+def _holds(value: float, std: float, truth: float) -> bool:
+    return abs(value - truth) <= NORMAL_95 * std
+
+
+def _effect_intervals(case: Case, diagnosis: Mapping[str, Any]) -> tuple[bool, ...]:
+    truth = dict(case.effects)
+    held = []
+    for effect in diagnosis.get("effects") or ():
+        for name, fitted in effect["parameters"].items():
+            value = truth[effect["id"]].get(name)
+            if isinstance(value, float) and abs(value) < 1.0e30 and fitted["std"]:
+                held.append(_holds(fitted["value"], fitted["std"], value))
+    return tuple(held)
+
+
+def _nominal_intervals(case: Case, diagnosis: Mapping[str, Any]) -> tuple[bool, ...]:
+    return tuple(
+        _holds(row["fitted"], row["std"], case.plant[row["name"]])
+        for row in diagnosis.get("parameters") or ()
+        if row["name"] in case.plant and row["std"]
+    )
+
+
+def _held_out_ratio(diagnosis: Mapping[str, Any]) -> float | None:
+    channels = (diagnosis.get("fit") or {}).get("held_out") or {}
+    ratios = [fit["rmse_after"] / fit["noise"] for fit in channels.values() if fit.get("noise")]
+    return max(ratios) if ratios else None
+
+
+def _curve(case: Case, diagnosis: Mapping[str, Any]) -> float | None:
+    unknown = diagnosis.get("unknown")
+    if not unknown or len(case.effects) != 1:
+        return None
+    samples = np.asarray(unknown.get("samples") or np.zeros((0, 2)), dtype=float)
+    return curve_agreement(case, str(unknown.get("function_of")), samples)
+
+
+@dataclass(frozen=True)
+class Proportion:
+    """A count of successes with Wilson's 95 % interval."""
+
+    successes: int
+    trials: int
+
+    @property
+    def value(self) -> float | None:
+        """The share, None of no trials."""
+        return self.successes / self.trials if self.trials else None
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Wilson's 95 % score interval."""
+        return wilson(self.successes, self.trials)
+
+    def __str__(self) -> str:
+        if not self.trials:
+            return "-"
+        share, low, high = (100.0 * part for part in (self.successes / self.trials, *self.interval))
+        return f"{self.successes}/{self.trials} = {share:.1f} % ({low:.1f} to {high:.1f})"
+
+
+def wilson(successes: int, trials: int, z: float = NORMAL_95) -> tuple[float, float]:
+    """Wilson's score interval of a proportion (E. B. Wilson, JASA 22, 1927); (0, 1) of no trials."""
+    if trials == 0:
+        return 0.0, 1.0
+    share = successes / trials
+    spread = z * sqrt(share * (1.0 - share) / trials + z * z / (4.0 * trials * trials))
+    centre = share + z * z / (2.0 * trials)
+    scale = 1.0 + z * z / trials
+    return max(0.0, (centre - spread) / scale), min(1.0, (centre + spread) / scale)

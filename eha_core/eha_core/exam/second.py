@@ -1,0 +1,42 @@
+"""The second recording: the rig is driven with the test that a diagnosis prescribed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from eha_core.errors import EhaError
+from eha_core.exam.case import POSITION_NOISE, Array, Arrays, Case
+from eha_core.exam.measuring import measure
+from eha_core.exam.truth import simulate_truth
+from eha_core.signals import make_signal
+
+DURATION = 10.0
+"""s; a prescribed test is run for that long unless it says its own `duration`."""
+
+
+def prescribed_voltage(reference: Mapping[str, Any], time: Array) -> Array:
+    """The voltage [V] of a prescribed test, given as the reference generator's parameters.
+
+    EhaError when it is no voltage, or no signal the generator has.
+    """
+    signal = str(reference.get("signal"))
+    if reference.get("mode", "voltage") != "voltage":
+        raise EhaError(f"the prescribed test is a reference of {reference['mode']}, and the exam drives voltages")
+    prefix = f"{signal}."
+    parameters = {name.removeprefix(prefix): value for name, value in reference.items() if name.startswith(prefix)}
+    return np.asarray(make_signal(signal, parameters).value(time), dtype=float)
+
+
+def second_recording(case: Case, reference: Mapping[str, Any]) -> Arrays:
+    """What the sensors of a case's rig record of the prescribed test."""
+    again = replace(case, seed=case.seed + 1, duration=DURATION, windows={})
+    time = np.arange(round(DURATION * case.rate) + 1) / case.rate
+    voltage = prescribed_voltage(reference, time)
+    truth = simulate_truth(case.plant, case.effects, voltage, DURATION, case.rate)
+    generator = np.random.default_rng([case.seed, 4])
+    noise = case.noise * POSITION_NOISE * generator.standard_normal(len(time))
+    return measure(again, truth | {"position_noise": noise})

@@ -1,0 +1,260 @@
+"""Sitting the exam: make recordings, seal the answers, have a tool diagnose every recording, open the answers.
+
+The three steps are apart in time and in folders, and each skips what it finds done, so an interrupted exam goes on.
+A tool is a command line; it sees a recording's path and where its diagnosis is to be written, and nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from eha_core.errors import EhaError
+from eha_core.exam.cases import make_case
+from eha_core.exam.files import answer_text, digest_of, read_answer, recording_name, write_case
+from eha_core.exam.scoring import Answer, Mark, mark
+from eha_core.exam.second import second_recording
+from eha_core.exam.tiers import plan
+
+Progress = Callable[[str, int, int], None]
+"""Called with what is being done, how many are finished, and how many there are."""
+
+SECOND = "second"
+"""Folder of a tool's answers to two recordings of one rig."""
+
+LONGEST = 600.0
+"""s; a tool that takes longer for one recording has failed on it."""
+
+
+@dataclass(frozen=True)
+class Exam:
+    """What is sat: how many cases, from which seed, of one tier or (None) of all, in which folder."""
+
+    folder: Path
+    cases: int
+    seed: int
+    tier: str | None = None
+
+    @property
+    def members(self) -> list[tuple[str, int]]:
+        """(tier, number) of each case."""
+        return plan(self.cases, self.tier)
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Where the work is done: processes of this machine, or workers of a Dask scheduler that see the same folder."""
+
+    jobs: int = 1
+    dask: str | None = None
+
+    def run(self, function: Callable[..., Any], calls: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
+        """Results as they come; the first exception ends it."""
+        if self.dask is not None:
+            yield from self._on_dask(function, calls)
+            return
+        with ProcessPoolExecutor(self.jobs, mp_context=get_context("spawn")) as pool:
+            waiting: list[Future[Any]] = [pool.submit(function, *call) for call in calls]
+            try:
+                for future in as_completed(waiting):
+                    yield future.result()
+            finally:
+                pool.shutdown(wait=False, cancel_futures=True)
+
+    def _on_dask(self, function: Callable[..., Any], calls: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
+        try:
+            from dask import distributed
+        except ImportError:
+            raise EhaError("--dask needs the package `distributed`; install it or use --jobs") from None
+        try:
+            client = distributed.Client(self.dask, timeout=10)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise EhaError(f"--dask {self.dask}: no scheduler answers there ({error})") from None
+        with client:
+            futures = [client.submit(function, *call, pure=False) for call in calls]
+            for future in distributed.as_completed(futures):
+                yield future.result()
+
+
+def sit(exam: Exam, tools: Mapping[str, str], workers: Workers, progress: Progress) -> dict[str, list[Mark]]:
+    """Run the whole exam and return the marks of each tool, by its name."""
+    members = exam.members
+    _claim(exam)
+    _prepare(exam, members, workers, progress)
+    for name, command in tools.items():
+        _diagnose(exam, name, command, workers, progress)
+        _repeat(exam, name, command, workers, progress)
+    return {name: open_answers(exam, name) for name in tools}
+
+
+def _claim(exam: Exam) -> None:
+    """Refuse a folder that holds another exam."""
+    exam.folder.mkdir(parents=True, exist_ok=True)
+    path = exam.folder / "exam.json"
+    wanted = {"cases": exam.cases, "seed": exam.seed, "tier": exam.tier}
+    if path.is_file():
+        there = json.loads(path.read_text(encoding="utf-8"))
+        same = there.get("seed") == exam.seed and there.get("tier") == exam.tier
+        if not same:
+            raise EhaError(f"{exam.folder}: holds another exam ({there}); give another --out")
+    path.write_text(json.dumps(wanted), encoding="utf-8")
+
+
+def _prepare(exam: Exam, members: Sequence[tuple[str, int]], workers: Workers, progress: Progress) -> None:
+    sealed = exam.folder / "sealed"
+    missing = [(t, n) for t, n in members if not (sealed / f"{t}-{n:04d}.json").is_file()]
+    calls = [(tier, number, exam.seed, str(exam.folder)) for tier, number in missing]
+    done = exam.cases - len(calls)
+    progress("recordings", done, exam.cases)
+    for _ in workers.run(prepare_case, calls):
+        done += 1
+        progress("recordings", done, exam.cases)
+    digests = {}
+    for tier, number in members:
+        text = (sealed / f"{tier}-{number:04d}.json").read_text(encoding="utf-8")
+        digests[recording_name(read_answer(text))] = digest_of(text)
+    (exam.folder / "seal.json").write_text(json.dumps(digests, indent=1), encoding="utf-8")
+
+
+def prepare_case(tier: str, number: int, seed: int, folder: str) -> None:
+    """Make one recording and seal its answer; the answer is written last and says that the recording is whole."""
+    case, arrays = make_case(tier, number, seed)
+    recording = Path(folder) / "recordings" / recording_name(case)
+    recording.unlink(missing_ok=True)
+    write_case(case, arrays, recording)
+    _write(Path(folder) / "sealed" / f"{tier}-{number:04d}.json", answer_text(case))
+
+
+def _diagnose(exam: Exam, tool: str, command: str, workers: Workers, progress: Progress) -> None:
+    names = json.loads((exam.folder / "seal.json").read_text(encoding="utf-8"))
+    answers = exam.folder / "answers" / tool
+    missing = [name for name in names if not (answers / f"{Path(name).stem}.json").is_file()]
+    calls = [((str(exam.folder / "recordings" / name),), str(answers), command) for name in missing]
+    done = len(names) - len(calls)
+    progress(tool, done, len(names))
+    for _ in workers.run(diagnose_recording, calls):
+        done += 1
+        progress(tool, done, len(names))
+
+
+def _repeat(exam: Exam, tool: str, command: str, workers: Workers, progress: Progress) -> None:
+    """Run the tests that ambiguous diagnoses prescribed, and have both recordings diagnosed together."""
+    answers = exam.folder / "answers" / tool
+    calls = []
+    for tier, number in exam.members:
+        sealed = exam.folder / "sealed" / f"{tier}-{number:04d}.json"
+        stem = Path(recording_name(read_answer(sealed.read_text(encoding="utf-8")))).stem
+        given = json.loads((answers / f"{stem}.json").read_text(encoding="utf-8"))["diagnosis"] or {}
+        prescribed = given.get("next_experiment")
+        done = (answers / SECOND / f"{stem}.json").is_file()
+        if given.get("verdict") == "ambiguous" and prescribed and not done:
+            calls.append((str(sealed), str(exam.folder), tool, command, prescribed["reference"]))
+    for count, _ in enumerate(workers.run(repeat_case, calls), 1):
+        progress(f"{tool}, second recordings", count, len(calls))
+
+
+def repeat_case(sealed: str, folder: str, tool: str, command: str, reference: Mapping[str, Any]) -> None:
+    """Drive the rig of one case with a prescribed test and have a tool diagnose both recordings together.
+
+    A test that the rig cannot run is an answer too: it resolves nothing.
+    """
+    case = read_answer(Path(sealed).read_text(encoding="utf-8"))
+    name = recording_name(case)
+    answers = Path(folder) / "answers" / tool / SECOND
+    second = answers / name
+    second.parent.mkdir(parents=True, exist_ok=True)
+    second.unlink(missing_ok=True)
+    try:
+        write_case(case, second_recording(case, reference), second)
+    except EhaError as error:
+        _write(answers / f"{second.stem}.json", json.dumps(asdict(Answer(None, -1, 0.0, str(error)))))
+        return
+    diagnose_recording((str(Path(folder) / "recordings" / name), str(second)), str(answers), command)
+
+
+def diagnose_recording(recordings: Sequence[str], answers: str, command: str) -> None:
+    """Have a tool diagnose a recording, or several of one rig, and keep what it said."""
+    given = [str(Path(recording).resolve()) for recording in recordings]
+    words: list[str] = []
+    for word in shlex.split(command):
+        words += given if word == "{recording}" else [word.replace("{python}", sys.executable)]
+    answer = run_tool(words)
+    _write(Path(answers) / f"{Path(recordings[0]).stem}.json", json.dumps(asdict(answer)))
+
+
+def run_tool(command: Sequence[str]) -> Answer:
+    """Run a tool in an empty folder; the word {answer} becomes the path where it is to write its diagnosis."""
+    with tempfile.TemporaryDirectory() as scratch:
+        target = Path(scratch) / "diagnosis.json"
+        words = [word.replace("{answer}", str(target)) for word in command]
+        start = time.monotonic()
+        status, message = _run(words, scratch)
+        seconds = time.monotonic() - start
+        diagnosis = json.loads(target.read_text(encoding="utf-8")) if target.is_file() else None
+    return Answer(diagnosis, status, seconds, message)
+
+
+def _run(words: Sequence[str], folder: str) -> tuple[int, str]:
+    try:
+        ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=LONGEST, check=False)
+    except subprocess.TimeoutExpired:
+        return -1, f"took longer than {LONGEST:g} s"
+    except OSError as error:
+        raise EhaError(f"{words[0]}: cannot be started ({error.strerror}); check the tool's command") from None
+    return ended.returncode, ended.stderr[-2000:]
+
+
+def _write(path: Path, text: str) -> None:
+    """Write a file whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draft = path.with_suffix(f".{os.getpid()}")
+    draft.write_text(text, encoding="utf-8")
+    draft.rename(path)
+
+
+def open_answers(exam: Exam, tool: str) -> list[Mark]:
+    """Open the sealed answers, check the seals and score a tool. EhaError when an answer is not the sealed one."""
+    digests = json.loads((exam.folder / "seal.json").read_text(encoding="utf-8"))
+    marks = []
+    for tier, number in exam.members:
+        path = exam.folder / "sealed" / f"{tier}-{number:04d}.json"
+        text = path.read_text(encoding="utf-8")
+        case = read_answer(text)
+        name = recording_name(case)
+        if digests.get(name) != digest_of(text):
+            raise EhaError(f"{path}: is not the answer that was sealed; make the exam again in another --out")
+        answers = exam.folder / "answers" / tool
+        stem = Path(name).stem
+        second = answers / SECOND / f"{stem}.json"
+        marks.append(mark(case, _read(answers / f"{stem}.json"), _read(second) if second.is_file() else None))
+    return marks
+
+
+def _read(path: Path) -> Answer:
+    return Answer(**json.loads(path.read_text(encoding="utf-8")))
+
+
+def report_lost(exam: Exam, lost: Sequence[Mark]) -> dict[str, str]:
+    """Write the reports of lost cases; returns each one's page, relative to the exam's folder, by case name."""
+    pages = {}
+    for one in lost:
+        sealed = (exam.folder / "sealed" / f"{one.name}.json").read_text(encoding="utf-8")
+        recording = (exam.folder / "recordings" / recording_name(read_answer(sealed))).resolve()
+        place = exam.folder / "lost" / one.name
+        place.mkdir(parents=True, exist_ok=True)
+        words = [sys.executable, "-m", "eha_core.cli", "diagnose", str(recording), "--out", str(place.resolve())]
+        _run(words, str(place))
+        if (place / "report.html").is_file():
+            pages[one.name] = f"lost/{one.name}/report.html"
+    return pages

@@ -1,0 +1,153 @@
+"""From marks to figures: shares with their intervals, by tier and noise, and against the stated targets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from eha_core.exam.scoring import Mark, Proportion
+from eha_core.exam.tiers import MEANINGS
+
+Choice = Callable[[Mark], bool]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table: how a tool did on a group of cases."""
+
+    group: str
+    cases: int
+    right: Proportion
+    abstained: Proportion
+    wrong: Proportion
+    failed: Proportion
+    site_right: Proportion
+    median_seconds: float
+    longest_seconds: float
+
+
+@dataclass(frozen=True)
+class Target:
+    """A stated aim, what was reached, and whether that meets it; `met` is None where no case speaks to it."""
+
+    statement: str
+    aim: str
+    reached: str
+    met: bool | None
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The score of one tool."""
+
+    tool: str
+    rows: tuple[Row, ...]
+    targets: tuple[Target, ...]
+    lost: tuple[Mark, ...]
+
+
+def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
+    """The score of a tool from its marks."""
+    groups: list[tuple[str, list[Mark]]] = [("all", list(marks))]
+    for tier in MEANINGS:
+        inside = [m for m in marks if m.tier == tier]
+        groups.append((tier, inside))
+        if tier in ("single", "small"):
+            groups += [(f"{tier}, noise {noise:g}x", [m for m in inside if m.noise == noise]) for noise in (1, 3, 10)]
+    rows = tuple(_row(name, group) for name, group in groups if group)
+    lost = tuple(m for m in marks if m.outcome in ("wrong", "failed"))
+    return Summary(tool, rows, tuple(_targets(marks)), lost)
+
+
+def _count(marks: Sequence[Mark], chosen: Choice) -> Proportion:
+    return Proportion(sum(1 for m in marks if chosen(m)), len(marks))
+
+
+def _row(name: str, marks: Sequence[Mark]) -> Row:
+    located = [m for m in marks if m.site_right is not None]
+    return Row(
+        group=name,
+        cases=len(marks),
+        right=_count(marks, lambda m: m.outcome == "right"),
+        abstained=_count(marks, lambda m: m.outcome == "abstained"),
+        wrong=_count(marks, lambda m: m.outcome == "wrong"),
+        failed=_count(marks, lambda m: m.outcome == "failed"),
+        site_right=_count(located, lambda m: bool(m.site_right)),
+        median_seconds=median(m.seconds for m in marks),
+        longest_seconds=max(m.seconds for m in marks),
+    )
+
+
+def _targets(marks: Sequence[Mark]) -> list[Target]:
+    single = [m for m in marks if m.tier == "single" and m.decidable]
+    small = [m for m in marks if m.tier == "small"]
+    null = [m for m in marks if m.tier in ("null", "null_parameters")]
+    ambiguous = [m for m in marks if m.in_stated_set is not None]
+    twins = [m for m in marks if m.tier == "twins" and m.decidable]
+    outside = [m for m in marks if m.tier == "outside" and m.decidable]
+    held = [inside for m in marks for inside in m.intervals]
+    nominal = [inside for m in marks for inside in m.nominal_intervals]
+    curves = [m for m in outside if m.curve_r_squared is not None]
+    fits = [m for m in marks if m.outcome == "right" and m.held_out_ratio is not None]
+    right: Choice = lambda m: m.outcome == "right"  # noqa: E731 - one rule, used in several rows
+    rows = [
+        *(
+            (
+                f"single effect named, noise {noise:g}x",
+                goal,
+                _count([m for m in single if m.noise == noise], right),
+            )
+            for noise, goal in ((1.0, 0.98), (3.0, 0.98), (10.0, 0.95))
+        ),
+        ("right site of single effects", 0.99, _count(single, lambda m: bool(m.site_right))),
+        ("pairs exact", 0.90, _count([m for m in marks if m.tier == "pair" and m.decidable], right)),
+        ("named from command and position", 0.90, _count([m for m in marks if m.tier == "position_only"], right)),
+        ("truth in the set stated as ambiguous", 0.99, _count(ambiguous, lambda m: bool(m.in_stated_set))),
+        (
+            "ambiguous cases that the prescribed test resolves",
+            0.90,
+            _count([m for m in ambiguous if m.in_stated_set], lambda m: bool(m.resolved)),
+        ),
+        ("twins said to be ambiguous", 0.99, _count(twins, right)),
+        ("right site outside the catalogue", 0.95, _count(outside, lambda m: bool(m.site_right))),
+        (
+            "recovered curves with R^2 of 0.95",
+            0.95,
+            _count(curves, lambda m: m.curve_r_squared is not None and m.curve_r_squared >= 0.95),
+        ),
+        (
+            "held-out error within 1.1 times the noise",
+            0.95,
+            _count(fits, lambda m: m.held_out_ratio is not None and m.held_out_ratio <= 1.1),
+        ),
+    ]
+    targets = [_at_least(statement, goal, reached) for statement, goal, reached in rows]
+    targets += [
+        _at_most("small effects named wrongly", 0.01, _count(small, lambda m: m.outcome == "wrong")),
+        _at_most("false discoveries with nothing missing", 0.01, _count(null, lambda m: m.discovery)),
+        _covering("effects' parameters", held),
+        _covering("nominal parameters", nominal),
+    ]
+    if marks:
+        seconds = median(m.seconds for m in marks)
+        longest = max(m.seconds for m in marks)
+        targets.append(Target("seconds a recording, median", "10", f"{seconds:.1f}", seconds <= 10.0))
+        targets.append(Target("seconds a recording, longest", "60", f"{longest:.1f}", longest <= 60.0))
+    return targets
+
+
+def _at_least(statement: str, goal: float, reached: Proportion) -> Target:
+    met = None if reached.value is None else reached.value >= goal
+    return Target(statement, f"at least {100 * goal:.0f} %", str(reached), met)
+
+
+def _at_most(statement: str, goal: float, reached: Proportion) -> Target:
+    met = None if reached.value is None else reached.value <= goal
+    return Target(statement, f"at most {100 * goal:.0f} %", str(reached), met)
+
+
+def _covering(what: str, held: Sequence[bool]) -> Target:
+    reached = Proportion(sum(held), len(held))
+    met = None if reached.value is None else 0.93 <= reached.value <= 0.97
+    return Target(f"95 % intervals of {what} that hold the truth", "93 to 97 %", str(reached), met)

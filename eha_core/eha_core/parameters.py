@@ -1,0 +1,165 @@
+"""The nominal plant's parameters, the whole catalogue of them, and parameter files.
+
+Sources: "Table 1" and "Table 2" are of Shern, Ghazali, Soon, Sam, Rahmat, "Position Tracking Performance for
+Electro-Hydraulic Actuator System with the Presence of Actuator Internal Leakage".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+
+import yaml
+
+from eha_core.effects import effects
+from eha_core.errors import ParameterError
+from eha_core.parameter import Parameter
+
+
+def _row(
+    name: str, symbol: str, unit: str, nominal: float, bounds: tuple[float, float], meaning: str,
+    source: str = "Table 1", logarithmic: bool = True,
+) -> Parameter:
+    return Parameter(name, symbol, unit, nominal, *bounds, meaning, source, typical=nominal, logarithmic=logarithmic)
+
+
+NOMINAL: tuple[Parameter, ...] = (
+    _row("coil_resistance", "R_c", "ohm", 100.0, (1.0, 1e4), "resistance of the torque motor's coil"),
+    _row("coil_inductance", "L_c", "H", 0.59, (1e-3, 100.0), "inductance of the torque motor's coil"),
+    _row("saturation_current", "I_sat", "A", 0.02, (1e-4, 1.0), "current at which the coil's drive saturates"),
+    _row("valve_damping_ratio", "xi", "-", 0.48, (0.05, 5.0), "damping ratio of the servo valve's spool"),
+    _row("valve_natural_frequency", "w", "rad/s", 543.0, (10.0, 1e4), "natural frequency of the servo valve's spool"),
+    _row("valve_gain", "K", "m^(5/2) kg^(-1/2)", 2.38e-5, (1e-8, 1e-2), "flow gain of the valve per ampere-equivalent"),
+    _row("bulk_modulus", "beta", "Pa", 1.4e9, (1e7, 1e10), "effective bulk modulus of the oil"),
+    _row("supply_pressure", "P_s", "Pa", 2.1e7, (1e5, 1e8), "supply pressure above the return line's reference"),
+    _row("return_pressure", "P_r", "Pa", 0.0, (0.0, 1e7), "return pressure above the reference", logarithmic=False),
+    _row("spring_stiffness", "K_s", "N/m", 10.0, (0.0, 1e8), "stiffness of the spring that the load works against",
+         'Table 1, which prints "Nm"', logarithmic=False),
+    _row("actuator_displacement", "x_s", "m", 0.1, (1e-3, 10.0), "stroke to either side of the middle"),
+    _row("piston_area", "A_p", "m^2", 645e-6, (1e-6, 1.0), "piston area towards chamber A"),
+    _row("piston_area_b", "A_b", "m^2", 645e-6, (1e-6, 1.0), "piston area towards chamber B",
+         "Table 1: the paper's cylinder is symmetric"),
+    _row("moving_mass", "M_p", "kg", 9.0, (1e-2, 1e5), "mass of piston and load"),
+    _row("damping_coefficient", "B_s", "N s/m", 2000.0, (0.0, 1e7), "viscous damping of piston and load"),
+    _row("internal_leakage", "K_Lin", "m^3/(s Pa)", 1e-12, (0.0, 1e-7), "laminar leakage between the chambers",
+         "Table 2, level 1", logarithmic=False),
+    _row("external_leakage", "K_Lex", "m^3/(s Pa)", 0.0, (0.0, 1e-7), "laminar leakage of each chamber to the outside",
+         logarithmic=False),
+    _row("line_volume", "V_line", "m^3", 1e-5, (1e-7, 1e-1), "oil between each port and its chamber's end",
+         "assumed: the paper gives none"),
+    _row("atmospheric_pressure", "P_atm", "Pa", 101325.0, (0.0, 2e5),
+         "absolute pressure of the return line's reference", "standard atmosphere", logarithmic=False),
+)
+
+
+@cache
+def catalogue() -> Mapping[str, Parameter]:
+    """Every parameter of the plant by its full name: the nominal rows, then each effect's as `<effect id>.<name>`."""
+    rows = {row.name: row for row in NOMINAL}
+    for effect in effects():
+        rows.update(zip(effect.parameter_names(), effect.parameters, strict=True))
+    return MappingProxyType(rows)
+
+
+def nominal_values() -> dict[str, float]:
+    """The nominal plant: every parameter at its nominal value, every effect off."""
+    return {name: row.nominal for name, row in catalogue().items()}
+
+
+def changed(values: Mapping[str, float], changes: Mapping[str, object]) -> dict[str, float]:
+    """Return `values` with `changes` applied, checked as a whole.
+
+    Raises ParameterError for an unknown name, a value that is no finite number within its bounds, or a set that makes
+    no plant; `values` is left as it was.
+    """
+    result = dict(values)
+    for name, value in changes.items():
+        row = catalogue().get(name)
+        if row is None:
+            near = get_close_matches(name, catalogue(), n=1)
+            remedy = f"did you mean {near[0]}?" if near else "`eha effects --parameters` lists the names"
+            raise ParameterError(f"there is no parameter named {name}; {remedy}")
+        result[name] = row.check(value, name)
+    if result["supply_pressure"] <= result["return_pressure"]:
+        raise ParameterError(
+            f"supply_pressure = {result['supply_pressure']:g} Pa must exceed "
+            f"return_pressure = {result['return_pressure']:g} Pa; change both together"
+        )
+    return result
+
+
+NODE_KEYS = ("/**", "/**/eha_sim", "eha_sim", "/eha_sim")
+"""Under these keys a ROS parameters file speaks to the simulator; the more particular ones overrule the others."""
+
+NODE_ONLY = frozenset(
+    {"use_sim_time", "step_size", "publish_rate", "time_mode", "real_time_factor", "command_timeout", "command_limit",
+     "catch_up_limit", "initial_position", "start_paused", "frame_id", "diagnostics_rate", "qos_overrides",
+     "start_type_description_service"}
+)
+"""Parameters of the simulator node that are none of the plant's; a parameters file may carry them."""
+
+
+def load_parameters(path: str | Path) -> dict[str, float]:
+    """Read the plant's parameters from a file in ROS 2's YAML form.
+
+    Nested keys are joined by dots. Sections of other nodes and the node's own settings are passed over. Returns only
+    the names that the file gives. Raises ParameterError naming the file when it cannot be read or a value does not fit.
+    """
+    try:
+        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ParameterError(f"{path}: cannot read the parameters file: {getattr(error, 'strerror', error)}") from error
+    except yaml.YAMLError as error:
+        raise ParameterError(f"{path}: this is not YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(document, dict):
+        raise ParameterError(f"{path}: expected `eha_sim: {{ros__parameters: {{...}}}}` at the top")
+    found: dict[str, object] = {}
+    for key in NODE_KEYS:
+        section = document.get(key)
+        if isinstance(section, dict) and isinstance(section.get("ros__parameters"), dict):
+            found.update(_flatten(section["ros__parameters"]))
+    if not found:
+        raise ParameterError(f"{path}: no parameters for eha_sim; expected `eha_sim: {{ros__parameters: {{...}}}}`")
+    plant = {name: value for name, value in found.items() if name.split(".")[0] not in NODE_ONLY}
+    plant = {name: _number(value) for name, value in plant.items()}
+    try:
+        complete = changed(nominal_values(), plant)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+    return {name: complete[name] for name in plant}
+
+
+def _flatten(section: Mapping[str, object], prefix: str = "") -> dict[str, object]:
+    flat: dict[str, object] = {}
+    for key, value in section.items():
+        if isinstance(value, dict):
+            flat.update(_flatten(value, f"{prefix}{key}."))
+        else:
+            flat[f"{prefix}{key}"] = value
+    return flat
+
+
+def _number(value: object) -> object:
+    """YAML 1.1 reads 1e-12 (no point) as text; ROS reads it as a number, and so do we."""
+    if isinstance(value, str):
+        try:
+            return float(value)
+        except ValueError:
+            return value
+    return value
+
+
+def dump_parameters(values: Mapping[str, float], heading: str = "") -> str:
+    """The given parameters as the text of a ROS 2 parameters file for the simulator, `heading` as its comment."""
+    lines = [f"# {line}" for line in heading.splitlines()]
+    lines += ["eha_sim:", "  ros__parameters:"]
+    for name, value in values.items():
+        text = repr(float(value))
+        mantissa, _, exponent = text.partition("e")
+        if exponent and "." not in mantissa:
+            text = f"{mantissa}.0e{exponent}"
+        lines.append(f"    {name}: {text}")
+    return "\n".join(lines) + "\n"

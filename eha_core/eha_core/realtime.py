@@ -1,0 +1,258 @@
+"""What makes a simulated rig run like a real one: pacing against a clock, its lateness, and the drive's command input.
+
+Nothing here sleeps or waits: a timer calls in, and these objects say how much simulated time is owed, which voltage is
+in force and, in lockstep, whether the next period may be taken. So all of it is exact and testable without a clock.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+NANOSECONDS = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Health:
+    """How well real time was kept since the previous report (lateness) and since the start (counts).
+
+    Lateness is how long after its due time a period was taken [s]; `overruns` counts calls that found more than one
+    period owed; `lost_time` is simulated time given up because the backlog passed the catch-up limit [s];
+    `real_time_factor` is simulated over wall-clock time since the previous report.
+    """
+
+    periods: int
+    overruns: int
+    lost_time: float
+    real_time_factor: float
+    lateness_mean: float
+    lateness_p99: float
+    lateness_max: float
+
+
+class Pacer:
+    """Tells how many periods of simulated time are owed, from exact elapsed time and never from counted ticks.
+
+    Args:
+        period: simulated time per period [s].
+        tick: wall-clock time between two calls of `due` [s]; only sets how early a call may be and still count.
+        factor: simulated seconds per wall-clock second.
+        catch_up_limit: the largest backlog that is made up for [s of wall-clock]; what lies beyond it is lost.
+        clock: monotonic clock [ns].
+    """
+
+    def __init__(
+        self,
+        period: float,
+        tick: float,
+        factor: float = 1.0,
+        catch_up_limit: float = 0.5,
+        clock: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
+        self._period = period
+        self._tick_ns = tick * NANOSECONDS
+        self._factor = factor
+        self.catch_up_limit = catch_up_limit
+        self._limit_ns = catch_up_limit * NANOSECONDS
+        self._clock = clock
+        self._periods = 0
+        self._overruns = 0
+        self._lost_ns = 0.0
+        self._lateness_ns: list[float] = []
+        self._reported = (clock(), 0)
+        self.restart()
+
+    @property
+    def factor(self) -> float:
+        """Simulated seconds per wall-clock second."""
+        return self._factor
+
+    @factor.setter
+    def factor(self, value: float) -> None:
+        self._factor = value
+        self.restart()
+
+    @property
+    def origin(self) -> int:
+        """When the periods since the last restart began, on the pacer's clock [ns]; time that was lost moves it on."""
+        return round(self._origin_ns + self._phase_ns)
+
+    def restart(self) -> None:
+        """Count from now: nothing is owed (at the start, after a pause, when the factor changes)."""
+        self._origin_ns = float(self._clock())
+        self._done = 0
+        self._phase_ns = 0.0  # how far the timer's phase was found before the origin
+
+    def due(self) -> int:
+        """Return the number of whole periods owed now, and take them as done."""
+        now = self._clock()
+        wall_period = self._period / self._factor * NANOSECONDS
+        late = now - (self._origin_ns + (self._done + 1) * wall_period)
+        if -min(self._tick_ns / 2 - self._phase_ns, self._tick_ns / 4) <= late < 0:
+            # The first tick of a timer is often its latest one; the pacer then takes over the timer's phase, or every
+            # second tick would come just too early. The shift is bounded, so time cannot be gained again and again.
+            self._origin_ns += late
+            self._phase_ns -= late
+            late = 0.0
+        if late < 0:
+            return 0
+        if late > self._limit_ns:
+            self._origin_ns += late - self._limit_ns
+            self._lost_ns += (late - self._limit_ns) * self._factor
+            late = self._limit_ns
+        owed = int(late / wall_period) + 1
+        self._done += owed
+        self._periods += owed
+        self._overruns += owed > max(1, round(self._tick_ns / wall_period))
+        self._lateness_ns.append(late)
+        return owed
+
+    def report(self) -> Health:
+        """Return the health since the previous report and start a new one."""
+        now, periods_before = self._clock(), self._periods
+        wall = (now - self._reported[0]) / NANOSECONDS
+        simulated = (self._periods - self._reported[1]) * self._period
+        lateness = np.asarray(self._lateness_ns or [0.0]) / NANOSECONDS
+        self._lateness_ns = []
+        self._reported = (now, periods_before)
+        return Health(
+            periods=self._periods,
+            overruns=self._overruns,
+            lost_time=self._lost_ns / NANOSECONDS,
+            real_time_factor=simulated / wall if wall > 0 else 0.0,
+            lateness_mean=float(lateness.mean()),
+            lateness_p99=float(np.quantile(lateness, 0.99)),
+            lateness_max=float(lateness.max()),
+        )
+
+
+class CommandInput:
+    """The drive's voltage input: refuses what is no number, clamps to its range, and falls to zero without commands.
+
+    Args:
+        limit: largest magnitude the drive takes [V].
+        timeout: simulated time without a command after which the voltage falls to zero [s]; 0 waits for ever.
+
+    `accepted`, `refused`, `clamped` and `timeouts` count since the start.
+    """
+
+    def __init__(self, limit: float, timeout: float) -> None:
+        self.limit = limit
+        self.timeout = timeout
+        self.voltage = 0.0
+        self.accepted = 0
+        self.refused = 0
+        self.clamped = 0
+        self.timeouts = 0
+        self._age: float | None = None  # None: no command holds, so none can run out
+
+    @property
+    def holds(self) -> bool:
+        """Whether a command is in force (false before the first one and after a timeout)."""
+        return self._age is not None
+
+    def offer(self, voltage: float) -> None:
+        """Take a command [V]; a refused one leaves the voltage in force as it was."""
+        if not math.isfinite(voltage):
+            self.refused += 1
+            return
+        self.accepted += 1
+        self.clamped += abs(voltage) > self.limit
+        self.voltage = min(max(voltage, -self.limit), self.limit)
+        self._age = 0.0
+
+    def elapse(self, seconds: float) -> None:
+        """Let simulated time pass [s]."""
+        if self._age is None:
+            return
+        self._age += seconds
+        # Half a nanosecond of slack: the age is a sum of periods and the timeout often a multiple of one.
+        if 0 < self.timeout <= self._age + 0.5 / NANOSECONDS:
+            self.timeouts += 1
+            self.release()
+
+    def release(self) -> None:
+        """Drop the command in force: the voltage is zero until the next one."""
+        self.voltage = 0.0
+        self._age = None
+
+
+class LockstepGate:
+    """Lets one period pass for each command, and says when the tick that asks for a command goes out.
+
+    The simulator publishes a tick (its state), waits for one command, advances one period and publishes the next tick.
+    Messages are lost to peers that have not found each other yet, so a tick is (re)published once the set of peers has
+    been still for `settle` seconds after a change, until a command shows that somebody hears it. A new commander starts
+    this again; a recorder that joins while a controller is thinking does not.
+    """
+
+    def __init__(self, settle: float = 0.2, clock: Callable[[], float] = time.monotonic) -> None:
+        self._settle = settle
+        self._clock = clock
+        self._peers: tuple[int, int] = (0, 0)
+        self._changed_at: float | None = None
+        self._heard = False
+        self._pending = False
+        self._allowance: int | None = None
+        self.surplus = 0
+
+    @property
+    def allowance(self) -> int:
+        """How many periods may pass before the next pause; 0 as well where none is set."""
+        return self._allowance or 0
+
+    @property
+    def waiting(self) -> bool:
+        """Whether the simulator waits for a command."""
+        return not self._pending
+
+    @property
+    def paused(self) -> bool:
+        """Whether no further period may pass."""
+        return self._allowance == 0
+
+    def pause(self) -> None:
+        """Let no period pass until `resume` or `allow`."""
+        self._allowance = 0
+
+    def resume(self) -> None:
+        """Let periods pass as commands come."""
+        self._allowance = None
+
+    def allow(self, periods: int) -> None:
+        """Let so many periods pass as commands come, then pause."""
+        self._allowance = periods
+
+    def command_arrived(self) -> None:
+        """Note the command of this step; a second one before the step is taken replaces it and is counted."""
+        self.surplus += self._pending
+        self._pending = True
+        self._heard = True
+
+    def take(self) -> bool:
+        """Return whether a period may pass now, and use up its command and its allowance."""
+        if not self._pending or self._allowance == 0:
+            return False
+        self._pending = False
+        if self._allowance is not None:
+            self._allowance -= 1
+        return True
+
+    def tick_wanted(self, commanders: int, listeners: int) -> bool:
+        """Return whether the tick should be published (again), given the numbers of matched peers now."""
+        now = self._clock()
+        if commanders > self._peers[0]:
+            self._heard = False
+        if (commanders, listeners) != self._peers:
+            self._peers = (commanders, listeners)
+            self._changed_at = now
+        if self._heard or self._pending or self._changed_at is None or commanders == 0 or listeners == 0:
+            return False
+        if self.paused or now - self._changed_at < self._settle:
+            return False
+        self._changed_at = None
+        return True

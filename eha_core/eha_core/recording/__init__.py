@@ -1,0 +1,23 @@
+"""Recordings: written crash-safe as MCAP, read from MCAP, rosbag2 folders and CSV into channels in SI units."""
+
+from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
+from eha_core.recording.message_types import definition_of, encode
+from eha_core.recording.reader import read_recording
+from eha_core.recording.recording import CHANNEL_KINDS, Channel, ChannelKind, Recording
+from eha_core.recording.writer import PARAMETERS_RECORD, OfferedQuality, RecordingWriter
+
+__all__ = [
+    "CHANNEL_KINDS",
+    "PARAMETERS_RECORD",
+    "Channel",
+    "ChannelKind",
+    "ChannelRule",
+    "OfferedQuality",
+    "Recording",
+    "RecordingWriter",
+    "TopicsFile",
+    "definition_of",
+    "encode",
+    "load_topics_file",
+    "read_recording",
+]

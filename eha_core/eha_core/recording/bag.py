@@ -1,0 +1,97 @@
+"""Opens what holds recorded messages: an .mcap file, a rosbag2 folder with one or more files, or a .db3 file."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+from rosbags.rosbag2 import Reader
+from rosbags.rosbag2.errors import ReaderError
+
+from eha_core.errors import RecordingError
+from eha_core.recording.mcap_file import read_mcap
+from eha_core.recording.raw import RawRecording, RawTopic, TopicFilter
+
+
+def read_bag(path: Path, wanted: TopicFilter) -> RawRecording:
+    """Read the topics that `wanted` accepts from a file or a folder.
+
+    Raises:
+        RecordingError: there is nothing that can be read.
+    """
+    if path.is_dir():
+        return _read_files(path, _files_of(path), wanted)
+    return _read_file(path, wanted)
+
+
+def _read_file(path: Path, wanted: TopicFilter) -> RawRecording:
+    return _read_sqlite(path, wanted) if path.suffix == ".db3" else read_mcap(path, wanted)
+
+
+def _files_of(folder: Path) -> list[Path]:
+    """The files of a rosbag2 folder in order: those metadata.yaml lists; without it, those that differ by number."""
+    description = folder / "metadata.yaml"
+    if description.is_file():
+        try:
+            content: Any = yaml.safe_load(description.read_text(encoding="utf-8"))
+            return [folder / str(name) for name in content["rosbag2_bagfile_information"]["relative_file_paths"]]
+        except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError):
+            raise RecordingError(
+                f"{description}: does not parse; remove it to read the folder's .mcap files by their names"
+            ) from None
+    files = sorted((file for ending in ("*.mcap", "*.db3") for file in folder.glob(ending)), key=_numbered)
+    if len({re.sub(r"_\d+$", "", file.stem) for file in files}) > 1:
+        names = ", ".join(file.name for file in files)
+        raise RecordingError(f"{folder}: holds several recordings ({names}); name one of them")
+    if not files:
+        raise RecordingError(f"{folder}: holds no recording (.mcap, .db3); name a file or a rosbag2 folder")
+    return files
+
+
+def _numbered(file: Path) -> tuple[int, str]:
+    match = re.search(r"_(\d+)$", file.stem)
+    return (int(match[1]) if match else -1, file.name)
+
+
+def _read_files(folder: Path, files: list[Path], wanted: TopicFilter) -> RawRecording:
+    whole = RawRecording()
+    for file in files:
+        try:
+            part = _read_file(file, wanted)
+        except RecordingError as error:
+            if len(files) == 1:
+                raise
+            whole.damage.append(str(error).removeprefix(f"{folder}/"))
+            continue
+        whole.damage += [f"{file.name}: {damage}" for damage in part.damage]
+        for name, values in part.metadata.items():
+            whole.metadata.setdefault(name, {}).update(values)
+        for name, topic in part.topics.items():
+            joined = whole.topics.setdefault(name, topic)
+            if joined is not topic:
+                joined.log_times += topic.log_times
+                joined.payloads += topic.payloads
+    return whole
+
+
+def _read_sqlite(path: Path, wanted: TopicFilter) -> RawRecording:
+    recording = RawRecording()
+    try:
+        with Reader(path) as reader:
+            for connection in reader.connections:
+                definition = connection.msgdef
+                encoding = f"ros2{definition.format.name.lower()}"
+                recording.topics[connection.topic] = RawTopic(
+                    connection.topic, connection.msgtype, encoding, definition.data
+                )
+            connections = [connection for connection in reader.connections if wanted(connection.topic)]
+            for connection, log_time, data in reader.messages(connections) if connections else ():
+                recording.topics[connection.topic].log_times.append(log_time)
+                recording.topics[connection.topic].payloads.append(data)
+    except FileNotFoundError:
+        raise RecordingError(f"{path}: there is no such file") from None
+    except ReaderError as error:
+        raise RecordingError(f"{path}: cannot be read as a rosbag2 file ({error})") from error
+    return recording

@@ -1,0 +1,139 @@
+"""Message types: where definitions are found, and fields to CDR bytes and back.
+
+Nothing is written down here: the standard messages come from the type store of the rosbags library, all others from
+the .msg files that their package installs under `<prefix>/share/<package>/msg`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+
+from eha_core.errors import RecordingError
+
+_SOURCE_TREE = Path(__file__).resolve().parents[3]
+_IDL_DEFINITION = "ros2idl"
+_TEXT_TYPES = ("string", "wstring")
+
+
+def _message_folders(package: str) -> Iterator[Path]:
+    """The folders that may hold a package's .msg files: ROS prefixes, this environment, the source tree."""
+    prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
+    for prefix in (*prefixes, sys.prefix):
+        yield Path(prefix) / "share" / package / "msg"
+    yield _SOURCE_TREE / package / "msg"
+
+
+@lru_cache(maxsize=1)
+def typestore() -> Typestore:
+    """The store in which recordings are written: the standard messages, and what `require_type` added."""
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+def require_type(type_name: str) -> Typestore:
+    """Return the store once it knows `type_name` ("package/msg/Name") and all it contains.
+
+    Raises:
+        RecordingError: no definition of the type, or of one inside it, is installed.
+    """
+    store = typestore()
+    if type_name in store.fielddefs:
+        return store
+    package, _, name = type_name.partition("/msg/")
+    for folder in _message_folders(package):
+        definition = folder / f"{name}.msg"
+        if definition.is_file():
+            break
+    else:
+        raise RecordingError(
+            f"message type {type_name}: no definition found; install {package or 'its package'}"
+            " or source the workspace that holds it"
+        )
+    try:
+        types = get_types_from_msg(definition.read_text(encoding="utf-8"), type_name)
+    except TypesysError as error:
+        raise RecordingError(f"message type {type_name}: {definition} does not parse") from error
+    for _, fields in types.values():
+        for contained in _contained_types(fields):
+            require_type(contained)
+    store.register(types)
+    return store
+
+
+def _contained_types(fields: Any) -> Iterator[str]:
+    for _, (kind, detail) in fields:
+        if kind in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+            kind, detail = detail[0]
+        if kind == Nodetype.NAME:
+            yield detail
+
+
+def definition_of(type_name: str) -> tuple[str, str]:
+    """The definition as `ros2 bag` stores it (parts divided by rows of 80 "=") and the type's hash (RIHS01)."""
+    store = require_type(type_name)
+    return store.generate_msgdef(type_name, ros_version=2)[0], store.hash_rihs01(type_name)
+
+
+def encode(type_name: str, fields: Mapping[str, Any]) -> bytes:
+    """Serialise a message given as nested mappings and sequences to CDR; fields left out are zero or empty."""
+    store = require_type(type_name)
+    return bytes(store.serialize_cdr(_build(store, type_name, fields), type_name))
+
+
+def _build(store: Typestore, type_name: str, values: Mapping[str, Any]) -> Any:
+    fields = store.fielddefs[type_name][1]
+    unknown = set(values) - {name for name, _ in fields}
+    if unknown:
+        raise RecordingError(f"message type {type_name}: has no field {', '.join(sorted(unknown))}")
+    return store.types[type_name](**{name: _build_field(store, kind, values.get(name)) for name, kind in fields})
+
+
+def _build_field(store: Typestore, description: Any, value: Any) -> Any:
+    kind, detail = description
+    if kind == Nodetype.NAME:
+        return _build(store, detail, value or {})
+    if kind == Nodetype.BASE:
+        return value if value is not None else ("" if detail[0] in _TEXT_TYPES else 0)
+    element, length = detail
+    if element[0] == Nodetype.BASE and element[1][0] not in _TEXT_TYPES:
+        numbers = value if value is not None else np.zeros(length if kind == Nodetype.ARRAY else 0)
+        return np.asarray(numbers, dtype=element[1][0] if element[1][0] not in ("byte", "char") else np.uint8)
+    return [_build_field(store, element, item) for item in (value or ())]
+
+
+@lru_cache(maxsize=64)
+def _recorded_types(type_name: str, encoding: str, definition: str) -> Typestore:
+    """The store that a recording's own definition of a type makes; the installed one where that is damaged."""
+    store = get_typestore(Stores.EMPTY)
+    try:
+        is_idl = encoding == _IDL_DEFINITION
+        store.register(get_types_from_idl(definition) if is_idl else get_types_from_msg(definition, type_name))
+        store.get_msgdef(type_name)  # fails here, not at the first message, where a part is missing
+    except (TypesysError, SyntaxError, ValueError, LookupError):
+        return require_type(type_name)
+    return store
+
+
+class Decoder:
+    """Reads CDR bytes of one message type by the definition that its recording carries.
+
+    A recording without definitions (the SQLite bags of older distributions) is read by the installed ones.
+    """
+
+    def __init__(self, type_name: str, encoding: str, definition: str) -> None:
+        self.type_name = type_name
+        has_definition = bool(definition.strip())
+        self._store = _recorded_types(type_name, encoding, definition) if has_definition else require_type(type_name)
+
+    def __call__(self, data: bytes) -> Any:
+        """The message as an object with the fields as attributes; raises rosbags' SerdeError for malformed bytes."""
+        return self._store.deserialize_cdr(data, self.type_name)

@@ -1,0 +1,130 @@
+"""Reads a recording of any kind into channels: SI units, gauge pressures, one time axis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from eha_core.errors import RecordingError
+from eha_core.recording.bag import read_bag
+from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
+from eha_core.recording.csv_file import read_csv
+from eha_core.recording.decoding import decode, on_one_clock
+from eha_core.recording.discovery import LEAKAGE_TOPIC, find_rules, leakage_topic, may_matter
+from eha_core.recording.raw import RawRecording
+from eha_core.recording.recording import CHANNEL_KINDS, Channel, Recording
+from eha_core.recording.samples import Samples, put_in_order
+from eha_core.recording.units import in_model_units
+from eha_core.recording.writer import PARAMETERS_RECORD
+
+STANDARD_ATMOSPHERE = 101325.0
+"""Taken from absolute pressures where the recording does not say `atmospheric_pressure` [Pa]."""
+
+_TEXT_ENDINGS = (".csv", ".tsv", ".txt")
+
+
+def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = None) -> Recording:
+    """Read a recording.
+
+    Args:
+        path: an .mcap or .db3 file, a rosbag2 folder, or a .csv file with a header row.
+        topics: a topics file, or one that is loaded already; without it channels are found by the contract's names.
+
+    Raises:
+        RecordingError: nothing usable is there, or it is open what is meant; the message says what to do.
+    """
+    path = Path(path)
+    topics_file = topics if isinstance(topics, TopicsFile) or topics is None else load_topics_file(topics)
+    if not path.exists():
+        raise RecordingError(f"{path}: there is no such file or folder")
+    if path.suffix.lower() in _TEXT_ENDINGS:
+        samples, rules = read_csv(path, topics_file)
+        return _assemble(path, samples, rules, dict.fromkeys(rules, "csv"), RawRecording(), [])
+    raw = read_bag(path, lambda topic: may_matter(topic, topics_file))
+    return _from_messages(path, raw, topics_file)
+
+
+def _from_messages(path: Path, raw: RawRecording, topics_file: TopicsFile | None) -> Recording:
+    rules, found_remarks = find_rules(str(path), raw.topics.keys(), topics_file)
+    if leakage := leakage_topic(raw.topics.keys(), rules):
+        rules[LEAKAGE_TOPIC] = ChannelRule(leakage, "data")
+    remarks = list(found_remarks)
+    decoded = []
+    for topic in dict.fromkeys(str(rule.topic) for rule in rules.values()):
+        fields = {name: str(rule.field) for name, rule in rules.items() if rule.topic == topic}
+        decoded.append(decode(raw.topics[topic], fields))
+        remarks += decoded[-1].remarks
+    decoded, clock_remarks = on_one_clock(decoded)
+    samples = {name: Samples(topic.stamps, values) for topic in decoded for name, values in topic.columns.items()}
+    types = {name: raw.topics[str(rule.topic)].type_name for name, rule in rules.items()}
+    return _assemble(path, samples, rules, types, raw, [*remarks, *clock_remarks])
+
+
+def _assemble(
+    path: Path,
+    samples: Mapping[str, Samples],
+    rules: Mapping[str, ChannelRule],
+    types: Mapping[str, str],
+    raw: RawRecording,
+    remarks: list[str],
+) -> Recording:
+    parameters = _parameters(raw, remarks)
+    atmosphere = parameters.get("atmospheric_pressure", STANDARD_ATMOSPHERE)
+    ordered: dict[str, Samples] = {}
+    for name in (name for name in CHANNEL_KINDS if name in samples):
+        source = f"{name} ({rules[name].topic})"
+        series, notes = put_in_order(samples[name])
+        if not len(series.values):
+            remarks.append(f"{source}: no values were recorded")
+            continue
+        ordered[name], unit_notes = in_model_units(f"{path}: {source}", name, rules[name], series, atmosphere)
+        remarks += [f"{source}: {note}" for note in (*notes, *unit_notes)]
+    if not ordered:
+        raise RecordingError(f"{path}: {_nothing_usable(raw, remarks)}; map what there is to channels in a topics file")
+    start = min(int(series.stamps[0]) for series in ordered.values())
+    duration = (max(int(series.stamps[-1]) for series in ordered.values()) - start) / 1e9
+    return Recording(
+        path=path,
+        channels={
+            name: _channel(name, series, start, str(rules[name].topic), types[name]) for name, series in ordered.items()
+        },
+        start_stamp=start,
+        duration=duration,
+        parameters=parameters,
+        leakage_changes=_changes(samples.get(LEAKAGE_TOPIC), start),
+        damaged=f"{'; '.join(raw.damage)}; what was read covers {duration:.4g} s" if raw.damage else None,
+        remarks=tuple(remarks),
+    )
+
+
+def _channel(name: str, series: Samples, start: int, topic: str, type_name: str) -> Channel:
+    time, values = (series.stamps - start) / 1e9, series.values
+    time.flags.writeable = values.flags.writeable = False
+    return Channel(name, time, values, CHANNEL_KINDS[name].unit, topic, type_name)
+
+
+def _parameters(raw: RawRecording, remarks: list[str]) -> dict[str, float]:
+    parameters = {}
+    for name, text in raw.metadata.get(PARAMETERS_RECORD, {}).items():
+        try:
+            parameters[name] = float(text)
+        except ValueError:
+            remarks.append(f"the stored parameter {name} is no number ({text!r}) and was left out")
+    return parameters
+
+
+def _changes(samples: Samples | None, start: int) -> tuple[tuple[float, float], ...]:
+    if samples is None:
+        return ()
+    pairs = zip(((samples.stamps - start) / 1e9).tolist(), samples.values.tolist(), strict=True)
+    return tuple(sorted((time, value) for time, value in pairs if np.isfinite(value)))
+
+
+def _nothing_usable(raw: RawRecording, remarks: list[str]) -> str:
+    if raw.damage and not raw.topics:
+        return f"nothing could be saved ({'; '.join(raw.damage)})"
+    recorded = ", ".join(f"{topic.name} ({topic.type_name})" for topic in raw.topics.values())
+    because = f" ({'; '.join(remarks)})" if remarks else ""
+    return f"no usable channel{because}; recorded topics: {recorded or 'none'}"

@@ -1,0 +1,227 @@
+"""Simulates the actuator without waiting and records it with the simulator node's topics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from heapq import merge
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.errors import ParameterError
+from eha_core.plant import COLUMNS, Plant
+from eha_core.recording.message_rows import encode_rows
+from eha_core.recording.message_types import encode
+from eha_core.recording.recording import FloatArray
+from eha_core.recording.writer import OfferedQuality, RecordingWriter
+
+FLOAT, JOINTS = "std_msgs/msg/Float64", "sensor_msgs/msg/JointState"
+PRESSURE, STATE = "sensor_msgs/msg/FluidPressure", "eha_interfaces/msg/ActuatorState"
+PARAMETER_EVENT = "rcl_interfaces/msg/ParameterEvent"
+_DOUBLE = 3  # rcl_interfaces/msg/ParameterType
+_LATCHED = OfferedQuality(durability="transient_local", depth=1)
+_NANOSECONDS = 1_000_000_000
+_BLOCK = 10_000  # messages serialised at once
+
+POSITION_NOISE = 10e-6
+"""Standard deviation at noise 1 [m]."""
+PRESSURE_NOISE = 1e4
+"""Standard deviation at noise 1 [Pa]."""
+VELOCITY_NOISE = 1e-3
+"""Standard deviation at noise 1 [m/s]; assumed."""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What is simulated.
+
+    Attributes:
+        command_times: instants from which each voltage holds, increasing [s]; before the first the voltage is zero.
+        voltages: the voltages [V].
+        duration: simulated time [s].
+        parameters: the rig's parameters that differ from nominal ones.
+        changes: (instant [s], parameter, value), applied at the first publishing instant from then on.
+        step_size: the plant's step [s].
+        rate: publishing rate [Hz]; a period must be a whole number of steps.
+        noise: sensor noise as a multiple of POSITION_NOISE, VELOCITY_NOISE and PRESSURE_NOISE.
+        seed: seed of the noise.
+        initial_position: where the piston starts [m].
+    """
+
+    command_times: FloatArray
+    voltages: FloatArray
+    duration: float
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    changes: Sequence[tuple[float, str, float]] = ()
+    step_size: float = 1e-4
+    rate: float = 500.0
+    noise: float = 0.0
+    seed: int = 1
+    initial_position: float = 0.0
+
+    @property
+    def steps_per_period(self) -> int:
+        """Plant steps between two published states; raises ParameterError where that is no whole number."""
+        steps = 1.0 / (self.rate * self.step_size)
+        if steps < 0.5 or abs(steps - round(steps)) > 1e-6 * steps:
+            raise ParameterError(
+                f"rate {self.rate:g} Hz: its period is {steps:g} steps of {self.step_size:g} s; choose a whole number"
+            )
+        return round(steps)
+
+    @property
+    def periods(self) -> int:
+        """Publishing periods in the whole record."""
+        return round(self.duration * self.rate)
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A simulated record.
+
+    Attributes:
+        stamps: instants of the rows, from 0 on [ns].
+        states: one row for each stamp, with the plant's COLUMNS; noise is in the measured ones.
+        commands: (stamp [ns], voltage [V]) of each command.
+        parameters: every parameter in force at the start.
+        changes: (stamp [ns], parameter, value).
+    """
+
+    stamps: NDArray[np.int64]
+    states: FloatArray
+    commands: tuple[NDArray[np.int64], FloatArray]
+    parameters: Mapping[str, float]
+    changes: Sequence[tuple[int, str, float]]
+
+    def column(self, name: str) -> FloatArray:
+        """One of COLUMNS over all rows."""
+        return self.states[:, COLUMNS.index(name)]
+
+
+def simulate(experiment: Experiment) -> Simulated:
+    """Run an experiment, far faster than real time.
+
+    Raises:
+        ParameterError: a parameter, a change or the rate does not fit.
+    """
+    plant = Plant(experiment.parameters, experiment.step_size, experiment.initial_position)
+    every, periods = experiment.steps_per_period, experiment.periods
+    parameters = dict(plant.parameters)
+    first_steps = np.ceil(experiment.command_times / experiment.step_size - 1e-6).astype(np.int64)
+    latest = np.searchsorted(first_steps, np.arange(periods * every), side="right") - 1
+    voltages = np.where(latest >= 0, experiment.voltages[latest], 0.0)
+    changes = [
+        (int(np.ceil(time * experiment.rate - 1e-6)), name, value)
+        for time, name, value in sorted(experiment.changes, key=lambda change: change[0])
+    ]
+    pieces = [np.array([plant.state])]
+    bounds = sorted({0, periods, *(min(period, periods) for period, _, _ in changes)})
+    for start, end in zip(bounds, bounds[1:], strict=False):
+        plant.set_parameters({name: value for period, name, value in changes if period == start})
+        pieces.append(plant.run(voltages[start * every : end * every], every).values)
+    states = np.concatenate(pieces)
+    _add_noise(states, experiment)
+    period = every * experiment.step_size * _NANOSECONDS
+    used = first_steps < periods * every
+    command_stamps = np.round(first_steps[used] * experiment.step_size * _NANOSECONDS).astype(np.int64)
+    return Simulated(
+        np.round(np.arange(periods + 1) * period).astype(np.int64),
+        states,
+        (command_stamps, experiment.voltages[used]),
+        parameters,
+        [(round(start * period), name, value) for start, name, value in changes if start < periods],
+    )
+
+
+def _add_noise(states: FloatArray, experiment: Experiment) -> None:
+    generator = np.random.default_rng(experiment.seed)
+    for name, size in (
+        ("measured_position", POSITION_NOISE),
+        ("measured_velocity", VELOCITY_NOISE),
+        ("measured_pressure_a", PRESSURE_NOISE),
+        ("measured_pressure_b", PRESSURE_NOISE),
+    ):
+        states[:, COLUMNS.index(name)] += experiment.noise * size * generator.standard_normal(len(states))
+
+
+Message = tuple[int, int, str, str, bytes]
+
+
+def write_simulated(path: str | Path, record: Simulated, instruments_only: bool = False) -> int:
+    """Write a simulated record with the simulator node's topics; return how many messages it holds.
+
+    With `instruments_only` the file has what a rig's instruments give and nothing that tells of the model: no state, no
+    effort, no leakage, no parameters. The same record always gives the same bytes.
+
+    Raises:
+        RecordingError: the file exists already or cannot be written.
+    """
+    topics = list(_sensor_messages(record, instruments_only))
+    if not instruments_only:
+        topics += [_state_messages(record), _leakage_messages(record), _parameter_events(record)]
+    parameters = {} if instruments_only else record.parameters
+    with RecordingWriter(path, parameters, flush_period=inf) as writer:
+        for stamp, _, topic, type_name, data in merge(*topics):
+            quality = _LATCHED if topic == "/internal_leakage" else None
+            writer.write(topic, type_name, data, stamp, quality)
+        return writer.message_count
+
+
+def _rows(
+    order: int,
+    topic: str,
+    type_name: str,
+    stamps: NDArray[np.int64],
+    columns: Mapping[str, FloatArray],
+    has_header: bool = True,
+    **fixed: Any,
+) -> Iterator[Message]:
+    """Messages of one topic, serialised block by block; `order` is the topic's place among those of one instant."""
+    for start in range(0, len(stamps), _BLOCK):
+        part = slice(start, start + _BLOCK)
+        block = {name: numbers[part] for name, numbers in columns.items()}
+        rows = encode_rows(type_name, block, stamps[part] if has_header else None, **fixed)
+        for stamp, row in zip(stamps[part].tolist(), rows, strict=True):
+            yield stamp, order, topic, type_name, row
+
+
+def _sensor_messages(record: Simulated, instruments_only: bool) -> Iterator[Iterator[Message]]:
+    atmosphere = record.parameters["atmospheric_pressure"]
+    for order, chamber in enumerate("ab", start=2):
+        pressure = {"fluid_pressure": record.column(f"measured_pressure_{chamber}") + atmosphere}
+        yield _rows(order, f"/chamber_{chamber}/pressure", PRESSURE, record.stamps, pressure)
+    motion = {"position": record.column("measured_position"), "velocity": record.column("measured_velocity")}
+    if not instruments_only:
+        motion["effort"] = record.column("hydraulic_force")
+    yield _rows(5, "/joint_states", JOINTS, record.stamps, motion, name=["piston"])
+    stamps, voltages = record.commands
+    yield _rows(6, "/voltage_command", FLOAT, stamps, {"data": voltages}, has_header=False)
+
+
+def _state_messages(record: Simulated) -> Iterator[Message]:
+    return _rows(4, "/state", STATE, record.stamps, {name: record.column(name) for name in COLUMNS})
+
+
+def _leakage_messages(record: Simulated) -> Iterator[Message]:
+    leakage = record.column("internal_leakage")
+    changed = np.flatnonzero(np.append(True, np.diff(leakage) != 0.0))
+    stamps = record.stamps[changed]
+    # A value that is set is in force, and published, from that instant on: one period before a state shows it.
+    set_at = [stamp for stamp, name, _ in record.changes if name == "internal_leakage"]
+    before = record.stamps[np.maximum(changed - 1, 0)]
+    stamps = np.where(np.isin(before, set_at), before, stamps)
+    return _rows(1, "/internal_leakage", FLOAT, stamps, {"data": leakage[changed]}, has_header=False)
+
+
+def _parameter_events(record: Simulated) -> Iterator[Message]:
+    for stamp, name, value in record.changes:
+        event = {
+            "stamp": {"sec": stamp // _NANOSECONDS, "nanosec": stamp % _NANOSECONDS},
+            "node": "/eha_sim",
+            "changed_parameters": [{"name": name, "value": {"type": _DOUBLE, "double_value": value}}],
+        }
+        yield stamp, 0, "/parameter_events", PARAMETER_EVENT, encode(PARAMETER_EVENT, event)

@@ -1,0 +1,165 @@
+"""Writes recordings: MCAP with the profile `ros2`, as `ros2 bag` writes them, that outlive a killed process."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, cast
+
+from mcap.writer import CompressionType, Writer
+
+from eha_core.errors import RecordingError
+from eha_core.recording.crash_safe_file import CrashSafeFile
+from eha_core.recording.message_types import definition_of, encode
+
+PARAMETERS_RECORD = "eha_parameters"
+_FOREVER = "{sec: 9223372036, nsec: 854775807}"
+
+
+@dataclass(frozen=True)
+class OfferedQuality:
+    """The quality of service that a topic's publisher offers; `ros2 bag play` publishes with the same."""
+
+    reliability: str = "reliable"
+    durability: str = "volatile"
+    depth: int = 10
+
+    def as_yaml(self) -> str:
+        """The text that `ros2 bag` keeps in a channel's `offered_qos_profiles`."""
+        return (
+            f"- history: keep_last\n  depth: {self.depth}\n  reliability: {self.reliability}\n"
+            f"  durability: {self.durability}\n  deadline: {_FOREVER}\n  lifespan: {_FOREVER}\n"
+            f"  liveliness: automatic\n  liveliness_lease_duration: {_FOREVER}\n"
+            "  avoid_ros_namespace_conventions: false"
+        )
+
+
+class RecordingWriter:
+    """Writes one recording; a context manager.
+
+    Messages are gathered in a chunk. It is put on disk when a message comes later than `flush_period` after the former
+    flush, or when the owner calls `flush`: a node does so on a timer, since topics may fall silent. After each flush
+    the file is a whole MCAP, so `kill -9` costs only what came since. All methods that touch the disk raise
+    RecordingError; what was flushed before then stays readable.
+
+    Args:
+        path: the .mcap file to create; its folder is made, an existing file is never overwritten.
+        parameters: the parameters in force (name -> SI value), kept as the metadata record `eha_parameters`.
+        flush_period: longest time that messages wait in memory [s].
+    """
+
+    def __init__(
+        self, path: str | Path, parameters: Mapping[str, float] | None = None, flush_period: float = 0.5
+    ) -> None:
+        self.path = Path(path)
+        self.message_count = 0
+        self._first_path = self.path
+        self._parameters = dict(parameters or {})
+        self._flush_period = flush_period
+        self._splits = 0
+        self._open()
+
+    def _open(self) -> None:
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            if self.path.exists():
+                raise RecordingError(f"{self.path}: exists already; choose another name or remove it")
+            self._file = CrashSafeFile(self.path)
+        except OSError as error:
+            raise RecordingError(f"{self.path}: cannot be written ({error.strerror}: {error.filename})") from error
+        self._channels: dict[str, int] = {}
+        self._schemas: dict[str, int] = {}
+        self._writer: Any = Writer(cast("IO[Any]", self._file), compression=CompressionType.ZSTD)
+        self._writer.start(profile="ros2")
+        self._is_open = True
+        if self._parameters:
+            self.add_parameters(self._parameters)
+        self.flush()
+
+    def add_parameters(self, parameters: Mapping[str, float]) -> None:
+        """Keep the parameters in force (name -> SI value) in the file; also in those that a later split opens."""
+        self._parameters.update(parameters)
+        self._writer.add_metadata(PARAMETERS_RECORD, {name: str(value) for name, value in parameters.items()})
+
+    def write(self, topic: str, type_name: str, data: bytes, stamp: int, quality: OfferedQuality | None = None) -> None:
+        """Add a message that is serialised already.
+
+        Args:
+            topic: full topic name, with its namespace.
+            type_name: "package/msg/Name".
+            data: CDR bytes with their encapsulation header.
+            stamp: log time [ns].
+            quality: what the publisher offers; counts for the first message of a topic.
+        """
+        if not self._is_open:
+            raise RecordingError(f"{self.path}: the recording is closed")
+        channel = self._channels.get(topic) or self._register(topic, type_name, quality or OfferedQuality())
+        self._writer.add_message(channel, log_time=stamp, data=data, publish_time=stamp)
+        self.message_count += 1
+        if time.monotonic() - self._flush_time > self._flush_period:
+            self.flush()
+
+    def write_fields(
+        self, topic: str, type_name: str, fields: Mapping[str, Any], stamp: int, quality: OfferedQuality | None = None
+    ) -> None:
+        """Add a message given by its fields (nested mappings and sequences), as `write` does for bytes."""
+        self.write(topic, type_name, encode(type_name, fields), stamp, quality)
+
+    def _register(self, topic: str, type_name: str, quality: OfferedQuality) -> int:
+        definition, type_hash = definition_of(type_name)
+        if type_name not in self._schemas:
+            self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", definition.encode())
+        self._channels[topic] = self._writer.register_channel(
+            topic,
+            "cdr",
+            self._schemas[type_name],
+            {"offered_qos_profiles": quality.as_yaml(), "topic_type_hash": type_hash},
+        )
+        return self._channels[topic]
+
+    def flush(self) -> None:
+        """Close the chunk in progress and put it on disk."""
+        self._flush_time = time.monotonic()
+        if not self._is_open:
+            return
+        try:
+            self._writer.flush()
+        except OSError as error:
+            self.abandon()
+            raise RecordingError(f"{self.path}: recording stopped ({error.strerror})") from error
+
+    def split(self) -> Path:
+        """Finish this file, go on in `<name>_1.mcap`, `<name>_2.mcap`, ... and return the path of the new file."""
+        self.close()
+        self._splits += 1
+        self.path = self._first_path.with_name(f"{self._first_path.stem}_{self._splits}{self._first_path.suffix}")
+        self._open()
+        return self.path
+
+    def close(self) -> None:
+        """Write the summary and close the file; nothing happens when it is closed already."""
+        if not self._is_open:
+            return
+        self._is_open = False
+        try:
+            self._writer.finish()
+            self._file.close()
+        except OSError as error:
+            raise RecordingError(f"{self.path}: the end could not be written ({error.strerror})") from error
+
+    def abandon(self) -> None:
+        """Close the file as it was flushed last, without a summary."""
+        if self._is_open:
+            self._is_open = False
+            self._file.discard()
+
+    def __enter__(self) -> RecordingWriter:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

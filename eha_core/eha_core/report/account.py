@@ -1,0 +1,99 @@
+"""The short account of a diagnosis that a person reads on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from textwrap import wrap
+
+from eha_core.diagnosis.result import Diagnosis, FittedParameter, Location, NamedEffect
+from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.quantities import quantity, scale_for, short, with_deviation
+from eha_core.report.wording import channel_title, channels_listed, listed, span
+
+_INDENT = 13
+_LONGEST = {"Recording": 2, "Verdict": 3, "Located": 2, "Named": 4, "Parameters": 2, "Next test": 3}
+
+
+def account(diagnosis: Diagnosis, written: Sequence[Path] = (), width: int = 100) -> str:
+    """Say in at most 25 lines what was found, how sure it is, what it improves, and where the files are."""
+    lines: list[str] = []
+    for label, text in _findings(diagnosis):
+        lines += _section(label, text, width)
+    lines += _improvement(diagnosis)
+    lines += _section("Next test", diagnosis.next_experiment.statement if diagnosis.next_experiment else "", width)
+    lines += _section("Note", "; ".join(_notes(diagnosis)), width)
+    lines += _written(written)
+    return "\n".join(lines)
+
+
+def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
+    yield (
+        "Recording",
+        f"{Path(diagnosis.path).name}: {diagnosis.duration:.1f} s of {channels_listed(diagnosis.channels)}",
+    )
+    yield "Verdict", diagnosis.summary
+    for location in diagnosis.location[:1]:
+        yield "Located", _located(location)
+    yield "Named", "; ".join(_named(effect) for effect in diagnosis.effects)
+    if diagnosis.unknown:
+        law = diagnosis.unknown
+        expression = f": {law.expression}" if law.expression else ""
+        yield "Recovered", f"a law over {law.function_of}{expression} (R² {law.r_squared:.3f})"
+    yield "Parameters", "; ".join(_changed(one) for one in diagnosis.parameters if one.changed)
+    rivals = [f"{' + '.join(one.effects)} (evidence {one.evidence_gap:.1f} less)" for one in diagnosis.alternatives]
+    yield "Not told", f"from {', nor from '.join(rivals)}" if rivals else ""
+
+
+def _named(effect: NamedEffect) -> str:
+    values = [f"{name} {with_deviation(one.value, one.std, one.unit)}" for name, one in effect.parameters.items()]
+    return f"{effect.id} ({', '.join(values)})"
+
+
+def _changed(one: FittedParameter) -> str:
+    return f"{one.name} {with_deviation(one.fitted, one.std, one.unit)} (nominal {quantity(one.nominal, one.unit)})"
+
+
+def _located(location: Location) -> str:
+    spans = f"; {listed([span(one) for one in location.when[:4]])}" if 1 < len(location.when) <= 4 else ""
+    return f"{location.statement}{spans}"
+
+
+def _improvement(diagnosis: Diagnosis) -> list[str]:
+    """RMSE of each channel on held-out data, in a unit that suits its noise."""
+    fits = diagnosis.held_out or diagnosis.training
+    if not fits:
+        return []
+    heading = f"{'RMSE on held-out data' if diagnosis.held_out else 'RMSE':30}"
+    lines = [heading + "".join(f"{column:>12}" for column in ("as given", "calibrated", "after", "noise"))]
+    for name, fit in list(fits.items())[:4]:
+        values = (fit.rmse_before, fit.rmse_calibrated, fit.rmse_after, fit.noise)
+        scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
+        title = f"{channel_title(name)} [{scale.unit}]"
+        lines.append(f"  {title:28}" + "".join(f"{short(value / scale.factor):>12}" for value in values))
+    return lines
+
+
+def _notes(diagnosis: Diagnosis) -> Iterator[str]:
+    if diagnosis.damaged:
+        yield f"damaged: {diagnosis.damaged}"
+    yield from (f"not examined: {one}" for one in diagnosis.not_examined)
+    yield from diagnosis.remarks
+
+
+def _section(label: str, text: str, width: int) -> list[str]:
+    """The text under its label, cut short where it would fill the screen; the report has it all."""
+    if not text:
+        return []
+    wrapped = wrap(text, width - _INDENT)
+    longest = _LONGEST.get(label, 1)
+    if len(wrapped) > longest:
+        wrapped = [*wrapped[: longest - 1], wrapped[longest - 1][: width - _INDENT - 2] + " …"]
+    return [f"{'' if row else label:{_INDENT}}{line}" for row, line in enumerate(wrapped)]
+
+
+def _written(written: Sequence[Path]) -> list[str]:
+    gathered: dict[Path, list[str]] = {}
+    for path in written:
+        gathered.setdefault(path.parent, []).append(path.name)
+    return [f"{'Written':{_INDENT}}{folder}/: {', '.join(names)}" for folder, names in list(gathered.items())[:2]]

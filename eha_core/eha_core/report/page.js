@@ -1,0 +1,39 @@
+"use strict";
+// Draws each plot from the data beside it, lets the legend switch series, and fits the plots to the paper.
+const touch = window.matchMedia("(pointer: coarse)").matches;
+const plots = [...document.querySelectorAll(".plot")];
+
+for (const place of plots) {
+  const { data, layout } = JSON.parse(place.querySelector("script").textContent);
+  layout.autosize = true;
+  layout.dragmode = touch ? false : "zoom"; // a finger on a plot scrolls the page
+  Plotly.newPlot(place, data, layout, {
+    responsive: true,
+    displayModeBar: false,
+  });
+}
+
+for (const button of document.querySelectorAll(".legend button")) {
+  button.addEventListener("click", () => {
+    const hidden = button.classList.toggle("off");
+    for (const place of button.closest("figure").querySelectorAll(".plot")) {
+      const label = button.dataset.label;
+      const traces = place.data.flatMap((trace, index) => (trace.name === label ? [index] : []));
+      if (traces.length) Plotly.restyle(place, { visible: !hidden }, traces);
+      (place.layout.shapes || []).forEach((shape, index) => {
+        if (shape.name === label) Plotly.relayout(place, { [`shapes[${index}].visible`]: !hidden });
+      });
+    }
+  });
+}
+
+function fit(printing) {
+  document.body.classList.toggle("printing", printing);
+  // at once, for the browser lays out the paper as soon as this returns
+  for (const place of plots) Plotly.relayout(place, { width: printing ? place.clientWidth : null, autosize: !printing });
+}
+window.addEventListener("beforeprint", () => {
+  document.querySelectorAll("details").forEach((one) => (one.open = true));
+  fit(true);
+});
+window.addEventListener("afterprint", () => fit(false));

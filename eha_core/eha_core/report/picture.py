@@ -1,0 +1,151 @@
+"""What a picture shows, apart from how it is drawn: the page draws it with Plotly, the figures with matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from eha_core.diagnosis.numbers import Array
+
+COLOURS = {
+    "measured": "#22303c",
+    "before": "#c4553b",
+    "calibrated": "#d79a2b",
+    "after": "#1d7a8c",
+    "other": "#9aa7b2",
+}
+"""By role; told apart without colour vision too, by lightness."""
+
+FEW_DOTS = 500
+
+SHADE = "#e9e2d4"
+NOISE_SHADE = "#d5dde3"
+
+LABELS = {
+    "measured": "measured",
+    "before": "model as given",
+    "calibrated": "model calibrated",
+    "after": "with what was found",
+    "other": "not decisive",
+}
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve; NaN breaks it."""
+
+    x: Array
+    y: Array
+    role: str
+    label: str = ""
+    width: float = 1.4
+
+
+@dataclass(frozen=True)
+class Dots:
+    """Many single points."""
+
+    x: Array
+    y: Array
+    role: str
+    label: str = ""
+
+    @property
+    def size(self) -> float:
+        """Their diameter in pixels: few are drawn larger."""
+        return 3.5 if len(self.x) > FEW_DOTS else 6.0
+
+
+@dataclass(frozen=True)
+class Intervals:
+    """Values with intervals of half width `reach`, one a row, the first on top."""
+
+    names: tuple[str, ...]
+    x: Array
+    reach: Array
+    roles: tuple[str, ...]
+    texts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Horizontal bars, one a row, the first on top."""
+
+    names: tuple[str, ...]
+    x: Array
+    roles: tuple[str, ...]
+    texts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Band:
+    """Values between `low` and `high` that need no explanation."""
+
+    low: float
+    high: float
+    label: str
+
+
+@dataclass(frozen=True)
+class Spans:
+    """Stretches of the horizontal axis."""
+
+    spans: tuple[tuple[float, float], ...]
+    label: str
+
+
+Mark = Line | Dots | Intervals | Bars | Band | Spans
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes; `height` in the page's pixels; ranges where not all should be seen at first."""
+
+    marks: tuple[Mark, ...]
+    x_label: str = ""
+    y_label: str = ""
+    title: str = ""
+    height: int = 190
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The rows' names, where the panel has rows."""
+        return next((mark.names for mark in self.marks if isinstance(mark, (Intervals, Bars))), ())
+
+
+@dataclass(frozen=True)
+class Group:
+    """Panels above each other that share their horizontal axis."""
+
+    panels: tuple[Panel, ...]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Groups laid out in rows with columns of these relative widths; on narrow screens one below the other."""
+
+    name: str
+    groups: tuple[Group, ...]
+    columns: tuple[int, ...] = (1,)
+    title: str = ""
+    caption: str = ""
+
+    def legend(self) -> tuple[tuple[str, str], ...]:
+        """(label, colour) of everything that has a label, each once."""
+        found: dict[str, str] = {}
+        for group in self.groups:
+            for panel in group.panels:
+                for mark in panel.marks:
+                    for label, colour in _legend(mark):
+                        found.setdefault(label, colour)
+        return tuple(found.items())
+
+
+def _legend(mark: Mark) -> Sequence[tuple[str, str]]:
+    if isinstance(mark, (Line, Dots)):
+        return [(mark.label, COLOURS[mark.role])] if mark.label else []
+    if isinstance(mark, (Band, Spans)):
+        return [(mark.label, NOISE_SHADE if isinstance(mark, Band) else SHADE)]
+    return []

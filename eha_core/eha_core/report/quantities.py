@@ -1,0 +1,81 @@
+"""Numbers for people: units of a fitting size, and no more digits than are known."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from math import floor, isfinite, log10
+
+_PREFIXES = {
+    "m": ((1e-6, "µm"), (1e-3, "mm"), (1.0, "m")),
+    "m/s": ((1e-6, "µm/s"), (1e-3, "mm/s"), (1.0, "m/s")),
+    "Pa": ((1.0, "Pa"), (1e3, "kPa"), (1e6, "MPa"), (1e9, "GPa")),
+    "s": ((1e-6, "µs"), (1e-3, "ms"), (1.0, "s")),
+    "A": ((1e-6, "µA"), (1e-3, "mA"), (1.0, "A")),
+    "V": ((1e-6, "µV"), (1e-3, "mV"), (1.0, "V")),
+    "N": ((1.0, "N"), (1e3, "kN"), (1e6, "MN")),
+}
+_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How to show values of one unit: divide by `factor`, name it `unit`."""
+
+    factor: float
+    unit: str
+
+    @property
+    def suffix(self) -> str:
+        """The unit with a space before it; nothing for pure numbers."""
+        return f" {self.unit}" if self.unit else ""
+
+
+def scale_for(unit: str, magnitude: float) -> Scale:
+    """The largest unit of the family that does not exceed `magnitude` [SI]; else a power of ten where it is needed."""
+    steps = _PREFIXES.get(unit)
+    size = abs(magnitude) if isfinite(magnitude) else 0.0
+    if steps:
+        fitting = [step for step in steps if step[0] <= size * 1.0000001] or [steps[0] if size else (1.0, unit)]
+        return Scale(*fitting[-1])
+    plain = unit_text(unit)
+    if size and not 1e-3 <= size < 1e5:
+        exponent = floor(log10(size))
+        return Scale(10.0**exponent, f"× 10{str(exponent).translate(_RAISED)} {plain}".rstrip())
+    return Scale(1.0, plain)
+
+
+def unit_text(unit: str) -> str:
+    """A unit with whole powers raised: m^3/(s Pa) as m³/(s Pa); nothing for the unit of pure numbers."""
+    return "" if unit == "-" else re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit)
+
+
+def quantity(value: float, unit: str, digits: int = 3) -> str:
+    """A value with its unit, to that many digits: quantity(1.02e-5, "m") is "10.2 µm"."""
+    if not isfinite(value):
+        return "not known"
+    scale = scale_for(unit, value)
+    return f"{_rounded(value / scale.factor, digits)}{scale.suffix}"
+
+
+def with_deviation(value: float, deviation: float, unit: str) -> str:
+    """A value and its standard deviation, digits as the deviation deserves: "312.4 ± 3.9 N"."""
+    if not (isfinite(deviation) and deviation > 0.0 and isfinite(value)):
+        return quantity(value, unit)
+    scale = scale_for(unit, max(abs(value), deviation))
+    decimals = max(0, 1 - floor(log10(deviation / scale.factor)))
+    if decimals > 6:
+        return quantity(value, unit, 7)
+    numbers = f"{value / scale.factor:.{decimals}f} ± {deviation / scale.factor:.{decimals}f}"
+    return f"({numbers}) {scale.unit}" if scale.unit.startswith("×") else f"{numbers}{scale.suffix}"
+
+
+def short(value: float) -> str:
+    """Three digits, or more before the point, without an exponent."""
+    return f"{value:,.0f}" if abs(value) >= 1000.0 else _rounded(value, 3)
+
+
+def _rounded(value: float, digits: int) -> str:
+    if value == 0.0 or not isfinite(value):
+        return "0" if value == 0.0 else "-"
+    return f"{value:.{max(0, digits - 1 - floor(log10(abs(value))))}f}"

@@ -1,0 +1,80 @@
+"""Stage 2, calibrate: what the nominal equations can do with their own parameters free."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eha_core.diagnosis.result import Diagnosis, FittedParameter
+from eha_core.report.picture import Group, Intervals, Panel, Picture
+from eha_core.report.quantities import quantity, with_deviation
+from eha_core.report.stages.stage import Stage, Table
+from eha_core.report.wording import listed, sentence, told_errors, words
+
+SURE = 1.96
+"""Standard deviations to either side that make a 95 % interval."""
+
+MOST_NAMED = 4
+"""Changed parameters that the headline names; more are counted."""
+
+
+def stage(diagnosis: Diagnosis) -> Stage:
+    """How far wrong values alone explain the recording."""
+    changed = [one for one in diagnosis.parameters if one.changed]
+    if len(changed) > MOST_NAMED:
+        headline = f"{len(changed)} parameters of the nominal model have to change"
+    elif changed:
+        names = listed([words(one.name) for one in changed])
+        verb = "differs" if len(changed) == 1 else "differ"
+        headline = f"{names[:1].upper()}{names[1:]} {verb} from the nominal model"
+    else:
+        headline = "No parameter of the nominal model has to change"
+    sentences = [
+        "Before any physics is called missing, the parameters of the nominal equations are set free within their"
+        " bounds, so that a wrong value is not taken for a missing effect.",
+        sentence(told_errors(diagnosis, "rmse_before", "rmse_calibrated", "calibration alone")),
+    ]
+    held = [one for one in diagnosis.parameters if one.note]
+    if held:
+        sentences.append(
+            f"This recording says little about {listed([words(one.name) for one in held])};"
+            " these stay near their nominal values."
+        )
+    picture = _picture(diagnosis.parameters)
+    return Stage(
+        "calibrate", "Calibrate", headline, tuple(sentences), (picture,) if picture else (), (_table(diagnosis),)
+    )
+
+
+def _picture(parameters: tuple[FittedParameter, ...]) -> Picture | None:
+    shown = [one for one in parameters if one.nominal != 0.0]
+    if not shown:
+        return None
+    shown.sort(key=lambda one: (not one.changed, bool(one.note)))
+    size = np.array([abs(one.nominal) for one in shown])
+    departure = 100.0 * (np.array([one.fitted - one.nominal for one in shown])) / size
+    reach = 100.0 * SURE * np.nan_to_num(np.array([one.std for one in shown]), posinf=0.0) / size
+    known = [one.changed or not one.note for one in shown]
+    limit = 1.15 * max([2.0, *(np.abs(departure) + np.minimum(reach, 100.0))[known]])
+    roles = tuple("after" if one.changed else "other" for one in shown)
+    texts = tuple(
+        f"{with_deviation(one.fitted, one.std, one.unit)}, nominal {quantity(one.nominal, one.unit)}" for one in shown
+    )
+    marks = (Intervals(tuple(words(one.name) for one in shown), departure, reach, roles, texts),)
+    panel = Panel(marks, "departure from the nominal value [%]", height=60 + 24 * len(shown), x_range=(-limit, limit))
+    caption = (
+        "Fitted parameters of the final model as departures from nominal, with 95 % intervals; changed ones in colour."
+    )
+    return Picture("2-calibrate", (Group((panel,)),), caption=caption)
+
+
+def _table(diagnosis: Diagnosis) -> Table:
+    rows = tuple(
+        (
+            words(one.name),
+            quantity(one.nominal, one.unit),
+            with_deviation(one.fitted, one.std, one.unit),
+            "changed" if one.changed else one.note or "as nominal",
+        )
+        for one in diagnosis.parameters
+    )
+    return Table(("parameter", "nominal", "fitted (± standard deviation)", ""), rows, "All fitted parameters")

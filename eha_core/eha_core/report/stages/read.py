@@ -1,0 +1,67 @@
+"""Stage 1, read and align: what was recorded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.picture import Group, Line, Mark, Panel, Picture, Spans
+from eha_core.report.quantities import quantity, scale_for
+from eha_core.report.series import thinned
+from eha_core.report.stages.stage import Stage, Table
+from eha_core.report.wording import channel_title, channels_listed, plain, sentence
+
+
+def stage(diagnosis: Diagnosis) -> Stage:
+    """What was recorded, how noisy it is, and what could not be looked at."""
+    used = channels_listed(_channels(diagnosis))
+    sentences = [
+        f"{Path(diagnosis.path).name} was read and its channels were put on one clock. The noise of each channel is"
+        " estimated from the data themselves; it is the floor that no model can get under.",
+    ]
+    if diagnosis.damaged:
+        sentences.append(f"The file is damaged, and the diagnosis rests on what could be read: {diagnosis.damaged}.")
+    sentences += [sentence(plain(f"Not examined: {one}")) for one in diagnosis.not_examined]
+    sentences += [sentence(plain(one)) for one in diagnosis.remarks]
+    return Stage(
+        "read",
+        "Read and align",
+        f"{diagnosis.duration:.1f} s of {used}",
+        tuple(sentences),
+        (_picture(diagnosis),),
+        (_table(diagnosis),),
+    )
+
+
+def _channels(diagnosis: Diagnosis) -> list[str]:
+    """What was used, causes before effects."""
+    return sorted(diagnosis.pictures.measured, key=list(CHANNEL_KINDS).index)
+
+
+def _picture(diagnosis: Diagnosis) -> Picture:
+    pictures = diagnosis.pictures
+    shaded = (Spans(pictures.held_out, "held out to judge the models"),) if pictures.held_out else ()
+    panels = []
+    for name in _channels(diagnosis):
+        time, values = thinned(pictures.time[name], pictures.measured[name])
+        scale = scale_for(CHANNEL_KINDS[name].unit, float(abs(values).max()))
+        marks: tuple[Mark, ...] = (*shaded, Line(time, values / scale.factor, "measured", "measured", 1.1))
+        panels.append(Panel(marks, "time [s]", scale.unit, channel_title(name).capitalize(), 140))
+    return Picture(
+        "1-read",
+        (Group(tuple(panels)),),
+        caption="The recording; models are judged on the shaded parts after a fit to the others.",
+    )
+
+
+def _table(diagnosis: Diagnosis) -> Table:
+    fits = diagnosis.held_out or diagnosis.training
+    rows = []
+    for name in _channels(diagnosis):
+        values = diagnosis.pictures.measured[name]
+        unit = CHANNEL_KINDS[name].unit
+        noise = quantity(fits[name].noise, unit) if name in fits else "drives the model"
+        extent = f"{quantity(float(values.min()), unit)} to {quantity(float(values.max()), unit)}"
+        rows.append((channel_title(name), f"{len(values):,}", extent, noise))
+    return Table(("channel", "samples", "range", "noise (standard deviation)"), tuple(rows), "Channels")

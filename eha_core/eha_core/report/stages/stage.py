@@ -1,0 +1,51 @@
+"""What a stage of the story is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.picture import Picture, Spans
+
+MOST_OF_IT = 0.9
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of text under headings; the first column names the row."""
+
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    title: str
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage: its name, what it found as a headline, a few sentences, and what there is to look at."""
+
+    name: str
+    title: str
+    headline: str
+    sentences: tuple[str, ...]
+    pictures: tuple[Picture, ...] = ()
+    tables: tuple[Table, ...] = ()
+    code: str = ""
+
+
+def adds_physics(diagnosis: Diagnosis) -> bool:
+    """Whether the final model has more than the nominal equations."""
+    return bool(diagnosis.effects or diagnosis.unknown)
+
+
+def judged_spans(diagnosis: Diagnosis) -> tuple[tuple[float, float], ...]:
+    """The held-out spans; the whole record where none was held out."""
+    return diagnosis.pictures.held_out or ((0.0, diagnosis.duration),)
+
+
+def violated(diagnosis: Diagnosis) -> tuple[Spans, ...]:
+    """The spans in which the first location departs, unless that is nearly all the time."""
+    when = diagnosis.location[0].when if diagnosis.location else ()
+    covered = sum(end - start for start, end in when)
+    if not when or covered > MOST_OF_IT * diagnosis.duration:
+        return ()
+    return (Spans(when, "where the model departs"),)

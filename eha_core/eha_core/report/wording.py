@@ -1,0 +1,129 @@
+"""The words that the account and the page share."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from math import isfinite
+
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.quantities import quantity
+
+VERDICT_TITLES = {
+    "consistent": "Nothing is missing",
+    "parameters": "Parameters differ",
+    "missing_physics": "Physics is missing",
+    "ambiguous": "Physics is missing, and more than one cause fits",
+    "unknown_physics": "Unknown physics",
+}
+
+_CHANNEL_TITLES = {
+    "voltage_command": "voltage command",
+    "current": "coil current",
+    "spool": "spool position",
+    "flow_a": "flow into chamber 1",
+    "flow_b": "flow out of chamber 2",
+    "pressure_a": "pressure of chamber 1",
+    "pressure_b": "pressure of chamber 2",
+    "supply_pressure": "supply pressure",
+    "position": "position",
+    "velocity": "velocity",
+    "force": "force",
+}
+
+EQUATION_TITLES = {
+    "force": "Force balance of the piston",
+    "continuity_a": "Continuity of chamber 1",
+    "continuity_b": "Continuity of chamber 2",
+}
+
+SITE_TITLES = {
+    "command": "between command and coil",
+    "spool": "between coil current and spool",
+    "orifice": "in the valve's flow",
+    "supply": "in the supply or return line",
+    "chamber": "in the chambers' continuity",
+    "force": "in the piston's force balance",
+    "sensor": "in a sensor",
+    "schedule": "in a parameter that changes in time",
+}
+
+VARIABLE_UNITS = {
+    "position": "m",
+    "velocity": "m/s",
+    "spool_position": "A",
+    "pressure_a": "Pa",
+    "pressure_b": "Pa",
+}
+
+LAW_AXES = {
+    ("force", "velocity"): ("force on the piston", "N", "m/s"),
+    ("force", "position"): ("force on the piston", "N", "m"),
+    ("force", "pressure difference"): ("force on the piston", "N", "Pa"),
+    ("force", "time"): ("force on the piston", "N", "s"),
+    ("orifice", "spool position"): ("opening beyond the spool's position", "A", "A"),
+    ("chamber", "pressure difference"): ("flow from chamber 1 to 2", "m^3/s", "Pa"),
+}
+"""What a recovered law gives, its unit, and the unit of what it is over."""
+
+
+def channel_title(name: str) -> str:
+    """A channel in an engineer's words."""
+    return _CHANNEL_TITLES.get(name, words(name))
+
+
+def channels_listed(names: Sequence[str]) -> str:
+    """Channels as a sentence lists them, a pair of chambers as one."""
+    pairs = {"pressure_a": ("pressure_b", "both chamber pressures"), "flow_a": ("flow_b", "both chamber flows")}
+    second = {other for name, (other, _) in pairs.items() if name in names}
+    titles = [
+        pairs[name][1] if name in pairs and pairs[name][0] in names else channel_title(name)
+        for name in names
+        if name not in second
+    ]
+    return listed(titles)
+
+
+def variable_title(name: str) -> str:
+    """A state of the model in an engineer's words."""
+    return channel_title(name) if name in _CHANNEL_TITLES else words(name)
+
+
+def plain(text: str) -> str:
+    """Text with channel names replaced by an engineer's words."""
+    names = r"\b(pressure_[ab]|flow_[ab]|voltage_command|supply_pressure)\b"
+    return re.sub(names, lambda one: channel_title(one[0]), text)
+
+
+def words(name: str) -> str:
+    """An identifier as words."""
+    return name.replace("_", " ").replace(".", ": ")
+
+
+def listed(items: Sequence[str]) -> str:
+    """Items as a sentence lists them: "a, b and c"."""
+    return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}" if items else ""
+
+
+def span(seconds: tuple[float, float]) -> str:
+    """A span of time."""
+    return f"{seconds[0]:.1f} s to {seconds[1]:.1f} s"
+
+
+def sentence(text: str) -> str:
+    """Text with a capital letter and a full stop."""
+    return f"{text[:1].upper()}{text[1:]}{'' if text.endswith(('.', '!', '?')) else '.'}" if text else ""
+
+
+def told_errors(diagnosis: Diagnosis, first: str, second: str, means: str) -> str:
+    """What a step does to the error of the position on held-out data, in words."""
+    fits = diagnosis.held_out or diagnosis.training
+    name = "position" if "position" in fits else next(iter(fits), "")
+    if not name or not isfinite(getattr(fits[name], second)):
+        return ""
+    unit, fit = CHANNEL_KINDS[name].unit, fits[name]
+    return (
+        f"{means} takes the error of the {channel_title(name)} from {quantity(getattr(fit, first), unit)} to"
+        f" {quantity(getattr(fit, second), unit)} RMS; the noise is {quantity(fit.noise, unit)}"
+    )
