@@ -1,0 +1,1 @@
+"""The nodes of the virtual actuator: simulator, reference generator and monitor."""

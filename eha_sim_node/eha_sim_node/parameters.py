@@ -1,0 +1,127 @@
+"""Described ROS parameters: one row each, checked at the start and when they change, refused in one line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from eha_core.errors import EhaError, ParameterError
+from eha_core.parameter import Parameter as PlantParameter
+
+Value = Any  # bool, int, float or str: whatever the row's default is
+_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service", "qos_overrides.")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One parameter: its default, whose type is its own, meaning with unit, range, and whether it may change."""
+
+    name: str
+    default: Value
+    meaning: str
+    lower: float | None = None
+    upper: float | None = None
+    fixed: bool = False
+    choices: tuple[str, ...] = ()
+
+    def convert(self, value: object) -> Value:
+        """Return the value in the parameter's type, or raise ParameterError.
+
+        A whole number, or a number that YAML takes for text (`1e-10` has no dot), is taken where a float is asked for.
+        """
+        kind = type(self.default)
+        if kind is float and isinstance(value, int | float | str) and not isinstance(value, bool):
+            with suppress(ValueError):
+                value = float(value)
+        if type(value) is not kind:
+            raise ParameterError(f"{self.name} = {value!r} is no {kind.__name__}; {self.meaning}")
+        return self._check(value)
+
+    def _check(self, value: Value) -> Value:
+        if self.choices and value not in self.choices:
+            raise ParameterError(f"{self.name} = {value!r} is unknown; give one of {', '.join(self.choices)}")
+        if isinstance(value, float) and not isfinite(value):
+            raise ParameterError(f"{self.name} = {value} is not finite; {self.meaning}")
+        bounded = isinstance(value, int | float) and self.lower is not None and self.upper is not None
+        if bounded and not self.lower <= value <= self.upper:
+            raise ParameterError(f"{self.name} = {value:g} is out of range; give {self.lower:g} to {self.upper:g}")
+        return value
+
+    def descriptor(self) -> ParameterDescriptor:
+        """Return what `ros2 param describe` shows and rqt_reconfigure makes sliders from."""
+        descriptor = ParameterDescriptor(name=self.name, description=self.meaning, read_only=self.fixed)
+        descriptor.additional_constraints = f"one of {', '.join(self.choices)}" if self.choices else ""
+        if self.lower is not None and self.upper is not None and isfinite(self.lower) and isfinite(self.upper):
+            if isinstance(self.default, float):
+                bounds = FloatingPointRange(from_value=float(self.lower), to_value=float(self.upper), step=0.0)
+                descriptor.floating_point_range = [bounds]
+            else:
+                whole = IntegerRange(from_value=int(self.lower), to_value=int(self.upper), step=1)
+                descriptor.integer_range = [whole]
+        return descriptor
+
+
+def plant_row(name: str, parameter: PlantParameter) -> Row:
+    """Return the ROS parameter of a plant parameter, under its full name."""
+    meaning = f"{parameter.meaning} {parameter.symbol} [{parameter.unit}]; {parameter.source}"
+    return Row(name, float(parameter.nominal), meaning, parameter.lower, parameter.upper)
+
+
+class ParameterSet:
+    """The parameters of one node.
+
+    Values given at the start (command line, parameters file) are checked before anything is declared: unknown names,
+    wrong types and values out of range raise ParameterError. The node must have been made with
+    `automatically_declare_parameters_from_overrides=True`, which is what brings unknown names to light.
+    """
+
+    def __init__(self, node: Node, rows: Iterable[Row]) -> None:
+        self._node = node
+        self._rows = {row.name: row for row in rows}
+        self.values: dict[str, Value] = {row.name: row.default for row in self._rows.values()}
+        given = node.get_parameters_by_prefix("")
+        for name, parameter in given.items():
+            if name in self._rows:
+                self.values[name] = self._rows[name].convert(parameter.value)
+            elif not name.startswith(_OF_EVERY_NODE):
+                raise ParameterError(f"parameter {name} is unknown; `ros2 param list` shows what {node.get_name()} has")
+        self._given = [name for name in given if name in self._rows]
+
+    def declare(self, apply: Callable[[Mapping[str, Value]], None]) -> None:
+        """Declare the parameters; from now on `apply` gets each request's changes and raises EhaError to refuse."""
+        for name in self._given:
+            self._node.undeclare_parameter(name)
+        for name, row in self._rows.items():
+            self._node.declare_parameter(name, self.values[name], row.descriptor(), ignore_override=True)
+        self._apply = apply
+        self._node.add_pre_set_parameters_callback(self._convert)
+        self._node.add_on_set_parameters_callback(self._on_set)
+
+    def _convert(self, parameters: list[Parameter]) -> list[Parameter]:
+        converted = []
+        for parameter in parameters:
+            row = self._rows.get(parameter.name)
+            try:
+                value = row.convert(parameter.value) if row else None
+            except ParameterError:
+                value = None  # refused with its reason by the checks that follow
+            converted.append(parameter if value is None else Parameter(parameter.name, value=value))
+        return converted
+
+    def _on_set(self, parameters: list[Parameter]) -> SetParametersResult:
+        changes = {parameter.name: parameter.value for parameter in parameters if parameter.name in self._rows}
+        try:
+            checked = {name: self._rows[name].convert(value) for name, value in changes.items()}
+            if checked:
+                self._apply(checked)
+        except EhaError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        self.values.update(checked)
+        return SetParametersResult(successful=True)

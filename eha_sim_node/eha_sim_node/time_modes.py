@@ -1,0 +1,204 @@
+"""Who drives the simulator's time: the wall clock, at its pace or another, or the commands."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Protocol
+
+from rclpy.clock import Clock, ClockType
+
+from eha_core.errors import EhaError
+from eha_core.realtime import NANOSECONDS, LockstepGate, Pacer
+from eha_sim_node.parameters import Value
+
+if TYPE_CHECKING:
+    from eha_sim_node.sim import SimNode
+
+_LARGEST_CLOCK_STEP = NANOSECONDS // 10
+_PEER_CHECK = 0.05  # s
+
+
+class StepRefused(EhaError):
+    """The simulator cannot step now."""
+
+
+class TimeMode(Protocol):
+    """What the simulator node asks of a time mode."""
+
+    def stamp(self) -> int:
+        """Return the time that the plant's state belongs to, as headers carry it [ns]."""
+
+    def command_arrived(self) -> None:
+        """Note that a command came."""
+
+    def pause(self) -> None:
+        """Stop time."""
+
+    def resume(self) -> None:
+        """Let time run."""
+
+    def step(self, steps: int) -> tuple[str, int]:
+        """Take so many plant steps while paused; return what was done and how many are still to come."""
+
+    def set_factor(self, factor: float) -> None:
+        """Change how fast time runs."""
+
+    def report(self) -> tuple[dict[str, object], list[str]]:
+        """Return values and troubles for /diagnostics."""
+
+
+def _refuse_zero(steps: int) -> None:
+    if steps == 0:
+        raise StepRefused("0 steps asked for; give at least 1")
+
+
+class PacedTime:
+    """The monotonic clock drives time; in mode `scaled` at a factor, with stamps in simulated time and /clock."""
+
+    def __init__(self, node: SimNode, settings: Mapping[str, Value]) -> None:
+        self._node = node
+        self._stamps_are_simulated = settings["time_mode"] == "scaled"
+        factor = settings["real_time_factor"] if self._stamps_are_simulated else 1.0
+        self._pacer = Pacer(node.period, node.period, factor, settings["catch_up_limit"])
+        self._paused = settings["start_paused"]
+        self._offset = time.time_ns() - time.monotonic_ns()
+        self._elapsed_at_origin = 0
+        self._clock_steps = 0
+        self._timer = node.create_timer(node.period, self._on_tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._started = False
+
+    def _on_tick(self) -> None:
+        if self._paused:
+            return
+        if not self._started:
+            self.resume()  # counting starts with the first tick, not with the node's construction
+            return
+        for _ in range(self._pacer.due()):
+            self._node.advance()
+
+    def stamp(self) -> int:
+        """Simulated time, or the wall-clock time at which the state was due: exact periods without jitter."""
+        elapsed = self._node.elapsed
+        if self._stamps_are_simulated:
+            return elapsed
+        offset = time.time_ns() - time.monotonic_ns()
+        if abs(offset - self._offset) > _LARGEST_CLOCK_STEP:
+            self._clock_steps += 1
+            self._offset = offset
+        return self._offset + self._pacer.origin + elapsed - self._elapsed_at_origin
+
+    def command_arrived(self) -> None:
+        """Nothing to do: the next period takes the voltage in force."""
+
+    def pause(self) -> None:
+        """Stop time."""
+        self._paused = True
+
+    def resume(self) -> None:
+        """Let time run from now."""
+        self._started = True
+        self._paused = False
+        self._restart()
+
+    def _restart(self) -> None:
+        self._pacer.restart()
+        self._elapsed_at_origin = self._node.elapsed
+
+    def step(self, steps: int) -> tuple[str, int]:
+        """Take the steps at once."""
+        _refuse_zero(steps)
+        if not self._paused:
+            raise StepRefused("the simulator is running; pause it first")
+        self._node.step_plant(steps)
+        return f"{steps} steps taken", 0
+
+    def set_factor(self, factor: float) -> None:
+        """Change how fast time runs in mode `scaled`; in real time there is nothing to scale."""
+        if self._stamps_are_simulated:
+            self._pacer.factor = factor
+
+    def report(self) -> tuple[dict[str, object], list[str]]:
+        """Lateness, overruns, lost time and the real-time factor."""
+        health = self._pacer.report()
+        values: dict[str, object] = {
+            "paused": self._paused,
+            "periods": health.periods,
+            "overruns": health.overruns,
+            "lost_time": health.lost_time,
+            "real_time_factor": health.real_time_factor,
+            "lateness_mean": health.lateness_mean,
+            "lateness_p99": health.lateness_p99,
+            "lateness_max": health.lateness_max,
+            "clock_steps": self._clock_steps,
+        }
+        return values, []
+
+
+class Lockstep:
+    """Commands drive time: each period waits for exactly one command, and stamps are simulated time."""
+
+    def __init__(self, node: SimNode, settings: Mapping[str, Value]) -> None:
+        self._node = node
+        self._gate = LockstepGate()
+        if settings["start_paused"]:
+            self._gate.pause()
+        self._tick_published = False
+        self._timer = node.create_timer(_PEER_CHECK, self._check_peers, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _check_peers(self) -> None:
+        if self._gate.tick_wanted(*self._node.peers):
+            self._publish_tick()
+
+    def _publish_tick(self) -> None:
+        self._tick_published = True
+        self._node.publish_state()
+
+    def _take(self) -> None:
+        if not self._gate.take():
+            return
+        if not self._tick_published:
+            self._publish_tick()
+        self._node.advance()
+
+    def stamp(self) -> int:
+        """Simulated time."""
+        return self._node.elapsed
+
+    def command_arrived(self) -> None:
+        """Take the period that waited for this command."""
+        self._gate.command_arrived()
+        self._take()
+
+    def pause(self) -> None:
+        """Hold the command of the next period until time runs again."""
+        self._gate.pause()
+
+    def resume(self) -> None:
+        """Let periods pass as commands come."""
+        self._gate.resume()
+        self._take()
+
+    def step(self, steps: int) -> tuple[str, int]:
+        """Let so many steps pass as commands come."""
+        _refuse_zero(steps)
+        periods, rest = divmod(steps, self._node.steps_per_period)
+        if rest:
+            raise StepRefused(f"{steps} steps are no whole number of periods of {self._node.steps_per_period} steps")
+        if not self._gate.paused:
+            raise StepRefused("the simulator is running; pause it first")
+        self._gate.allow(periods)
+        self._take()
+        return f"{steps} steps, each period when its command comes", self._gate.allowance * self._node.steps_per_period
+
+    def set_factor(self, factor: float) -> None:
+        """Nothing to do: commands set the pace."""
+
+    def report(self) -> tuple[dict[str, object], list[str]]:
+        """Whether a command is awaited, and commands that came twice for a step."""
+        values: dict[str, object] = {
+            "paused": self._gate.paused,
+            "waiting": self._gate.waiting,
+            "surplus_commands": self._gate.surplus,
+        }
+        return values, []

@@ -1,0 +1,158 @@
+"""The twin node: a model beside a running rig, on the same command, that says which of its equations the rig leaves."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import rclpy.node
+from rclpy.clock import Clock, ClockType
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import FluidPressure, JointState
+from std_msgs.msg import Float64
+
+from eha_core.errors import ParameterError
+from eha_core.parameters import catalogue, load_parameters
+from eha_core.realtime import NANOSECONDS
+from eha_core.twin import Comparison, Settings, Twin
+from eha_interfaces.msg import ActuatorState
+from eha_sim_node.diagnostics import Diagnostics, Report
+from eha_sim_node.parameters import ParameterSet, Row, Value, plant_row
+from eha_sim_node.running import run
+from eha_sim_node.stamps import nanoseconds_of
+
+NAME = "eha_twin"
+_PERIOD = 0.05  # s between two looks whether a window is complete
+_SILENCE = 5.0  # s beyond the window's length without a comparison until that is said
+_QUALITY = QoSProfile(depth=10_000)  # a simulator in lockstep may be faster than the twin for a while
+OWN_ROWS = (
+    Row("model", "", "parameters file of the model, as the simulator takes it (fitted.yaml); empty: nominal",
+        fixed=True),
+    Row("step_size", 1e-4, "step of the model [s]", 1e-6, 1e-3, fixed=True),
+    Row("window", 1.0, "time after which the model is put back to the measured state [s]", 0.2, 3600.0, fixed=True),
+    Row("threshold", 5.0, "how many times the noise an equation may be off [-]", 1.0, 1e6, fixed=True),
+    Row("position_noise", 10e-6, "least noise of the position that is reckoned with [m]", 1e-12, 1.0, fixed=True),
+    Row("pressure_noise", 1e4, "least noise of the pressures that is reckoned with [Pa]", 1e-3, 1e8, fixed=True),
+    Row("command_timeout", 0.5, "time without a command until the rig's drive falls to zero [s]; 0: never",
+        0.0, 3600.0, fixed=True),
+    Row("command_limit", 10.0, "largest voltage that the rig's drive takes, either sign [V]", 0.0, 1000.0, fixed=True),
+    Row("diagnostics_rate", 1.0, "rate of /diagnostics, in wall-clock time [Hz]", 0.1, 100.0, fixed=True),
+)  # fmt: skip
+_SETTINGS = ("window", "threshold", "position_noise", "pressure_noise", "command_timeout", "command_limit")
+
+
+class TwinNode(rclpy.node.Node):
+    """The rig's topics -> twin -> /diagnostics."""
+
+    def __init__(self) -> None:
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        self._settings = ParameterSet(self, (*OWN_ROWS, *self._plant_rows()))
+        own = self._settings.values
+        parameters = {name: own[name] for name in catalogue()}
+        self._twin = Twin(parameters, own["step_size"], Settings(**{name: own[name] for name in _SETTINGS}))
+        self._settings.declare(self._apply)
+        self._latest: Comparison | None = None
+        self._windows = 0
+        self._compared_at = time.monotonic()
+        self._patience = own["window"] + _SILENCE
+        self.create_subscription(Float64, "voltage_command", self._on_command, _QUALITY)
+        self.create_subscription(JointState, "joint_states", self._on_joint_states, _QUALITY)
+        self.create_subscription(ActuatorState, "state", self._on_state, _QUALITY)
+        for chamber in "ab":
+            self.create_subscription(
+                FluidPressure, f"chamber_{chamber}/pressure", self._pressure_receiver(chamber), _QUALITY
+            )
+        self.create_timer(_PERIOD, self._on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._diagnostics = Diagnostics(self, own["diagnostics_rate"], self._report)
+        self.get_logger().info(f"beside the rig with {own['model'] or 'the parameters given'}")
+
+    def _plant_rows(self) -> list[Row]:
+        """The plant's parameters, whose defaults are those of the model's file."""
+        given = self.get_parameter("model").value if self.has_parameter("model") else ""
+        if not isinstance(given, str):
+            raise ParameterError(f"model = {given!r} is no path of a parameters file")
+        values = load_parameters(given) if given else {}
+        rows = [plant_row(name, parameter) for name, parameter in catalogue().items()]
+        return [replace(row, default=values.get(row.name, row.default)) for row in rows]
+
+    def _apply(self, changes: Mapping[str, Value]) -> None:
+        plant_changes = {name: value for name, value in changes.items() if name in catalogue()}
+        if len(plant_changes) < len(changes):
+            raise ParameterError(f"{', '.join(changes.keys() - plant_changes)} cannot change while the twin runs")
+        self._twin.set_parameters(plant_changes)
+
+    def _on_command(self, message: Float64, info: Mapping[str, Any]) -> None:
+        self._twin.command(_published(info), message.data)
+
+    def _on_state(self, message: ActuatorState) -> None:
+        self._twin.applied(nanoseconds_of(message.header.stamp), message.voltage)
+
+    def _on_joint_states(self, message: JointState, info: Mapping[str, Any]) -> None:
+        if message.position:
+            self._twin.position(nanoseconds_of(message.header.stamp), message.position[0], _published(info))
+
+    def _pressure_receiver(self, chamber: str) -> Callable[[FluidPressure], None]:
+        def receive(message: FluidPressure) -> None:
+            gauge = message.fluid_pressure - self._twin.parameters["atmospheric_pressure"]
+            self._twin.pressure(chamber, nanoseconds_of(message.header.stamp), gauge)
+
+        return receive
+
+    def _on_timer(self) -> None:
+        comparison = self._twin.compare()
+        if comparison is None:
+            return
+        before = set(self._latest.departs) if self._latest else set()
+        self._latest = comparison
+        self._windows += 1
+        self._compared_at = time.monotonic()
+        if set(comparison.departs) == before:
+            return
+        self._diagnostics.publish()  # news does not wait for the next report
+        if comparison.departs:
+            self.get_logger().warning("; ".join(_departures(comparison)))
+        else:
+            self.get_logger().info("the rig follows the model again")
+
+    def _report(self) -> Report:
+        troubles = []
+        silent = time.monotonic() - self._compared_at
+        if silent > self._patience:
+            troubles.append(f"nothing to compare for {silent:.0f} s; joint_states must come without gaps")
+        values: dict[str, object] = {"windows": self._windows}
+        if self._latest:
+            latest = self._latest
+            troubles += _departures(latest)
+            values |= {"window_start": _stamp(latest.start), "window_end": _stamp(latest.end)}
+            values |= {f"rmse {name}": error for name, error in latest.errors.items()}
+            values |= {f"times the noise: {name}": ratio for name, ratio in latest.ratios.items()}
+            values |= {f"departs since: {name}": _stamp(since) for name, since in latest.departs.items()}
+        return Report(values, troubles)
+
+
+def _departures(comparison: Comparison) -> list[str]:
+    """One line for each equation that departs, the most first."""
+    return [
+        f"{name} departs by {comparison.ratios[name]:.3g} times the noise since {_stamp(since)} s"
+        for name, since in comparison.departs.items()
+    ]
+
+
+def _stamp(nanoseconds: int) -> str:
+    return f"{nanoseconds / NANOSECONDS:.3f}"
+
+
+def _published(info: Mapping[str, Any]) -> int:
+    return int(info["source_timestamp"]) or time.time_ns()
+
+
+def main() -> int:
+    """Run the twin node."""
+    return run(TwinNode, NAME)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
