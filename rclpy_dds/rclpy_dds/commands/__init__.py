@@ -1,0 +1,1 @@
+"""The `ros2` command: one folder per command, one file per verb."""

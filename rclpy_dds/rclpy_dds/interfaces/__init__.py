@@ -1,0 +1,1 @@
+"""Message and service types: their definitions, Python classes and CDR codecs."""

@@ -1,0 +1,1 @@
+"""YAML launch files: what they describe, and the processes they start."""

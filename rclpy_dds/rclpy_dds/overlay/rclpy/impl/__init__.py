@@ -1,0 +1,1 @@
+"""Parts of rclpy that other packages reach into by this path."""

@@ -1,0 +1,337 @@
+"""A node's parameters: declaring, reading, setting, describing."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from rcl_interfaces.msg import (
+    ParameterDescriptor,
+    ParameterEvent,
+    ParameterType,
+    ParameterValue,
+    SetParametersResult,
+)
+
+from rclpy.exceptions import (
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    ParameterAlreadyDeclaredException,
+    ParameterImmutableException,
+    ParameterNotDeclaredException,
+)
+from rclpy.node_parameter_reading import NodeParameterReading
+from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
+from rclpy.parameter_ranges import float_problem, integer_problem
+from rclpy.validate_parameter_name import validate_parameter_name
+
+_OK = {"successful": True, "reason": ""}
+
+
+class NodeParameters(NodeParameterReading):
+    """Parameters, mixed into Node."""
+
+    PARAM_REL_TOL = 1e-6
+    _parameter_event_publisher: Any = None
+
+    def _init_parameters(self, allow_undeclared: bool) -> None:
+        self._parameters: dict[str, Parameter] = {}
+        self._descriptors: dict[str, Any] = {}
+        self._parameter_overrides: dict[str, Parameter] = {}
+        self._allow_undeclared_parameters = allow_undeclared
+        self._pre_set_parameters_callbacks: list[Callable[[list[Parameter]], list[Parameter]]] = []
+        self._on_set_parameters_callbacks: list[Callable[[list[Parameter]], Any]] = []
+        self._post_set_parameters_callbacks: list[Callable[[list[Parameter]], None]] = []
+
+    # Declaring
+
+    def declare_parameter(
+        self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
+    ) -> Parameter:
+        """Declare one parameter and return it.
+
+        Args:
+            name: with dots for groups.
+            value: the default, or a Parameter.Type when there is none.
+            descriptor: rcl_interfaces/msg/ParameterDescriptor: description, range, read-only.
+            ignore_override: start with `value` whatever the command line says.
+
+        Raises:
+            ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterValueException,
+            InvalidParameterTypeException: as their names say.
+        """
+        if value is None and descriptor is None:
+            return self.declare_parameters("", [(name,)], ignore_override)[0]
+        return self.declare_parameters("", [(name, value, descriptor or ParameterDescriptor())], ignore_override)[0]
+
+    def declare_parameters(
+        self, namespace: str, parameters: Sequence[tuple[Any, ...]], ignore_override: bool = False
+    ) -> list[Parameter]:
+        """Declare several parameters, as (name), (name, value) or (name, value, descriptor).
+
+        Raises:
+            What declare_parameter raises, and TypeError or ValueError for a malformed tuple.
+        """
+        made: list[Parameter] = []
+        descriptors: dict[str, Any] = {}
+        for index, entry in enumerate(parameters):
+            name, value, descriptor = self._read_declaration(namespace, index, entry)
+            if not ignore_override and name in self._parameter_overrides:
+                value = self._parameter_overrides[name].value
+            if isinstance(value, ParameterValue):
+                raise ValueError("Cannot declare a parameter from a ParameterValue message; pass a Python value")
+            made.append(Parameter(name, value=value))
+            descriptors[name] = descriptor
+        known = [parameter.name for parameter in made if parameter.name in self._parameters]
+        if known:
+            raise ParameterAlreadyDeclaredException(known)
+        for parameter in made:
+            result = self._set_atomically([parameter], descriptors, allow_not_set_type=True)
+            if result.successful:
+                continue
+            if result.reason.startswith("Wrong parameter type"):
+                raise InvalidParameterTypeException(parameter, Parameter.Type(descriptors[parameter.name].type).name)
+            raise InvalidParameterValueException(parameter.name, parameter.value, result.reason)
+        return [self._parameters[parameter.name] for parameter in made]
+
+    def _read_declaration(self, namespace: str, index: int, entry: tuple[Any, ...]) -> tuple[str, Any, Any]:
+        if len(entry) < 1 or len(entry) > 3:
+            raise TypeError(
+                f"Invalid parameter tuple length at index {index} in parameters list: {entry}; "
+                "expecting length between 1 and 3"
+            )
+        name = entry[0]
+        if not isinstance(name, str):
+            raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
+        if namespace:
+            name = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}"
+        validate_parameter_name(name)
+        value = entry[1] if len(entry) > 1 else None
+        descriptor = entry[2] if len(entry) > 2 else ParameterDescriptor()
+        if not isinstance(descriptor, ParameterDescriptor):
+            raise TypeError(
+                f"Third element {descriptor} at index {index} in parameters list is not a ParameterDescriptor."
+            )
+        if len(entry) == 1:
+            warnings.warn(
+                f"when declaring parameter named '{name}', "
+                "declaring a parameter only providing its name is deprecated. "
+                'You have to either:\n\t- Pass a name and a default value different to "PARAMETER NOT SET"'
+                " (and optionally a descriptor).\n\t- Pass a name and a parameter type.\n"
+                "\t- Pass a name and a descriptor with `dynamic_typing=True",
+                stacklevel=4,
+            )
+            descriptor.dynamic_typing = True
+        return name, self._fix_type(name, value, descriptor), descriptor
+
+    @staticmethod
+    def _fix_type(name: str, value: Any, descriptor: Any) -> Any:
+        """Write the static type into the descriptor and return the default value."""
+        if isinstance(value, Parameter.Type):
+            if value is Parameter.Type.NOT_SET:
+                raise ValueError(f"Cannot declare parameter {{{name}}} as statically typed of type NOT_SET")
+            if descriptor.dynamic_typing:
+                raise ValueError(
+                    f"When declaring parameter {{{name}}} passing a descriptor with"
+                    "`dynamic_typing=True` is not allowed when the parameter type is provided"
+                )
+            descriptor.type = value.value
+            return None
+        if isinstance(value, ParameterValue):
+            if not descriptor.dynamic_typing:
+                descriptor.type = value.type
+            value = parameter_value_to_python(value)
+        elif not descriptor.dynamic_typing:
+            descriptor.type = Parameter.Type.from_parameter_value(value).value
+        if not descriptor.dynamic_typing and descriptor.type == ParameterType.PARAMETER_NOT_SET:
+            raise ValueError("Cannot declare a statically typed parameter with default value of type PARAMETER_NOT_SET")
+        return value
+
+    def undeclare_parameter(self, name: str) -> None:
+        """Forget a parameter.
+
+        Raises:
+            ParameterNotDeclaredException: there is none. ParameterImmutableException: it is read-only.
+        """
+        if name not in self._parameters:
+            raise ParameterNotDeclaredException(name)
+        if self._descriptors[name].read_only:
+            raise ParameterImmutableException(name)
+        del self._parameters[name]
+        del self._descriptors[name]
+
+    # Setting
+
+    def set_parameters(self, parameter_list: list[Parameter]) -> list[Any]:
+        """Set parameters one by one and return a result for each.
+
+        Raises:
+            ParameterNotDeclaredException: one is not declared and may not be left so; those before it are set.
+        """
+        return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> Any:
+        """Set all parameters or none and return the result.
+
+        Raises:
+            ParameterNotDeclaredException: one is not declared and may not be left so.
+        """
+        self._check_undeclared(parameter_list)
+        return self._set_with_pre_callbacks(parameter_list)
+
+    def _set_with_pre_callbacks(self, parameter_list: list[Parameter]) -> Any:
+        modified = parameter_list
+        for callback in self._pre_set_parameters_callbacks:
+            modified = callback(modified)
+        if self._pre_set_parameters_callbacks:
+            if not modified:
+                return SetParametersResult(
+                    successful=False,
+                    reason="parameter list cannot be empty, this might be due to pre_set_parameters_callback"
+                    " modifying the original parameters list.",
+                )
+            self._check_undeclared(modified)
+        return self._set_atomically(modified)
+
+    def _check_undeclared(self, parameter_list: list[Parameter]) -> None:
+        if not all(isinstance(parameter, Parameter) for parameter in parameter_list):
+            raise TypeError("parameter must be instance of type 'rclpy.parameter.Parameter'")
+        undeclared = [parameter.name for parameter in parameter_list if parameter.name not in self._parameters]
+        if undeclared and not self._allow_undeclared_parameters:
+            raise ParameterNotDeclaredException(undeclared)
+
+    def _set_atomically(
+        self,
+        parameter_list: list[Parameter],
+        descriptors: dict[str, Any] | None = None,
+        allow_not_set_type: bool = False,
+    ) -> Any:
+        if descriptors is not None:
+            result = self._apply_descriptors(parameter_list, descriptors, False)
+        else:
+            implicit = [p for p in parameter_list if p.name not in self._descriptors]
+            for parameter in implicit:
+                self._descriptors[parameter.name] = ParameterDescriptor(name=parameter.name, dynamic_typing=True)
+            result = self._apply_descriptors(parameter_list, self._descriptors, True)
+            if not result.successful:
+                for parameter in implicit:
+                    del self._descriptors[parameter.name]
+        if not result.successful:
+            return result
+        for callback in self._on_set_parameters_callbacks:
+            result = callback(parameter_list)
+            if not result.successful:
+                if descriptors is None:
+                    for parameter in implicit:
+                        del self._descriptors[parameter.name]
+                return result
+        event = self._store(parameter_list, descriptors, allow_not_set_type)
+        for post_callback in self._post_set_parameters_callbacks:
+            post_callback(parameter_list)
+        event.stamp = self._clock.now().to_msg()
+        self._parameter_event_publisher.publish(event)
+        return SetParametersResult(**_OK)
+
+    def _store(
+        self, parameter_list: list[Parameter], descriptors: dict[str, Any] | None, allow_not_set_type: bool
+    ) -> Any:
+        event = ParameterEvent(node=self.get_fully_qualified_name())
+        for parameter in parameter_list:
+            name = parameter.name
+            known = name in self._parameters
+            if descriptors is not None:
+                self._descriptors[name] = descriptors[name]
+            if parameter.type_ is Parameter.Type.NOT_SET and not allow_not_set_type:
+                if known:
+                    event.deleted_parameters.append(Parameter(name, Parameter.Type.NOT_SET).to_parameter_msg())
+                    del self._parameters[name]
+                self._descriptors.pop(name, None)
+                continue
+            unset = not known or self._parameters[name].type_ is Parameter.Type.NOT_SET
+            (event.new_parameters if unset else event.changed_parameters).append(parameter.to_parameter_msg())
+            self._parameters[name] = parameter
+        return event
+
+    def _apply_descriptors(
+        self, parameter_list: list[Parameter], descriptors: dict[str, Any], check_read_only: bool
+    ) -> Any:
+        for parameter in parameter_list:
+            if parameter.name in descriptors:
+                result = self._apply_descriptor(parameter, descriptors[parameter.name], check_read_only)
+                if not result.successful:
+                    return result
+        return SetParametersResult(**_OK)
+
+    def _apply_descriptor(self, parameter: Parameter, descriptor: Any, check_read_only: bool) -> Any:
+        descriptor.name = parameter.name
+        reason, kind = "", parameter.type_
+        if check_read_only and descriptor.read_only:
+            reason = f"Trying to set a read-only parameter: {parameter.name}."
+        elif descriptor.dynamic_typing:
+            descriptor.type = kind.value
+        elif kind is Parameter.Type.NOT_SET and parameter.name in self._parameters:
+            reason = "Static parameter cannot be undeclared"
+        elif kind is not Parameter.Type.NOT_SET and kind.value != descriptor.type:
+            reason = f"Wrong parameter type, expected '{Parameter.Type(descriptor.type)}' got '{kind}'"
+        if not reason and kind is Parameter.Type.INTEGER and descriptor.integer_range:
+            reason = integer_problem(parameter, descriptor.integer_range[0])
+        if not reason and kind is Parameter.Type.DOUBLE and descriptor.floating_point_range:
+            reason = float_problem(parameter, descriptor.floating_point_range[0], self.PARAM_REL_TOL)
+        return SetParametersResult(successful=not reason, reason=reason)
+
+    # Callbacks
+
+    def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter]], list[Parameter]]) -> None:
+        """Have a function change the list before it is checked; the newest runs first."""
+        self._pre_set_parameters_callbacks.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], Any]) -> None:
+        """Have a function accept or refuse values; the newest runs first."""
+        self._on_set_parameters_callbacks.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter]], None]) -> None:
+        """Have a function called after values were set; the newest runs first."""
+        self._post_set_parameters_callbacks.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: Callable[[list[Parameter]], list[Parameter]]) -> None:
+        """Remove such a function; ValueError when it is not there."""
+        self._pre_set_parameters_callbacks.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], Any]) -> None:
+        """Remove such a function; ValueError when it is not there."""
+        self._on_set_parameters_callbacks.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: Callable[[list[Parameter]], None]) -> None:
+        """Remove such a function; ValueError when it is not there."""
+        self._post_set_parameters_callbacks.remove(callback)
+
+    # Describing
+
+    def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
+        """Replace a parameter's descriptor, and its value where one is given; returns the value.
+
+        Raises:
+            ParameterNotDeclaredException, ParameterImmutableException, ParameterAlreadyDeclaredException,
+            InvalidParameterValueException: as their names say.
+        """
+        if name not in self._parameters:
+            if self._allow_undeclared_parameters:
+                return self.get_parameter(name).get_parameter_value()
+            raise ParameterNotDeclaredException(name)
+        if self.describe_parameter(name).read_only:
+            raise ParameterImmutableException(name)
+        current = self.get_parameter(name)
+        wanted = current
+        if alternative_value is not None:
+            wanted = Parameter(
+                name, Parameter.Type(alternative_value.type), parameter_value_to_python(alternative_value)
+            )
+        if not descriptor.dynamic_typing:
+            descriptor.type = wanted.type_.value
+        result = self._apply_descriptor(wanted, descriptor, check_read_only=False)
+        if not result.successful:
+            raise InvalidParameterValueException(name, wanted.value, result.reason)
+        self._descriptors[name] = descriptor
+        self._parameters[name] = wanted
+        return wanted.get_parameter_value()

@@ -1,0 +1,3 @@
+"""Not offered by this layer."""
+
+raise ImportError("rclpy_dds does not offer service introspection; install ROS 2 for them (https://docs.ros.org)")
