@@ -1,0 +1,60 @@
+"""The benchmarks compare like with like: their peers solve the plant's own equations."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eha_core.cli import main
+from eha_core.plant import Plant
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(autouse=True)
+def benchmarks_importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The benchmarks are a package of the checkout's root, which is not installed."""
+    monkeypatch.setattr(sys, "path", [str(ROOT), *sys.path])
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+def test_c_program_solves_the_same_equations() -> None:
+    from benchmarks.plant_step import EVERY, STEP, compiled_reference
+
+    voltages = 20e-3 * np.sin(2.0 * np.pi * 3.0 * STEP * np.arange(20_000))
+    simulate = compiled_reference()
+    assert simulate is not None
+    rows = simulate(voltages)
+    trajectory = Plant(step_size=STEP).run(voltages, EVERY)
+    np.testing.assert_allclose(rows[:, 3], trajectory.position, rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(rows[:, 5], trajectory.pressure_a, rtol=0.0, atol=100.0)
+    np.testing.assert_allclose(rows[:, 6], trajectory.pressure_b, rtol=0.0, atol=100.0)
+
+
+def test_without_a_compiler_the_row_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    from benchmarks import plant_step
+
+    monkeypatch.setattr(plant_step.shutil, "which", lambda name: None)
+    monkeypatch.setattr(plant_step, "ROUNDS", 1)
+    step, real_time = plant_step.measure()
+    assert step.met is None
+    assert "cc" in step.note
+    assert real_time.met is not None
+
+
+def test_sleep_loop_measures_how_late_it_wakes() -> None:
+    from benchmarks.sleep_loop import lateness_p99
+
+    # A wake cannot come early, and no loop at 100 Hz on a machine that lives is a second late.
+    assert 0.0 <= lateness_p99(100.0, 0.2) < 1.0
+
+
+def test_run_too_short_to_measure_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench", "--seconds", "5"]) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert "30" in message

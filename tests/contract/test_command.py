@@ -1,0 +1,253 @@
+"""The `ros2` command, in processes of its own, with the spelling and output of ROS 2's."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from rcl_interfaces.msg import Log
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import Float64, String
+from std_srvs.srv import SetBool
+
+from contract.conftest import Graph, Program, only_layer
+
+ROS2 = shutil.which("ros2", path=os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", "")]))
+pytestmark = pytest.mark.skipif(ROS2 is None, reason="no ros2 command")
+
+
+LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Command:
+    """One call of `ros2`, running beside the test."""
+
+    def __init__(self, *arguments: str, cwd: Path | None = None) -> None:
+        self.process = subprocess.Popen(
+            [str(ROS2), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd
+        )
+
+    def result(self, timeout: float = 30.0) -> tuple[int, str, str]:
+        """Return exit status, output and errors."""
+        try:
+            output, errors = self.process.communicate(timeout=timeout)
+        finally:
+            if self.process.poll() is None:
+                self.process.kill()
+                self.process.communicate()
+        return self.process.returncode, output, errors
+
+
+def _run(graph: Graph | None, *arguments: str) -> tuple[int, str, str]:
+    """Run a command to its end while the test's nodes go on."""
+    command = Command(*arguments)
+    if graph is not None:
+        assert graph.spin_until(lambda: command.process.poll() is not None, 30.0)
+    return command.result()
+
+
+def test_lists_show_what_is_there(graph: Graph) -> None:
+    node = graph.node("sim", namespace="/rig")
+    node.create_publisher(Float64, "volts", 10)
+    status, output, _ = _run(graph, "topic", "list", "-t")
+    assert status == 0 and "/rig/volts [std_msgs/msg/Float64]" in output.splitlines()
+    assert "/rig/sim" in _run(graph, "node", "list")[1].splitlines()
+    assert "/rig/sim/set_parameters" in _run(graph, "service", "list")[1].splitlines()
+    information = _run(graph, "node", "info", "/rig/sim")[1]
+    assert "  Publishers:\n" in information and "    /rig/volts: std_msgs/msg/Float64\n" in information
+    assert "Publisher count: 1" in _run(graph, "topic", "info", "-v", "/rig/volts")[1]
+
+
+def test_echo_prints_yaml(graph: Graph) -> None:
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    graph.node("speaker").create_publisher(String, "word", latched).publish(String(data="Öl: 5"))
+    status, output, errors = _run(graph, "topic", "echo", "--once", "/word")
+    assert (status, output) == (0, "data: 'Öl: 5'\n---\n"), errors
+
+
+def test_pub_sends_the_number_asked_for(graph: Graph) -> None:
+    received: list[float] = []
+    graph.node("listener").create_subscription(Float64, "x", lambda message: received.append(message.data), 10)
+    status, output, _ = _run(graph, "topic", "pub", "-t", "3", "-r", "50", "/x", "std_msgs/msg/Float64", "{data: 1e-3}")
+    assert status == 0 and "publishing #3: std_msgs.msg.Float64(data=0.001)" in output
+    assert received == [0.001] * 3
+
+
+def test_hz_tells_the_rate(graph: Graph) -> None:
+    node = graph.node("speaker")
+    publisher = node.create_publisher(Float64, "x", 10)
+    node.create_timer(0.01, lambda: publisher.publish(Float64()))
+    command = Command("topic", "hz", "/x")
+    end = time.monotonic() + 6.0
+    graph.spin_until(lambda: time.monotonic() > end)
+    command.process.send_signal(signal.SIGINT)
+    output = command.result()[1]
+    rate = float(output.split("average rate: ")[1].split()[0])
+    assert rate == pytest.approx(100.0, rel=0.2)
+
+
+def test_parameters_are_set_got_and_described(graph: Graph) -> None:
+    node = graph.node("sim")
+    node.declare_parameter("leakage", 1e-12)
+    assert _run(graph, "param", "set", "/sim", "leakage", "1.0e-10")[:2] == (0, "Set parameter successful\n")
+    assert node.get_parameter("leakage").value == 1e-10
+    assert _run(graph, "param", "get", "/sim", "leakage")[1] == "Double value is: 1e-10\n"
+    assert "  leakage\n" in _run(graph, "param", "list", "/sim")[1]
+    assert "Parameter name: leakage\n  Type: double\n" in _run(graph, "param", "describe", "/sim", "leakage")[1]
+    errors = _run(graph, "param", "set", "/sim", "leakage", "text")[2]
+    assert errors.startswith("Setting parameter failed: Wrong parameter type")
+    assert _run(graph, "param", "get", "/nobody", "leakage")[::2] == (1, "Node not found\n")
+
+
+def test_a_service_is_called(graph: Graph) -> None:
+    def answer(request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        response.success, response.message = request.data, "set"
+        return response
+
+    graph.node("server").create_service(SetBool, "switch", answer)
+    status, output, _ = _run(graph, "service", "call", "/switch", "std_srvs/srv/SetBool", "{data: true}")
+    assert status == 0
+    assert "requester: making request: std_srvs.srv.SetBool_Request(data=True)" in output
+    assert "response:\nstd_srvs.srv.SetBool_Response(success=True, message='set')" in output
+
+
+def test_a_recording_is_made_described_and_played(graph: Graph, tmp_path: Path) -> None:
+    node = graph.node("speaker")
+    publisher = node.create_publisher(Float64, "x", 10)
+    sent: list[float] = []
+
+    def send() -> None:
+        sent.append(float(len(sent)))
+        publisher.publish(Float64(data=sent[-1]))
+
+    timer = node.create_timer(0.01, send)
+    timer.cancel()
+    bag = tmp_path / "bag"
+    recorder = Command("bag", "record", "-s", "mcap", "-o", str(bag), "--topics", "/x")
+    assert graph.spin_until(lambda: publisher.get_subscription_count() == 1, 15.0)
+    timer.reset()
+    assert graph.spin_until(lambda: len(sent) >= 50)
+    timer.cancel()
+    end = time.monotonic() + 0.5
+    graph.spin_until(lambda: time.monotonic() > end)
+    recorder.process.send_signal(signal.SIGINT)
+    recorder.result()
+    information = _run(None, "bag", "info", str(bag))[1]
+    assert f"Topic: /x | Type: std_msgs/msg/Float64 | Count: {len(sent)} | Serialization Format: cdr" in information
+    received: list[float] = []
+    node.create_subscription(Float64, "/again", lambda message: received.append(message.data), 1000)
+    assert _run(graph, "bag", "play", str(bag), "-r", "4", "-m", "/x:=/again")[0] == 0
+    assert graph.spin_until(lambda: len(received) == len(sent)) and received == sent
+
+
+LAUNCHED = """#!{python}
+import rclpy
+from rclpy.executors import ExternalShutdownException
+try:
+    with rclpy.init():
+        node = rclpy.create_node("launched")
+        node.declare_parameter("gain", 0.0)
+        node.get_logger().info(f"up as {{node.get_fully_qualified_name()}} with {{node.get_parameter('gain').value}}")
+        rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Install a package with one executable and one launch file in a prefix of its own."""
+    executable = tmp_path / "lib" / "some_package" / "node"
+    executable.parent.mkdir(parents=True)
+    executable.write_text(LAUNCHED.format(python=sys.executable))
+    executable.chmod(0o755)
+    share = tmp_path / "share" / "some_package"
+    (share / "launch").mkdir(parents=True)
+    (share / "package.xml").write_text("<package><name>some_package</name></package>")
+    index = tmp_path / "share" / "ament_index" / "resource_index" / "packages"
+    index.mkdir(parents=True)
+    (index / "some_package").touch()
+    (share / "launch" / "one.launch.yaml").write_text(
+        "launch:\n- arg: {name: gain, default: '1.5'}\n"
+        "- node:\n    pkg: some_package\n    exec: node\n    namespace: rig\n    name: renamed\n    output: screen\n"
+        "    param:\n    - {name: gain, value: $(var gain)}\n"
+    )
+    before = os.environ.get("AMENT_PREFIX_PATH")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tmp_path}{os.pathsep}{before}" if before else str(tmp_path))
+    return tmp_path
+
+
+def _heard(graph: Graph, text: str) -> bool:
+    """Tell whether a node says a text on /rosout in time."""
+    heard: list[str] = []
+    graph.node("observer").create_subscription(Log, "/rosout", lambda log: heard.append(log.msg), LATCHED)
+    return graph.spin_until(lambda: text in heard, 20.0)
+
+
+def test_run_starts_a_node_whose_signals_are_its_own(package: Path, graph: Graph) -> None:
+    command = Command("run", "some_package", "node", "--ros-args", "-p", "gain:=2.5", "-r", "__ns:=/a")
+    assert _heard(graph, "up as /a/launched with 2.5")
+    assert "/a/launched" in graph.nodes[0].get_fully_qualified_node_names()
+    command.process.send_signal(signal.SIGINT)
+    status, _, errors = command.result()
+    assert status == 0 and "up as /a/launched with 2.5" in errors
+
+
+def test_launch_starts_and_ends_what_the_file_says(package: Path, graph: Graph) -> None:
+    command = Command("launch", "some_package", "one.launch.yaml", "gain:=3.5")
+    assert _heard(graph, "up as /rig/renamed with 3.5")
+    observer = graph.nodes[0]
+    assert "/rig/renamed" in observer.get_fully_qualified_node_names()
+    command.process.send_signal(signal.SIGINT)
+    status, output, errors = command.result()
+    assert status == 0, errors
+    assert "up as /rig/renamed with 3.5" in output + errors
+    assert graph.spin_until(lambda: "/rig/renamed" not in observer.get_fully_qualified_node_names(), 2.0)
+
+
+@only_layer
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["run", "no_package", "x"], "Package 'no_package' not found"),
+        (["topic", "pub", "/x", "no_msgs/msg/X", "{}"], "The passed message type is invalid"),
+        (["topic", "pub", "-1", "/x", "std_msgs/msg/Float64", "{dada: 1}"], "no attribute 'dada'"),
+        (["topic", "pub", "-1", "/x", "std_msgs/msg/Float64", "5"], "dictionary in YAML format"),
+        (["topic", "echo", "/nothing"], "Could not determine the type"),
+        (["bag", "info", "/nothing.mcap"], "does not exist"),
+        (["launch", "no_package", "x.launch.yaml"], "not found"),
+        (["action", "list"], "does not offer actions"),
+    ],
+)
+def test_what_cannot_be_done_is_one_line_and_a_status(arguments: list[str], told: str) -> None:
+    status, output, errors = _run(None, *arguments)
+    assert status == 1 and told in errors
+    assert "Traceback" not in output + errors
+
+
+@only_layer
+@pytest.mark.parametrize(
+    "text", ["launch: 5", "launch:\n- fly: {}", "launch:\n- node: {exec: x}", "{", "launch:\n- arg: {name: a}"]
+)
+def test_an_unusable_launch_file_is_one_line(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "bad.launch.yaml"
+    file.write_text(text)
+    status, _, errors = _run(None, "launch", str(file))
+    assert status == 1 and str(file) in errors and len(errors.strip().splitlines()) == 1
+
+
+def test_parameters_of_another_process(graph: Graph, program: Callable[..., Program]) -> None:
+    source = (
+        "import rclpy; rclpy.init(); n = rclpy.create_node('far'); n.declare_parameter('a', 1); "
+        "print('ready'); rclpy.spin(n)"
+    )
+    program(source).wait_for("ready")
+    assert _run(None, "param", "set", "/far", "a", "5")[0] == 0
+    assert _run(None, "param", "get", "--hide-type", "/far", "a")[1] == "5\n"

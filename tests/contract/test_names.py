@@ -1,0 +1,68 @@
+"""Names: validation, expansion, namespaces, remapping and --ros-args."""
+
+from __future__ import annotations
+
+import pytest
+import rclpy
+from rclpy.exceptions import (
+    InvalidNamespaceException,
+    InvalidNodeNameException,
+    InvalidServiceNameException,
+    InvalidTopicNameException,
+    NotInitializedException,
+)
+from std_msgs.msg import Float64
+from std_srvs.srv import Empty
+
+from contract.conftest import Graph
+
+
+@pytest.mark.parametrize(
+    ("written", "full"),
+    [("x", "/rig/x"), ("/x", "/x"), ("~/x", "/rig/sim/x"), ("{node}/x", "/rig/sim/x"), ("a/b", "/rig/a/b")],
+)
+def test_names_expand(graph: Graph, written: str, full: str) -> None:
+    node = graph.node("sim", namespace="rig")
+    assert node.create_publisher(Float64, written, 10).topic_name == full
+    assert node.resolve_service_name(written) == full
+
+
+@pytest.mark.parametrize("name", ["", "1x", "a//b", "a b", "a/", "a~b", "{x", "ä"])
+def test_invalid_names_are_refused(graph: Graph, name: str) -> None:
+    node = graph.node("sim")
+    with pytest.raises(InvalidTopicNameException):
+        node.create_publisher(Float64, name, 10)
+    with pytest.raises(InvalidServiceNameException):
+        node.create_client(Empty, name)
+
+
+def test_invalid_nodes_and_namespaces_are_refused(graph: Graph) -> None:
+    for name in ("", "a/b", "1a", "a-b"):
+        with pytest.raises(InvalidNodeNameException):
+            rclpy.create_node(name)
+    with pytest.raises(InvalidNamespaceException):
+        rclpy.create_node("ok", namespace="/a//b")
+
+
+def test_remapping_of_topics_services_and_the_node(graph: Graph) -> None:
+    rules = ["x:=/elsewhere/x", "/rig/srv:=other", "__ns:=/rig", "__node:=renamed", "someone_else:x:=/nowhere"]
+    arguments = ["--ros-args", *(text for rule in rules for text in ("-r", rule))]
+    node = graph.node("sim", cli_args=arguments)
+    assert node.get_fully_qualified_name() == "/rig/renamed"
+    assert node.create_publisher(Float64, "x", 10).topic_name == "/elsewhere/x"
+    assert node.resolve_service_name("srv") == "/rig/other"
+    assert node.resolve_topic_name("x", only_expand=True) == "/rig/x"
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--ros-args", "-r", "nonsense"], ["--ros-args", "--unknown"], ["--ros-args", "-p", "x"]]
+)
+def test_arguments_that_make_no_sense_are_refused(arguments: list[str]) -> None:
+    context = rclpy.Context()
+    with pytest.raises(RuntimeError):
+        rclpy.init(args=arguments, context=context)
+
+
+def test_a_node_needs_init() -> None:
+    with pytest.raises(NotInitializedException):
+        rclpy.create_node("too_early", context=rclpy.Context())

@@ -1,0 +1,137 @@
+"""Processes: the graph across them, and how they end."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Callable
+
+import pytest
+from std_msgs.msg import Float64
+
+from contract.conftest import Graph, Program, only_layer
+
+TALKER = """
+import sys, rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Float64
+with rclpy.init():
+    node = Node(sys.argv[1])
+    publisher = node.create_publisher(Float64, "numbers", 10)
+    node.create_timer(0.01, lambda: publisher.publish(Float64(data=1.0)))
+    try:
+        print("ready")
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        print("interrupted")
+    except ExternalShutdownException:
+        print("shut down")
+    else:
+        print("shut down between two callbacks")
+"""
+Start = Callable[..., Program]
+
+
+def _names(graph: Graph) -> list[str]:
+    return graph.nodes[0].get_fully_qualified_node_names()
+
+
+@pytest.mark.parametrize(("number", "said"), [(signal.SIGINT, "interrupted"), (signal.SIGTERM, "shut down")])
+def test_a_signal_ends_a_node_which_leaves_the_graph_at_once(
+    graph: Graph, program: Start, number: int, said: str
+) -> None:
+    graph.node("observer")
+    talker = program(TALKER, "talker")
+    talker.wait_for("ready")
+    assert graph.spin_until(lambda: "/talker" in _names(graph))
+    talker.process.send_signal(number)
+    talker.wait_for(said)
+    assert talker.end() == 0
+    assert graph.spin_until(lambda: "/talker" not in _names(graph), 1.0)
+
+
+def test_a_killed_node_leaves_the_others_running(graph: Graph, program: Start) -> None:
+    received: list[Float64] = []
+    graph.node("listener").create_subscription(Float64, "numbers", received.append, 10)
+    killed, survivor = program(TALKER, "killed"), program(TALKER, "survivor")
+    killed.wait_for("ready")
+    survivor.wait_for("ready")
+    assert graph.spin_until(lambda: {"/killed", "/survivor"} <= set(_names(graph)))
+    killed.process.kill()
+    killed.end()
+    received.clear()
+    assert graph.spin_until(lambda: len(received) > 20)
+
+
+def test_a_node_that_returns_is_gone_at_once(graph: Graph, program: Start) -> None:
+    graph.node("observer")
+    brief = program('import time, rclpy; rclpy.init(); rclpy.create_node("brief"); print("ready"); time.sleep(0.5)')
+    brief.wait_for("ready")
+    assert graph.spin_until(lambda: "/brief" in _names(graph))
+    assert brief.end() == 0
+    assert graph.spin_until(lambda: "/brief" not in _names(graph), 1.0)
+
+
+@only_layer
+@pytest.mark.parametrize("end", ["rclpy.shutdown()", "pass", "raise SystemExit('refused')"])
+def test_no_thread_of_dds_is_left_when_python_finalises(program: Start, end: str) -> None:
+    # One that is left asks for the interpreter lock, is ended for it, and whoever waits for it waits for ever.
+    source = """
+import atexit, os
+def threads():
+    return {open(f"/proc/self/task/{task}/comm").read().strip() for task in os.listdir("/proc/self/task")}
+atexit.register(lambda: print("left:", sorted(threads() & {"gc", "tev", "recv", "recvMC", "dq.builtins", "dq.user"})))
+import rclpy
+rclpy.init()
+node = rclpy.create_node("brief")
+print("garbage collector runs:", "gc" in threads())
+"""
+    brief = program(source + end)
+    assert brief.wait_for("garbage").strip().endswith("True")
+    assert brief.wait_for("left").strip() == "left: []"
+    brief.end()
+
+
+def test_an_idle_node_needs_no_processor(program: Start) -> None:
+    source = """
+import time, rclpy
+rclpy.init()
+node = rclpy.create_node("idle")
+executor = rclpy.executors.SingleThreadedExecutor()
+executor.add_node(node)
+executor.spin_once(timeout_sec=0.5)
+before = time.process_time()
+executor.spin_once(timeout_sec=2.0)
+print("used", (time.process_time() - before) / 2.0)
+"""
+    used = float(program(f"import rclpy.executors\n{source}").wait_for("used").split()[1])
+    assert used < 0.01
+
+
+def test_nodes_that_come_and_go_leave_nothing(graph: Graph) -> None:
+    import os
+
+    def handles() -> int:
+        return len(os.listdir("/proc/self/fd"))
+
+    def resident() -> int:
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    observer = graph.node("observer")
+    for cycle in range(300):
+        node = graph.node("brief")
+        node.create_publisher(Float64, "numbers", 10)
+        graph.executor.spin_once(timeout_sec=0)
+        graph.executor.remove_node(node)
+        node.destroy_node()
+        graph.nodes.pop()
+        if cycle == 100:
+            observer.get_node_names()
+            files, memory = handles(), resident()
+    observer.get_node_names()
+    assert handles() <= files
+    assert resident() - memory < 10_000_000
+    time.sleep(0.1)
+    assert _names(graph) == ["/observer"]

@@ -1,0 +1,46 @@
+"""The fit finds what a recording was made with, and says honestly how well."""
+
+import numpy as np
+import pytest
+from made import recorded
+
+from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.observation import observe
+from eha_core.diagnosis.shooting import coarser, cut
+from eha_core.parameters import nominal_values
+
+OTHER = {"moving_mass": 11.5, "damping_coefficient": 1600.0, "bulk_modulus": 1.1e9, "valve_gain": 2.0e-5}
+
+
+def test_parameters_off_by_a_fifth_are_found_within_their_deviations():
+    calibration = calibrate(observe(recorded(OTHER)), nominal_values(), 2e-4)
+    fitted = calibration.fitted
+    assert fitted.data / fitted.count == pytest.approx(1.0, abs=0.03)
+    for name, value in OTHER.items():
+        assert abs(fitted.values[name] - value) < 4.0 * fitted.deviation(name)
+    assert calibration.nominal.data > 5.0 * fitted.data
+
+
+def test_the_nominal_model_as_given_explains_its_own_recording():
+    calibration = calibrate(observe(recorded({})), nominal_values(), 2e-4)
+    assert calibration.nominal.data / calibration.nominal.count == pytest.approx(1.0, abs=0.04)
+
+
+def test_windows_from_the_true_states_meet_without_a_gap():
+    observation = observe(recorded({}, noise=1e-3))
+    shooting = cut(observation, nominal_values())
+    _, ends = shooting.simulate(nominal_values(), shooting.initial_states)
+    gaps = np.abs(ends[:-1] - shooting.initial_states[1:])
+    assert np.all(np.median(gaps, axis=0) < [2e-6, 2e-3, 500.0, 500.0])
+
+
+def test_the_coarser_problem_samples_the_same_instants():
+    observation = observe(recorded({"coulomb_friction.force": 150.0}))
+    fine = cut(observation, nominal_values())
+    coarse = coarser(fine, 5e-4)
+    states, values = fine.initial_states, nominal_values()
+    for one, other in zip(
+        fine.sample(fine.simulate(values, states)[0]), coarse.sample(coarse.simulate(values, states)[0]), strict=True
+    ):
+        assert len(one) == len(other)
+        assert np.max(np.abs(one - other)) < 0.02 * np.ptp(one)

@@ -1,0 +1,36 @@
+"""Noise and outliers estimated from a channel alone."""
+
+import numpy as np
+import pytest
+
+from eha_core.diagnosis.noise import estimate_noise, find_outliers, quantisation, residual_noise
+
+TIME = np.arange(20_000) / 1000.0
+SMOOTH = 0.02 * np.sin(2 * np.pi * 0.7 * TIME) + 0.003 * np.sin(2 * np.pi * 9.0 * TIME)
+
+
+@pytest.mark.parametrize("level", [1e-6, 1e-5, 1e-4])
+def test_white_noise_on_a_smooth_signal_is_found_within_five_percent(level):
+    noisy = SMOOTH + level * np.random.default_rng(3).standard_normal(len(TIME))
+    assert estimate_noise(noisy) == pytest.approx(level, rel=0.05)
+
+
+def test_a_quantised_channel_has_at_least_the_noise_of_its_step():
+    step = 5e-5
+    values = np.round(SMOOTH / step) * step
+    assert quantisation(values) == pytest.approx(step)
+    assert estimate_noise(values) >= 0.999 * step / np.sqrt(12.0)
+
+
+def test_a_slow_misfit_does_not_raise_the_noise_of_a_residual():
+    residual = np.random.default_rng(4).standard_normal(len(TIME)) + 50.0 * np.sin(TIME)
+    assert residual_noise(residual) == pytest.approx(1.0, rel=0.03)
+
+
+def test_lone_spikes_are_outliers_and_steps_are_not():
+    generator = np.random.default_rng(5)
+    values = SMOOTH + 1e-5 * generator.standard_normal(len(TIME))
+    values[5000:] += 5e-3
+    spikes = np.arange(300, 19_000, 1234)
+    values[spikes] += 2e-3
+    assert np.flatnonzero(find_outliers(values, 1e-5)).tolist() == spikes.tolist()

@@ -1,0 +1,90 @@
+"""Whole diagnoses: what is planted is named, what is not there is not named, and the words and files say so."""
+
+import json
+
+import pytest
+from made import recorded
+
+from eha_core.cli import main
+from eha_core.diagnosis import diagnose
+from eha_core.parameters import load_parameters, nominal_values
+
+
+def diagnosed(parameters, **how):
+    return diagnose(recorded(parameters, **how), nominal_values())
+
+
+def test_nothing_is_missing_where_nothing_is():
+    result = diagnosed({})
+    assert result.verdict == "consistent"
+    assert not result.effects
+    assert not result.location
+
+
+def test_other_parameters_are_no_missing_physics():
+    result = diagnosed({"moving_mass": 12.0, "bulk_modulus": 1.1e9, "damping_coefficient": 1500.0})
+    assert result.verdict == "parameters"
+    assert not result.effects
+    changed = {one.name: one for one in result.parameters if one.changed}
+    assert changed["moving_mass"].fitted == pytest.approx(12.0, rel=0.03)
+    assert changed["damping_coefficient"].fitted == pytest.approx(1500.0, rel=0.02)
+
+
+def test_friction_behind_wrong_parameters_is_named_located_and_measured():
+    result = diagnosed({"coulomb_friction.force": 180.0, "moving_mass": 11.0, "damping_coefficient": 1700.0})
+    assert [effect.id for effect in result.effects] == ["coulomb_friction"]
+    force = result.effects[0].parameters["force"]
+    assert abs(force.value - 180.0) < max(4.0 * force.std, 1.0)
+    assert result.location[0].site == "force"
+    for fit in result.held_out.values():
+        assert fit.rmse_after < 1.1 * fit.noise
+        assert fit.rmse_calibrated > 1.5 * fit.rmse_after
+
+
+def test_overlap_is_named_from_voltage_and_position_alone():
+    result = diagnosed({"valve_deadband.half_width": 2e-4}, channels=("voltage_command", "position"))
+    assert result.verdict in ("missing_physics", "ambiguous")
+    assert result.effects[0].id == "valve_deadband"
+    assert result.effects[0].parameters["half_width"].value == pytest.approx(2e-4, rel=0.05)
+
+
+def test_two_effects_at_once_are_both_named(tmp_path, capsys):
+    recording = "bags/rig_deadband_and_friction.mcap"
+    assert main(["diagnose", recording, "--out", str(tmp_path)]) == 0
+    assert "seals rub" in capsys.readouterr().out
+    document = json.loads((tmp_path / "diagnosis.json").read_text())
+    assert {effect["id"] for effect in document["effects"]} == {"coulomb_friction", "valve_deadband"}
+    fitted = load_parameters(tmp_path / "fitted.yaml")
+    assert fitted["coulomb_friction.force"] == pytest.approx(250.0, rel=0.02)
+    assert fitted["valve_deadband.half_width"] == pytest.approx(2e-4, rel=0.02)
+    assert (tmp_path / "report.html").stat().st_size > 100_000
+    assert (tmp_path / "comparison.mcap").exists()
+
+
+def test_a_damaged_recording_is_diagnosed_as_far_as_it_goes(tmp_path, capsys):
+    assert main(["diagnose", "bags/rig_cut_short.mcap", "--json", "-"]) == 3
+    document = json.loads(capsys.readouterr().out)
+    assert document["effects"][0]["id"] == "coulomb_friction"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("time,u,x\n" + "".join(f"{k / 100},0.01,{k * 1e-5}\n" for k in range(50)), "too short"),
+        ("time,u,x\n" + "".join(f"{k / 100},0.0,{(k % 7) * 1e-3}\n" for k in range(500)), "constant"),
+        ("time,u,x\n" + "".join(f"{k / 100},{(k % 9) * 1e-3},0.01\n" for k in range(500)), "does not move"),
+    ],
+)
+def test_a_recording_that_shows_nothing_is_refused_in_one_line(tmp_path, capsys, text, told):
+    recording, topics = tmp_path / "rig.csv", tmp_path / "topics.yaml"
+    recording.write_text(text)
+    topics.write_text("channels:\n  voltage_command: {column: u}\n  position: {column: x}\n")
+    assert main(["diagnose", str(recording), "--topics", str(topics)]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+
+
+def test_a_missing_recording_is_one_line(capsys):
+    assert main(["diagnose", "nowhere.mcap"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

@@ -1,0 +1,63 @@
+"""What sensors make of the motion: lag, play, gain and offset. None of them may touch the motion itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import StateSpace, lsim
+
+from eha_core.plant import Plant, Trajectory
+
+VOLTAGES = 0.05 * np.sin(2.0 * np.pi * 3.0 * 1e-4 * np.arange(8000))
+
+
+def run(parameters: dict[str, float]) -> Trajectory:
+    """The trajectory with a sensor's effect, its states checked to be those without."""
+    found, plain = Plant(parameters, initial_position=0.01).run(VOLTAGES), Plant(initial_position=0.01).run(VOLTAGES)
+    assert np.array_equal(found.values[:, :18], plain.values[:, :18])
+    return found
+
+
+@pytest.mark.parametrize("time_constant", [1e-6, 1e-3, 0.02, 1.0])
+def test_lag_is_a_first_order_filter_of_the_position(time_constant: float) -> None:
+    found = run({"position_sensor_lag.time_constant": time_constant})
+    filter_of_lag = StateSpace([[-1.0 / time_constant]], [[1.0 / time_constant]], [[1.0]], [[0.0]])
+    position = np.concatenate([[0.01], found.position])
+    _, expected, _ = lsim(filter_of_lag, position, 1e-4 * np.arange(len(position)), X0=[0.01])
+    assert found.measured_position == pytest.approx(expected[1:], abs=1e-8)
+    slope = np.gradient(found.measured_position, 1e-4)
+    assert found.measured_velocity[2:-2] == pytest.approx(slope[2:-2], abs=2e-3)
+
+
+def test_play_holds_the_measured_position_until_it_is_taken_up() -> None:
+    found = run({"position_sensor_backlash.half_width": 3e-4})
+    held, expected = 0.01, []
+    for position in found.position:
+        if abs(position - held) > 3e-4:
+            held = position - np.copysign(3e-4, position - held)
+        expected.append(held)
+    assert found.measured_position == pytest.approx(np.array(expected), rel=1e-12)
+    still = np.diff(found.measured_position) == 0.0
+    assert 0.05 < np.mean(still) < 0.5
+    assert np.all(found.measured_velocity[1:][still] == 0.0)
+    assert np.array_equal(found.measured_velocity[1:][~still], found.velocity[1:][~still])
+
+
+def test_scale_multiplies_position_and_velocity() -> None:
+    found = run({"position_sensor_scale.ratio": 0.03})
+    assert found.measured_position == pytest.approx(1.03 * found.position, rel=1e-14)
+    assert found.measured_velocity == pytest.approx(1.03 * found.velocity, rel=1e-14)
+
+
+def test_bias_is_added_to_each_pressure() -> None:
+    found = run({"pressure_sensor_bias.bias_a": 2e5, "pressure_sensor_bias.bias_b": -1e5})
+    assert found.measured_pressure_a == pytest.approx(found.pressure_a + 2e5)
+    assert found.measured_pressure_b == pytest.approx(found.pressure_b - 1e5)
+
+
+def test_sensors_without_effects_say_what_is() -> None:
+    found = Plant().run(VOLTAGES)
+    assert np.array_equal(found.measured_position, found.position)
+    assert np.array_equal(found.measured_velocity, found.velocity)
+    assert np.array_equal(found.measured_pressure_a, found.pressure_a)
+    assert np.array_equal(found.measured_pressure_b, found.pressure_b)

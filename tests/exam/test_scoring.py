@@ -1,0 +1,113 @@
+"""The rules of scoring, each on an answer made for it, and Wilson's interval against its published values."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from eha_core.exam.case import Case
+from eha_core.exam.drawing import draw_case
+from eha_core.exam.outside import curve_agreement
+from eha_core.exam.scoring import Answer, mark, wilson
+from eha_core.exam.tiers import MEANINGS, SHARES, plan
+
+
+def single(**changes: Any) -> Case:
+    case = draw_case("single", 12, 0)
+    return replace(case, effects=(("coulomb_friction", {"force": 200.0}),), **changes)
+
+
+def answer(verdict: str, *ids: str, **fields: Any) -> Answer:
+    effects = [{"id": name, "site": "force", "parameters": {}} for name in ids]
+    return Answer({"verdict": verdict, "effects": effects, **fields}, 0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("case", "given", "outcome"),
+    [
+        (single(), answer("missing_physics", "coulomb_friction"), "right"),
+        (single(), answer("missing_physics", "stribeck_friction"), "wrong"),
+        (single(), answer("missing_physics", "coulomb_friction", "end_stop"), "wrong"),
+        (
+            single(),
+            answer("ambiguous", "stribeck_friction", alternatives=[{"effects": ["coulomb_friction"]}]),
+            "abstained",
+        ),
+        (single(), answer("ambiguous", "stribeck_friction", alternatives=[{"effects": ["end_stop"]}]), "wrong"),
+        (
+            single(rivals=("stribeck_friction",)),
+            answer("ambiguous", "stribeck_friction", alternatives=[{"effects": ["coulomb_friction"]}]),
+            "right",
+        ),
+        (single(), answer("parameters"), "abstained"),
+        (single(decidable=False), answer("consistent"), "right"),
+        (single(), answer("unknown_physics"), "wrong"),
+        (
+            single(windows={"coulomb_friction": (2.0, 4.0)}),
+            answer("unknown_physics", unknown={"site": "force", "function_of": "time", "samples": []}),
+            "abstained",
+        ),
+        (single(), Answer(None, 2, 1.0, "no usable channel"), "failed"),
+        (replace(single(), effects=()), answer("consistent"), "right"),
+        (replace(single(), effects=()), answer("missing_physics", "end_stop"), "wrong"),
+        (
+            replace(single(), effects=(("one_sided_spring", {"start": 0.0, "stiffness": 1e5}),)),
+            answer("missing_physics", "end_stop"),
+            "right",
+        ),
+        (
+            replace(single(), effects=(("position_ripple", {"force": 100.0, "pitch": 0.01, "phase": 0.0}),)),
+            answer("unknown_physics", unknown={"site": "force", "function_of": "position", "samples": []}),
+            "right",
+        ),
+        (
+            replace(single(), effects=(("position_ripple", {"force": 100.0, "pitch": 0.01, "phase": 0.0}),)),
+            answer("unknown_physics", unknown={"site": "chamber", "function_of": "position", "samples": []}),
+            "wrong",
+        ),
+    ],
+)
+def test_outcomes(case: Case, given: Answer, outcome: str) -> None:
+    assert mark(case, given).outcome == outcome
+
+
+def test_intervals_are_held_against_the_truth() -> None:
+    case = single()
+    effect = {
+        "id": "coulomb_friction",
+        "site": "force",
+        "parameters": {"force": {"value": 203.0, "std": 2.0, "unit": "N"}},
+    }
+    mass = case.plant["moving_mass"]
+    rows = [{"name": "moving_mass", "fitted": mass * 1.1, "std": 0.01 * mass}]
+    marked = mark(case, Answer({"verdict": "missing_physics", "effects": [effect], "parameters": rows}, 0, 1.0))
+    assert marked.intervals == (True,)
+    assert marked.nominal_intervals == (False,)
+
+
+def test_a_recovered_curve_is_compared_up_to_what_the_nominal_model_absorbs() -> None:
+    case = replace(single(), effects=(("position_ripple", {"force": 100.0, "pitch": 0.01, "phase": 0.3}),))
+    x = np.linspace(-0.02, 0.02, 80)
+    ripple = 100.0 * np.sin(2.0 * np.pi * x / 0.01 + 0.3)
+    assert curve_agreement(case, "position", np.column_stack([x, ripple + 7.0 - 900.0 * x])) == pytest.approx(1.0)
+    assert curve_agreement(case, "position", np.column_stack([x, 0.0 * x])) == pytest.approx(0.0)
+    assert curve_agreement(case, "velocity", np.column_stack([x, ripple])) is None
+
+
+def test_wilson_intervals_as_published() -> None:
+    # R. G. Newcombe, Statistics in Medicine 17 (1998), table I, method 3.
+    assert wilson(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-5)
+    assert wilson(15, 148) == pytest.approx((0.0624, 0.1605), abs=5e-5)
+    assert wilson(0, 20) == pytest.approx((0.0, 0.1611), abs=5e-5)
+    assert wilson(1, 29) == pytest.approx((0.0061, 0.1718), abs=5e-5)
+
+
+def test_a_short_exam_is_the_beginning_of_a_long_one() -> None:
+    assert plan(1000)[:100] == plan(100)
+    counts = {tier: sum(1 for t, _ in plan(1000) if t == tier) for tier in SHARES}
+    assert all(abs(counts[tier] - 1000 * share) <= 1.0 for tier, share in SHARES.items())
+    assert set(SHARES) == set(MEANINGS)
+    assert sum(SHARES.values()) == pytest.approx(1.0)

@@ -1,0 +1,49 @@
+"""The wall: the truth shares no code with the model that is examined with it, and yet knows the whole catalogue."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import eha_core.exam.truth as truth_package
+from eha_core.effects import effects
+from eha_core.exam.concealed import SITES
+from eha_core.exam.truth.record import CATALOGUE
+
+FOLDER = Path(truth_package.__file__).parent
+ALLOWED = ("numpy", "numba", "sksundae", "eha_core.errors", "eha_core.exam.truth")
+STANDARD = ("__future__", "collections", "dataclasses", "warnings")
+
+
+def imports(path: Path) -> set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path.name}: a relative import hides where it leads"
+            found.add(node.module or "")
+    return found
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.py")), ids=lambda path: path.name)
+def test_the_truth_imports_nothing_of_the_model_under_test(path: Path) -> None:
+    for name in imports(path):
+        assert name.split(".")[0] in STANDARD or any(name == a or name.startswith(f"{a}.") for a in ALLOWED), name
+
+
+def test_the_exam_takes_no_physics_from_the_model_under_test() -> None:
+    for path in FOLDER.parent.glob("*.py"):
+        for name in imports(path):
+            assert not name.startswith(("eha_core.plant", "eha_core.effects", "eha_core.diagnosis")), (path.name, name)
+
+
+def test_the_truth_knows_every_effect_of_the_catalogue_under_its_names() -> None:
+    for effect in effects():
+        if not effect.named:
+            continue
+        assert effect.id in CATALOGUE, f"the exam has no truth for {effect.id}"
+        assert {row.name for row in effect.parameters} <= set(CATALOGUE[effect.id]), effect.id
+        assert SITES[effect.id] == effect.site

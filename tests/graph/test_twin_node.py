@@ -1,0 +1,50 @@
+"""The twin beside the simulator, on the same command over DDS."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import Rig
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
+
+from eha_interfaces.srv import Step
+
+SIM = ("time_mode:=lockstep", "start_paused:=true", "moving_mass:=11.0", "coulomb_friction.force:=250.0")
+REFERENCE = ("lockstep:=true", "signal:=multisine", "multisine.amplitude:=0.12", "multisine.lowest:=0.3")
+
+
+def test_the_twin_names_the_equation_and_the_stamp(rig: Rig, tmp_path: Path) -> None:
+    model = tmp_path / "fitted.yaml"
+    model.write_text("eha_sim:\n  ros__parameters:\n    moving_mass: 11.0\n    coulomb_friction.force: 250.0\n")
+    rig.node.destroy_publisher(rig.commands)
+    rig.start_sim(*SIM)
+    rig.start("twin", f"model:={model}", "diagnostics_rate:=10.0")
+    rig.client_ready("eha_twin/get_parameters")
+    rig.start("reference", *REFERENCE)
+    rig.client_ready("eha_reference/reset")
+    reports, heard = rig.diagnostics("eha_twin"), rig.hear(JointState, "joint_states")
+    rig.wait(lambda: reports, "a report of the twin")
+    rig.spin(0.5)
+    assert rig.call(Step, "eha_sim/step", steps=40_000).success
+    rig.wait(lambda: heard and heard[-1].header.stamp.sec == 4, "four seconds", 60)
+    rig.wait(lambda: reports[-1]["windows"] == "3", "three windows")
+    assert {(report["level"], report["message"]) for report in reports} == {(str(b"\x00"), "running")}
+    assert float(reports[-1]["times the noise: force balance"]) < 2.0
+    leakage = Parameter("internal_leakage", value=5e-11).to_parameter_msg()
+    assert rig.call(SetParameters, "eha_sim/set_parameters", parameters=[leakage]).results[0].successful
+    assert rig.call(Step, "eha_sim/step", steps=20_000).success
+    rig.wait(lambda: reports[-1]["windows"] == "5", "two more windows")
+    warned = reports[-1]
+    assert warned["level"] == str(b"\x01")
+    assert warned["message"].startswith("chamber ") and "times the noise since" in warned["message"]
+    assert float(warned["departs since: chamber a"]) == pytest.approx(4.0, abs=0.1)
+    assert float(warned["window_end"]) == pytest.approx(5.1, abs=0.01)
+
+
+def test_a_model_that_cannot_be_read_ends_in_one_line(rig: Rig) -> None:
+    process = rig.start("twin", "model:=/nowhere/fitted.yaml")
+    assert process.wait() == 2
+    assert process.output.count("\n") == 1 and "/nowhere/fitted.yaml" in process.output

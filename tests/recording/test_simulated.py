@@ -1,0 +1,115 @@
+"""Records simulated offline: the same states as the plant gives step by step, the same topics as the node's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rosbags.highlevel import AnyReader
+
+from eha_core.errors import ParameterError
+from eha_core.plant import COLUMNS, Plant
+from eha_core.recording import encode, read_recording
+from eha_core.recording.message_rows import encode_rows
+from eha_core.recording.simulated import Experiment, simulate, write_simulated
+
+TIMES = np.arange(200) / 500.0
+VOLTAGES = 0.05 * np.sin(2 * np.pi * 5.0 * TIMES)
+
+
+def test_rows_are_the_bytes_of_single_messages() -> None:
+    generator = np.random.default_rng(3)
+    stamps = np.array([0, 1, 1_999_999_999, 1_700_000_000_123_456_789])
+    columns = {name: generator.normal(size=4) for name in ("position", "velocity", "effort")}
+    rows = encode_rows("sensor_msgs/msg/JointState", columns, stamps, name=["piston"])
+    for k, stamp in enumerate(stamps.tolist()):
+        fields = {
+            "header": {"stamp": {"sec": stamp // 10**9, "nanosec": stamp % 10**9}},
+            "name": ["piston"],
+            **{name: [float(values[k])] for name, values in columns.items()},
+        }
+        assert rows[k] == encode("sensor_msgs/msg/JointState", fields)
+    floats = np.array([1.5, -0.0, 1e-300])
+    assert encode_rows("std_msgs/msg/Float64", {"data": floats}) == [
+        encode("std_msgs/msg/Float64", {"data": float(value)}) for value in floats
+    ]
+
+
+def test_states_are_those_of_the_plant_stepped_by_hand() -> None:
+    changes = [(0.1, "internal_leakage", 1e-10)]
+    record = simulate(Experiment(TIMES, VOLTAGES, 0.4, {"moving_mass": 12.0}, changes))
+    plant = Plant({"moving_mass": 12.0}, 1e-4)
+    states = [plant.state]
+    for k, voltage in enumerate(VOLTAGES):
+        if k == 50:
+            plant.set_parameters({"internal_leakage": 1e-10})
+        plant.advance(float(voltage), 20)
+        states.append(plant.state)
+    np.testing.assert_array_equal(record.states, np.array(states))
+    np.testing.assert_array_equal(record.stamps, np.arange(201) * 2_000_000)
+    assert record.changes == [(100_000_000, "internal_leakage", 1e-10)]
+
+
+def test_a_command_holds_from_its_instant_even_between_periods() -> None:
+    record = simulate(Experiment(np.array([0.0031, 0.0055]), np.array([0.1, -0.1]), 0.01))
+    plant = Plant({}, 1e-4)
+    states = [plant.state]
+    for step in range(100):
+        plant.advance(0.0 if step < 31 else 0.1 if step < 55 else -0.1, 1)
+        if step % 20 == 19:
+            states.append(plant.state)
+    np.testing.assert_array_equal(record.states, np.array(states))
+    assert record.commands[0].tolist() == [3_100_000, 5_500_000]
+
+
+def test_the_file_has_the_nodes_topics_and_reads_back(tmp_path: Path) -> None:
+    record = simulate(Experiment(TIMES, VOLTAGES, 0.4, {}, [(0.2, "internal_leakage", 1e-9)]))
+    path = tmp_path / "run.mcap"
+    write_simulated(path, record)
+    with AnyReader([path]) as reader:
+        assert {connection.topic: connection.msgcount for connection in reader.connections} == {
+            "/voltage_command": 200, "/joint_states": 201, "/chamber_a/pressure": 201, "/chamber_b/pressure": 201,
+            "/state": 201, "/internal_leakage": 2, "/parameter_events": 1,
+        }  # fmt: skip
+        log_times = [log_time for _, log_time, _ in reader.messages()]
+        (state,) = [connection for connection in reader.connections if connection.topic == "/state"]
+        last = [reader.deserialize(data, state.msgtype) for _, _, data in reader.messages([state])][-1]
+    assert log_times == sorted(log_times)
+    np.testing.assert_array_equal([getattr(last, name) for name in COLUMNS], record.states[-1])
+    recording = read_recording(path)
+    for channel, column in (("position", "measured_position"), ("velocity", "measured_velocity")):
+        np.testing.assert_array_equal(recording.channels[channel].values, record.column(column))
+    pressure = recording.channels["pressure_b"].values
+    np.testing.assert_allclose(pressure, record.column("measured_pressure_b"), rtol=0, atol=1e-8)
+    np.testing.assert_array_equal(recording.channels["voltage_command"].values, VOLTAGES)
+    assert recording.leakage_changes == ((0.0, 1e-12), (0.2, 1e-9))
+    assert recording.parameters == record.parameters
+
+
+def test_instruments_tell_nothing_of_the_model(tmp_path: Path) -> None:
+    path = tmp_path / "rig.mcap"
+    write_simulated(path, simulate(Experiment(TIMES, VOLTAGES, 0.4)), instruments_only=True)
+    recording = read_recording(path)
+    assert list(recording.channels) == ["voltage_command", "pressure_a", "pressure_b", "position", "velocity"]
+    assert (recording.parameters, recording.leakage_changes) == ({}, ())
+    with AnyReader([path]) as reader:
+        assert "/state" not in reader.topics and "/internal_leakage" not in reader.topics
+
+
+def test_noise_has_its_size_and_its_seed() -> None:
+    times = np.arange(10_000) / 500.0
+    quiet = simulate(Experiment(times, 0 * times, 20.0))
+    noisy = simulate(Experiment(times, 0 * times, 20.0, noise=3.0, seed=5))
+    again = simulate(Experiment(times, 0 * times, 20.0, noise=3.0, seed=5))
+    other = simulate(Experiment(times, 0 * times, 20.0, noise=3.0, seed=6))
+    np.testing.assert_array_equal(noisy.states, again.states)
+    assert not np.array_equal(noisy.states, other.states)
+    for name, size in (("measured_position", 3e-5), ("measured_pressure_a", 3e4), ("measured_velocity", 3e-3)):
+        assert np.std(noisy.column(name) - quiet.column(name)) == pytest.approx(size, rel=0.03)
+    np.testing.assert_array_equal(noisy.column("position"), quiet.column("position"))
+
+
+def test_a_rate_that_splits_steps_is_refused() -> None:
+    with pytest.raises(ParameterError, match="rate 300 Hz: its period is 33.3333 steps of 0.0001 s"):
+        simulate(Experiment(TIMES, VOLTAGES, 0.4, rate=300.0))

@@ -1,0 +1,134 @@
+"""The page and the figures."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from eha_core.diagnosis.result import Diagnosis, Pictures
+from eha_core.report.figures import write_figures
+from eha_core.report.html import page
+from eha_core.report.quantities import quantity
+from eha_core.report.stages import story
+
+ORDER = ["read", "calibrate", "locate", "name", "model", "show", "next"]
+
+
+class _Reader(HTMLParser):
+    """Gathers text, section ids and addresses, and sees that tags close."""
+
+    VOID = ("meta", "br", "link", "img")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.sections: list[str] = []
+        self.addresses: list[str] = []
+        self.words: list[str] = []
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        found = dict(attributes)
+        if tag == "section":
+            self.sections.append(found["id"] or "")
+        self.addresses += [value for name, value in attributes if name in ("src", "href") and value]
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if not {"script", "style"} & set(self.open):
+            self.words.append(data)
+
+
+def _read(text: str) -> _Reader:
+    reader = _Reader()
+    reader.feed(text)
+    assert reader.open == []
+    return reader
+
+
+def test_tells_the_story_in_order_and_needs_nothing_else(any_diagnosis: Diagnosis) -> None:
+    text = page(any_diagnosis)
+    reader = _read(text)
+    assert reader.sections == ORDER
+    assert all(one.startswith("#") for one in reader.addresses)
+    assert len(text) < 8e6
+    assert "a rig & its <friction>.mcap" in "".join(reader.words)
+    assert text.count("plotly.js v") <= 2  # the library stands there once
+
+
+def test_a_long_recording_makes_no_larger_page(friction: Diagnosis) -> None:
+    pictures, times = friction.pictures, 100
+
+    def longer(series: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        return {name: np.tile(values, times) for name, values in series.items()}
+
+    time = {name: np.arange(times * len(one)) * (one[1] - one[0]) for name, one in pictures.time.items()}
+    states = {**longer(pictures.variables), "time": time["position"]}
+    models = (longer(one) for one in (pictures.measured, pictures.before, pictures.calibrated, pictures.after))
+    spans = tuple((float(start), start + 1.0) for start in range(1, 600, 3))
+    long = replace(friction, duration=600.0, pictures=Pictures(time, *models, states, pictures.equations, spans))
+    assert len(page(long)) < 8e6
+
+
+def test_every_plot_is_data_that_parses(friction: Diagnosis) -> None:
+    plots = re.findall(r'<script type="application/json">(.*?)</script>', page(friction), re.DOTALL)
+    assert len(plots) > 10
+    for plot in plots:
+        drawn = json.loads(plot)
+        assert drawn["data"]
+        assert drawn["layout"]["height"] > 0
+
+
+def test_numbers_on_the_page_are_those_of_the_diagnosis(friction: Diagnosis) -> None:
+    words = " ".join("".join(_read(page(friction)).words).split())
+    assert "200.4 ± 1.3 N" in words
+    assert "10.946 ± 0.035 kg" in words
+    assert quantity(friction.held_out["position"].rmse_after, "m") in words
+
+
+@pytest.mark.parametrize(
+    ("kind", "stage", "headline"),
+    [
+        ("friction", "name", "The evidence points to coulomb friction"),
+        ("friction", "show", "What is left is noise"),
+        ("friction", "next", "No further experiment is needed"),
+        ("ambiguous", "name", "The best explanation is coulomb friction, but it is not the only one"),
+        ("ambiguous", "next", "One more test would tell coulomb friction from stribeck friction"),
+        ("unknown", "name", "Nothing in the catalogue explains it"),
+        ("unknown", "model", "A law over velocity is missing"),
+        ("consistent", "locate", "No equation is violated"),
+        ("consistent", "model", "The model stands as it was given"),
+    ],
+)
+def test_headlines(kind: str, stage: str, headline: str, request: pytest.FixtureRequest) -> None:
+    found = {one.name: one for one in story(request.getfixturevalue(kind))}
+    assert found[stage].headline == headline
+
+
+def test_the_proposed_test_is_drawn_and_told_as_parameters(ambiguous: Diagnosis) -> None:
+    stage = story(ambiguous)[-1]
+    line = stage.pictures[0].groups[0].panels[0].marks[0]
+    assert np.allclose(line.y, 20.0 * np.sin(2 * np.pi * 3.0 * line.x), atol=0.05)  # mV
+    assert "    sine.frequency: 3.0" in stage.code
+
+
+def test_every_stage_with_something_to_see_has_a_figure(friction: Diagnosis, tmp_path: Path) -> None:
+    pictures = [picture for stage in story(friction) for picture in stage.pictures]
+    written = write_figures(pictures, tmp_path / "figures")
+    assert {path.name[0] for path in written} == set("123456")
+    assert len({path.name for path in written}) == len(pictures)
+    for path in written:
+        pixels = imread(path)
+        assert pixels.shape[1] > 800
+        assert pixels[..., :3].std() > 0.01  # not blank

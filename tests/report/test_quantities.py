@@ -1,0 +1,53 @@
+"""Numbers as a person reads them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from eha_core.report.quantities import quantity, unit_text, with_deviation
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "shown"),
+    [
+        (1.024e-5, "m", "10.2 µm"),
+        (0.0643, "m", "64.3 mm"),
+        (2.1e7, "Pa", "21.0 MPa"),
+        (1.4e9, "Pa", "1.40 GPa"),
+        (-0.4, "V", "-400 mV"),
+        (0.48, "-", "0.480"),
+        (1e-12, "m^3/(s Pa)", "1.00 × 10⁻¹² m³/(s Pa)"),
+        (0.0, "N", "0 N"),
+        (0.0, "Pa", "0 Pa"),
+        (1e-3, "m", "1.00 mm"),
+        (5e-9, "m", "0.00500 µm"),
+        (math.inf, "N", "not known"),
+        (math.nan, "m", "not known"),
+    ],
+)
+def test_a_value_has_a_fitting_unit_and_three_digits(value: float, unit: str, shown: str) -> None:
+    assert quantity(value, unit) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "deviation", "unit", "shown"),
+    [
+        (312.44, 3.91, "N", "312.4 ± 3.9 N"),
+        (1998.1, 120.0, "N s/m", "1998 ± 120 N s/m"),
+        (6.3, 11.2, "N", "6 ± 11 N"),
+        (1.02e-12, 3e-14, "m^3/(s Pa)", "(1.020 ± 0.030) × 10⁻¹² m³/(s Pa)"),
+        (5e-3, 2e-5, "s", "5.000 ± 0.020 ms"),
+        (0.0, 1500.0, "Pa", "0.0 ± 1.5 kPa"),
+        (250.0, 0.0, "N", "250 N"),
+        (250.0, math.inf, "N", "250 N"),
+    ],
+)
+def test_digits_are_those_that_the_deviation_deserves(value: float, deviation: float, unit: str, shown: str) -> None:
+    assert with_deviation(value, deviation, unit) == shown
+
+
+def test_powers_in_units_are_raised_and_pure_numbers_have_none() -> None:
+    assert unit_text("N s^2/m^2") == "N s²/m²"
+    assert unit_text("-") == ""
