@@ -50,7 +50,7 @@ def drive_and_record(out: Path, name: str, parameters: Path) -> Path:
         processes.start("reference", *experiment)
         conductor = RigConductor(processes)
         conductor.await_nodes()
-        conductor.run(SECONDS, round(SECONDS / (2 * HALF_PERIOD)), PATIENCE)
+        conductor.run(SECONDS, 2 * HALF_PERIOD, PATIENCE)
     finally:
         processes.stop()
         if conductor:

@@ -23,8 +23,10 @@ from eha_interfaces.msg import TrackingError
 from eha_interfaces.srv import Step
 
 STEP_SIZE = 1e-4  # s
+_HALF_PERIOD = 1e-3  # s, of the samples
 RIG_TOPICS = ("voltage_command", "joint_states", "state", "chamber_a/pressure", "chamber_b/pressure")
 _START = 120.0  # s; the first node compiles the plant, on a machine that may be busy
+PIECE = 0.5  # s of simulated time a lockstep takes before the monitor has caught up: half of what a queue holds
 _SETTLE = 0.5  # s; the monitor counts its diagnostics too, so the run's last messages may still be on their way
 _END = 15.0  # s for a node to finish what it writes
 
@@ -118,12 +120,11 @@ class Conductor:
         self.wait(future.done, 10, f"an answer of {client.srv_name}")
         return future.result()
 
-    def step(self, seconds: float) -> float:
-        """Let a paused simulator take so many simulated seconds; return the time at which it stands then."""
+    def step(self, seconds: float) -> None:
+        """Let a paused simulator take so many simulated seconds."""
         answer = self._call(self._step, Step.Request(steps=round(seconds / STEP_SIZE)))
         if not answer.success:
             raise DemoError(f"the simulator does not step: {answer.message}")
-        return float(answer.time)
 
     def close(self) -> None:
         """Leave the graph."""
@@ -144,16 +145,20 @@ class RigConductor(Conductor):
             if status.name == "eha_monitor":
                 self._recorded = int({item.key: item.value for item in status.values}["messages"])
 
-    def run(self, seconds: float, periods: int, patience: float) -> None:
+    def run(self, seconds: float, period: float, patience: float) -> None:
         """Let the rig run for so many simulated seconds, and the monitor write all that came of them.
 
-        A lockstep can outrun the monitor, whose queue is lost when it is ended.
+        A lockstep can outrun the monitor: what a queue no longer holds is lost, and so is a queue when its node ends.
         """
-        self.step(seconds)
-        messages = (len(RIG_TOPICS) + 1) * (periods + 1)  # with /clock; the start is a sample too
-        self.wait(lambda: self._recorded >= messages, patience, f"the monitor to write {messages} messages")
+        for piece in range(1, round(seconds / PIECE) + 1):
+            self.step(PIECE)
+            messages = (len(RIG_TOPICS) + 1) * (round(piece * PIECE / period) + 1)  # with /clock, and with the start
+            self._await_written(messages, patience)
         settled = time.monotonic() + _SETTLE
         self.wait(lambda: time.monotonic() > settled, patience, "the last of them")
+
+    def _await_written(self, messages: int, patience: float) -> None:
+        self.wait(lambda: self._recorded >= messages, patience, f"the monitor to write {messages} messages")
 
 
 class LeakageConductor(Conductor):
@@ -173,6 +178,22 @@ class LeakageConductor(Conductor):
 
     def _on_error(self, message: Any) -> None:
         self.error = message
+
+    def follow(self, until: float, show: Callable[[], None]) -> None:
+        """Wait until the errors have come to an instant [s], showing how far they are."""
+
+        def reached() -> bool:
+            show()
+            return until - self.stamp < _HALF_PERIOD
+
+        self.wait(reached, 120, f"the error at {until:g} s")
+
+    def run(self, seconds: float, show: Callable[[], None]) -> None:
+        """Let a paused simulator run for so many simulated seconds, no faster than the monitor can follow."""
+        start = self.stamp
+        for piece in range(1, round(seconds / PIECE) + 1):
+            self.step(PIECE)
+            self.follow(start + piece * PIECE, show)
 
     def turn_leakage(self, coefficient: float) -> None:
         """Set internal_leakage [m^3/(s Pa)] by the parameter service, and let the errors count from here."""

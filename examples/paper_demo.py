@@ -77,14 +77,14 @@ def run_levels(conductor: LeakageConductor, realtime: bool, progress: Progress) 
     for number, leakage in enumerate(LEVELS, 1):
         conductor.turn_leakage(leakage)
         start = conductor.stamp
-        end = start + LEVEL_SECONDS if realtime else conductor.step(LEVEL_SECONDS)
 
-        def finished(number: int = number, leakage: float = leakage, end: float = end) -> bool:
-            left = end - conductor.stamp
-            progress.show(number, leakage, min(LEVEL_SECONDS - left, LEVEL_SECONDS), conductor.error.rmse)
-            return left < HALF_PERIOD
+        def show(number: int = number, leakage: float = leakage, start: float = start) -> None:
+            progress.show(number, leakage, conductor.stamp - start, conductor.error.rmse)
 
-        conductor.wait(finished, 120, f"the end of level {number}")
+        if realtime:
+            conductor.follow(start + LEVEL_SECONDS, show)
+        else:
+            conductor.run(LEVEL_SECONDS, show)
         passed.append(Passed(leakage, start, conductor.stamp, conductor.error.rmse))
         progress.done(number, leakage, conductor.error.rmse)
     return passed
