@@ -7,8 +7,9 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates, starts
 from eha_core.diagnosis.observation import observe
+from eha_core.diagnosis.refine import attempt_on, settle, try_effect
 from eha_core.diagnosis.screen import one_each, screen
-from eha_core.diagnosis.tournament import REFINED_FAR_OFF, settle, try_effect
+from eha_core.diagnosis.tournament import REFINED_FAR_OFF
 from eha_core.effects import effects
 from eha_core.parameters import nominal_values
 
@@ -50,7 +51,7 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     leading = one_each(screen(calibration.problem, calibration.fitted, tried), REFINED_FAR_OFF)
     promise = next((one for one in leading if one.start.effect.id == effect.id), None)
     assert promise is not None, [one.start.effect.id for one in leading]
-    first = try_effect(calibration.problem, calibration.fitted, promise, float("inf"))
+    first = try_effect(calibration.problem, attempt_on(calibration.fitted, promise), float("inf"))
     ((_, result),) = settle(calibration.problem, [((effect,), first)])
     assert result.data / result.count < 1.1
     assert calibration.fitted.objective - result.objective > 50.0

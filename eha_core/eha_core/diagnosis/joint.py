@@ -9,8 +9,9 @@ import numpy as np
 
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.refine import attempt_on, try_effect
 from eha_core.diagnosis.screen import Promise
-from eha_core.diagnosis.tournament import ENOUGH, Entry, Tournament, rank, scatter, try_effect
+from eha_core.diagnosis.tournament import ENOUGH, Entry, Tournament, rank, scatter
 from eha_core.diagnosis.verdict import decide
 
 
@@ -62,7 +63,7 @@ def _completed(evidence: Evidence, wanted: Mapping[tuple[str, ...], Entry]) -> T
             promise = next((one for one in tournament.promises if one.start.effect.id == effect.id), None)
             factor = promise.factor if promise is not None else 1.0
             start = Promise(Start(effect, values), 0.0, 1.0 if factor > 0.0 else factor)
-            base = try_effect(problem, base, start, np.inf)
+            base = try_effect(problem, attempt_on(base, start), np.inf)
         found.append((entry.effects, base))
     entries = rank(problem, tournament.nominal.fit, found)
     return replace(tournament, entries=entries, scatter=scatter(tournament.nominal.fit, entries))

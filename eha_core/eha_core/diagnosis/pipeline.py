@@ -15,9 +15,10 @@ from eha_core.diagnosis.hypotheses import candidates
 from eha_core.diagnosis.joint import join
 from eha_core.diagnosis.locate import locate
 from eha_core.diagnosis.observation import observe
+from eha_core.diagnosis.pairs import second_effects
 from eha_core.diagnosis.parallel import side_by_side
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.diagnosis.tournament import compete, second_effects
+from eha_core.diagnosis.tournament import compete
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
 from eha_core.recording import Recording

@@ -1,0 +1,202 @@
+"""How a hypothesis is fitted: from the calibration or afresh, to its end, and from where its rivals stand.
+
+Each of these beginnings is there because a search without it stopped short of its optimum, and what stopped short makes
+a rival look like a discovery.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from eha_core.diagnosis.fit import Fit, fit, fit_in_stages
+from eha_core.diagnosis.freedom import LATE, Free, effect_freedom
+from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.problem import Problem
+from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
+from eha_core.effects import Effect
+from eha_core.parameters import NOMINAL
+
+FAR_OFF = 5.0
+"""Chi^2 a sample beyond which a calibration's parameter values mean little."""
+
+SETTLED_LEADERS = 3
+
+SETTLE_REACH = 300.0
+"""The best few are fitted to their end, those at least that came within this of the best, or half of what it left
+over."""
+
+NOT_EXPLAINED = 1.03
+"""Chi^2 a sample above which a leader is tried from another start."""
+
+CROSSED = 3
+"""How many of the leaders behind the best are fitted once more from where it stands."""
+
+OUT_OF_REACH = 200.0
+"""A hypothesis that cannot come within this of the best objective so far is not fitted to its end."""
+
+WITH_DYNAMICS_AS_GIVEN = 2
+UNBENT_SHARE = 0.25
+BENT = 0.02
+"""Where the calibration moved the valve's dynamics by this share, a delay or a lag may be what it imitated: so many
+hypotheses are tried from the dynamics as given, too, where they promise this share of what others must."""
+
+NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
+
+Progress = Callable[[str], None]
+Found = list[tuple[tuple[Effect, ...], Fit]]
+
+
+def with_dynamics_as_given(problem: Problem, calibrated: Fit) -> Fit | None:
+    """The calibration with the valve's dynamics at their nominal values; None where it hardly moved them."""
+    late = {one.name: one.reference for one in calibrated.free if one.name in LATE}
+    if all(abs(calibrated.values[name] / given - 1.0) < BENT for name, given in late.items()):
+        return None
+    rest = [one for one in calibrated.free if one.name not in late]
+    held = fit(problem, {**calibrated.values, **late}, rest, calibrated.states, iterations=5)
+    q = np.array([one.coordinate(held.values[one.name]) for one in calibrated.free])
+    return replace(held, free=calibrated.free, q=q)
+
+
+def keep_better(found: Found, effects: tuple[Effect, ...], result: Fit) -> None:
+    """Add a fitted hypothesis, or let it take the place of a worse fit of the same one."""
+    for place, (there, other) in enumerate(found):
+        if there == effects:
+            if result.objective < other.objective:
+                found[place] = (effects, result)
+            return
+    found.append((effects, result))
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A promising effect, the fit that it is to be added to, and whether the search begins at the nominal values."""
+
+    base: Fit
+    promise: Promise
+    afresh: bool
+
+
+def attempt_on(base: Fit, promise: Promise) -> Attempt:
+    """An attempt from where a fit stands; afresh where that is far off, which has bent its parameters to imitate what
+    is missing."""
+    return Attempt(base, promise, base.data > FAR_OFF * base.count)
+
+
+def attempts(
+    problem: Problem, base: Fit, beginnings: Sequence[Start], promises: Sequence[Promise], most: int, least: float
+) -> tuple[Attempt, ...]:
+    """What to try on top of a fit: its own most promising effects, then those of the fit with the dynamics as given.
+
+    What promises too little is left out; where the dynamics would have to bend back first, a promise says less.
+    """
+    chosen = [attempt_on(base, promise) for promise in one_each(promises, most) if promise.gain > least]
+    unbent = with_dynamics_as_given(problem, base)
+    if unbent is None:
+        return tuple(chosen)
+    again = one_each(screen(problem, unbent, beginnings), WITH_DYNAMICS_AS_GIVEN)
+    known = {one.promise.start.effect.id for one in chosen if one.afresh}
+    afresh = [Attempt(unbent, one, True) for one in again if one.start.effect.id not in known]
+    return (*chosen, *(one for one in afresh if one.promise.gain > UNBENT_SHARE * least))
+
+
+def try_effect(problem: Problem, attempt: Attempt, best: float) -> Fit:
+    """Fit the promised effect, giving up when it cannot come near the `best` objective so far."""
+    base, promise = attempt.base, attempt.promise
+    effect = promise.start.effect
+    if attempt.afresh:
+        untouched = {one.name: one.reference for one in base.free if one.name in NOMINAL_NAMES}
+        values = {**base.values, **untouched, **promise.start.values}
+        free = _with_effect(base.free, effect, values)
+        return fit_in_stages(problem, values, free, give_up_above=best + OUT_OF_REACH)
+    values = {**base.values, **scaled(promise)}
+    free = _with_effect(base.free, effect, values)
+    return fit(problem, values, free, base.states, iterations=25, give_up_above=best + OUT_OF_REACH)
+
+
+def _with_effect(free: tuple[Free, ...], effect: Effect, values: Mapping[str, float]) -> tuple[Free, ...]:
+    extra = effect_freedom(effect, values)
+    return (*(one for one in free if one.name not in {own.name for own in extra}), *extra)
+
+
+def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) -> Found:
+    """The leaders fitted to their end: with derivatives at the full step, and from more than one start where it may
+    matter.
+
+    A search from a calibration that is far off can leave the nominal parameters in a valley of their own.
+    """
+    order = sorted(range(len(found)), key=lambda place: found[place][1].objective)
+    exact = replace(problem, slope_step=problem.shooting.step_size)
+    best = np.inf
+    settled = list(found)
+    for place in order[:SETTLED_LEADERS]:
+        effects, result = found[place]
+        if result.objective > best + 0.5 * max(best - problem.count(), 0.0) + SETTLE_REACH:
+            continue
+        progress(f"settling {' and '.join(effect.id for effect in effects)}")
+        result = fit(exact, result.values, result.free, result.states, iterations=30)
+        if result.data > NOT_EXPLAINED * result.count:
+            untouched = {one.name: one.reference for one in result.free if one.name in NOMINAL_NAMES}
+            again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
+            if again.objective < result.objective:
+                result = fit(exact, again.values, again.free, again.states, iterations=6)
+        result = _other_instants(problem, result)
+        best = min(best, result.objective)
+        settled[place] = (effects, result)
+    return settled
+
+
+def cross(problem: Problem, found: Found) -> Found:
+    """The leaders fitted once more from where the best of them has the nominal parameters and the windows' starts.
+
+    Where friction sticks, the objective is rugged: a law can rest far above its own optimum, and a richer one that
+    holds it as a special case would win for that.
+    """
+    if len(found) < 2:
+        return found
+    order = sorted(range(len(found)), key=lambda place: found[place][1].objective)
+    best = found[order[0]][1]
+    crossed = list(found)
+    for place in order[1 : CROSSED + 1]:
+        effects, result = found[place]
+        shared = {one.name: best.values[one.name] for one in result.free if one.name in NOMINAL_NAMES}
+        again = fit(
+            problem,
+            {**result.values, **shared},
+            result.free,
+            best.states,
+            iterations=15,
+            give_up_above=best.objective + OUT_OF_REACH,
+        )
+        if again.objective < result.objective:
+            crossed[place] = (effects, again)
+    return crossed
+
+
+def _other_instants(problem: Problem, result: Fit) -> Fit:
+    """An instant that a fit moves can rest beside the right one: try its surroundings."""
+    for one in result.free:
+        if one.resolution == 0.0:
+            continue
+        for shift in (-0.12, -0.04, 0.04, 0.12):
+            moved = {**result.values, one.name: result.values[one.name] + shift}
+            again = fit(problem, moved, result.free, result.states, iterations=4)
+            if again.objective < result.objective:
+                result = again
+    return result
+
+
+def back_fit(problem: Problem, calibrated: Fit, others: Sequence[Fit]) -> Fit:
+    """The nominal model fitted once more from the best hypothesis' nominal values.
+
+    A nominal fit that stopped in a flat valley would make any hypothesis that left it look like a discovery.
+    """
+    if not others:
+        return calibrated
+    best = min(others, key=lambda one: one.objective)
+    names = {one.name for one in calibrated.free}
+    values = {name: best.values[name] if name in names else value for name, value in calibrated.values.items()}
+    again = fit(problem, values, calibrated.free, best.states)
+    return again if again.objective < calibrated.objective else calibrated
