@@ -151,7 +151,8 @@ def _summary(decision: Decision, effects: tuple[NamedEffect, ...], evidence: Evi
     if decision.verdict == "parameters":
         return "No physics is missing: parameter values differ from the nominal ones."
     if decision.verdict == "unknown_physics":
-        assert evidence.recovery is not None
+        if not decision.winner.effects or evidence.recovery is None:
+            return "Something is missing that the catalogue does not name; no law of one variable explains it."
         return (
             f"Something is missing that the catalogue does not name: {evidence.recovery.effect.statement}, "
             f"as a function of {evidence.recovery.variable}."

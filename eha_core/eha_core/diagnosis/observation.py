@@ -43,6 +43,8 @@ class Observation:
         drive: what the simulation is driven by: "voltage", "pressures" or "force".
         inputs: the driving channels, as (time, values); voltage is held between samples.
         measured: the channels that are compared.
+        leakage: (time [s], change of the internal leakage coefficient since the start [m^3/(s Pa)]) of each change that
+        the recording itself tells of: what was turned on purpose is no mismatch.
         duration: [s].
         not_examined: what could not be looked at and why, one line each.
         remarks: what was put right or left out, one line each.
@@ -52,6 +54,7 @@ class Observation:
     drive: str
     inputs: tuple[tuple[Array, Array], ...]
     measured: tuple[Measured, ...]
+    leakage: tuple[tuple[float, float], ...]
     duration: float
     channels: tuple[str, ...]
     not_examined: tuple[str, ...]
@@ -98,9 +101,29 @@ def observe(recording: Recording) -> Observation:
     for name in ("pressure_a", "pressure_b"):
         if name not in channels and drive == "voltage":
             not_examined.append(f"continuity of chamber {name[-1]}: {name} was not recorded")
+    leakage = _leakage(recording) if drive == "voltage" else ()
+    if leakage:
+        remarks.append(f"internal leakage was changed on purpose {len(leakage)} times; the simulation follows")
     return Observation(
-        where, drive, inputs, tuple(measured), recording.duration, tuple(channels), tuple(not_examined), tuple(remarks)
+        where,
+        drive,
+        inputs,
+        tuple(measured),
+        leakage,
+        recording.duration,
+        tuple(channels),
+        tuple(not_examined),
+        tuple(remarks),
     )
+
+
+def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:
+    """The changes after the start, against the coefficient in force at the start."""
+    told = recording.leakage_changes
+    if not told:
+        return ()
+    first = next((value for time, value in reversed(told) if time <= 0.0), told[0][1])
+    return tuple((time, value - first) for time, value in told if 0.0 < time < recording.duration and value != first)
 
 
 def _choose_drive(
