@@ -4,7 +4,7 @@ against."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,9 @@ FITTED = ("position", "velocity", "pressure_a", "pressure_b")
 
 RESOLVED = {"m": 1e-6, "m/s": 1e-3, "Pa": 3e3}
 """Better than any sensor and coarser than the search's simulation: a recording without noise is not held to more."""
+
+OVERSHOOT = 1.05
+"""Share of the nominal stroke that a position may show before the stroke is held to be larger than stated."""
 
 
 @dataclass(frozen=True)
@@ -124,6 +127,22 @@ def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:
         return ()
     first = next((value for time, value in reversed(told) if time <= 0.0), told[0][1])
     return tuple((time, value - first) for time, value in told if 0.0 < time < recording.duration and value != first)
+
+
+def reaching(observation: Observation, nominal: Mapping[str, float]) -> tuple[Observation, Mapping[str, float]]:
+    """The nominal values with a stroke that reaches as far as the piston was seen; a remark where it had to grow."""
+    position = observation.channel("position")
+    assert position is not None
+    farthest = float(np.max(np.abs(position.values)))
+    stroke = nominal["actuator_displacement"]
+    if farthest <= OVERSHOOT * stroke:
+        return observation, nominal
+    remark = (
+        f"position reaches {farthest:.3g} m, beyond the nominal actuator_displacement of {stroke:.3g} m: taken as"
+        f" {OVERSHOOT * farthest:.3g} m; give the rig's own, and position from mid-stroke"
+    )
+    enlarged = {**nominal, "actuator_displacement": OVERSHOOT * farthest}
+    return replace(observation, remarks=(*observation.remarks, remark)), enlarged
 
 
 def _choose_drive(

@@ -13,6 +13,7 @@ from eha_core.diagnosis.calibrate import Calibration, has_changed
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.noise import NORMAL_MEDIAN
 from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.refine import FAR_OFF
 from eha_core.diagnosis.tournament import ENOUGH, TIE, Entry, Tournament, bounded, parameter_cost
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.validate import Judged, judge
@@ -43,6 +44,9 @@ COHERENT = 1.5
 
 PARTLY = 0.2
 """... and more than this share of what the nominal equations leave over: a name must explain most of what is there."""
+
+NEARLY_ALL = 0.1
+"""Share of what the nominal equations leave over below which a name has explained nearly all of it."""
 
 SMOOTHED = 20
 """Samples a block in which a residual is averaged to see whether it is coherent."""
@@ -103,9 +107,17 @@ def coherence(residual: Array) -> float:
 
 
 def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
-    """Whether the curve explains so much more than the best named effects that its many knots are paid for."""
+    """Whether the curve explains so much more than the best named effects that its many knots are paid for.
+
+    A curve that stays far above the noise is not the law either, but bends to whatever is there; then names that
+    explain nearly all stand.
+    """
     best = tournament.entries[0] if tournament.entries else tournament.nominal
     variance = max(1.0, recovery.fit.data / recovery.fit.count)
+    nominal, curve = tournament.nominal.fit, recovery.fit
+    nearly = best.fit.data - best.fit.count < NEARLY_ALL * (nominal.data - nominal.count)
+    if nearly and best.effects and curve.data > FAR_OFF * curve.count:
+        return False
     more = (best.fit.objective - recovery.fit.objective) / variance
     knots = KNOTS - sum(len(effect.parameters) for effect in best.effects)
     return recovery.score > ENOUGH and more > UNKNOWN_MARGIN + knots * parameter_cost(recovery.fit.count, variance)
