@@ -28,7 +28,8 @@ _library = DDS._dll_handle
 
 
 def _function(name: str, *arguments: Any) -> Any:
-    function = getattr(_library, name)
+    # By index, not by attribute: that one is the object on which cyclonedds's own classes declare their arguments.
+    function = _library[name]
     function.argtypes, function.restype = arguments, ctypes.c_int32
     return function
 
