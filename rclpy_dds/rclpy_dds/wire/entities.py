@@ -110,7 +110,7 @@ class _Type:
 
 
 class _DiscoveredQos(_CQos):  # type: ignore[misc]
-    """cyclonedds's way from C to Python for what ROS uses. It forgets to free user data, and partitions, left out here."""
+    """cyclonedds's way from C to Python for what ROS uses. It forgets to free user data, and partitions, left out."""
 
     _all_scopes = ("Reliability", "Durability", "History", "Lifespan", "Deadline", "Liveliness", "Userdata")
 
