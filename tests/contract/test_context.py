@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 
 import pytest
 import rclpy
 from rclpy.exceptions import InvalidHandle
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.task import Future
 from std_msgs.msg import Float64
@@ -89,10 +90,16 @@ def test_the_functions_spin_a_node_until_they_are_told(graph: Graph) -> None:
     node.destroy_node()
 
 
-def test_spin_returns_when_the_executor_is_shut_down(graph: Graph) -> None:
+def test_spinning_ends_with_the_executor_and_with_the_context(graph: Graph) -> None:
     node, executor = rclpy.create_node("spun"), SingleThreadedExecutor()
-    node.create_timer(0.02, lambda: executor.shutdown(0))
-    rclpy.spin(node, executor)
+    timer = node.create_timer(0.02, lambda: executor.shutdown(0))
+    executor.add_node(node)
+    executor.spin()
+    node.destroy_timer(timer)
+    node.create_timer(0.02, rclpy.shutdown)
+    with contextlib.suppress(ExternalShutdownException):
+        rclpy.spin(node)
+    assert not rclpy.ok()
     node.destroy_node()
 
 

@@ -11,6 +11,8 @@ from rclpy.exceptions import (
     InvalidTopicNameException,
     NotInitializedException,
 )
+from rclpy.logging import LoggingSeverity
+from rclpy.utilities import remove_ros_args
 from std_msgs.msg import Float64
 from std_srvs.srv import Empty
 
@@ -66,3 +68,42 @@ def test_arguments_that_make_no_sense_are_refused(arguments: list[str]) -> None:
 def test_a_node_needs_init() -> None:
     with pytest.raises(NotInitializedException):
         rclpy.create_node("too_early", context=rclpy.Context())
+
+
+def test_ros_arguments_end_with_two_dashes_and_the_rest_is_the_programs_own() -> None:
+    command = ["node", "--own", "--ros-args", "-r", "x:=y", "-p", "a:=1", "--", "last"]
+    assert remove_ros_args(command) == ["node", "--own", "last"]
+
+
+def test_arguments_set_levels_and_silence_rosout(graph: Graph) -> None:
+    context = rclpy.Context()
+    levels = ["--log-level", "contract_quiet:=error", "--enclave", "/rig"]
+    rclpy.init(args=["--ros-args", *levels, "--disable-rosout-logs"], context=context)
+    node = rclpy.create_node("contract_quiet", context=context)
+    try:
+        assert node.get_logger().get_effective_level() == LoggingSeverity.ERROR
+        assert graph.spin_until(lambda: ("contract_quiet", "/", "/rig") in _enclaves(graph))
+        assert node.count_publishers("/rosout") == len(graph.nodes)
+    finally:
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def _enclaves(graph: Graph) -> list[tuple[str, str, str]]:
+    if not graph.nodes:
+        graph.node("observer")
+    return graph.nodes[0].get_node_names_and_namespaces_with_enclaves()
+
+
+def test_global_arguments_reach_every_node_that_does_not_refuse_them() -> None:
+    context = rclpy.Context()
+    rclpy.init(args=["--ros-args", "-r", "x:=y", "-p", "a:=2"], context=context)
+    heeding = rclpy.create_node("heeding", context=context)
+    refusing = rclpy.create_node("refusing", context=context, use_global_arguments=False)
+    try:
+        assert [node.resolve_topic_name("x") for node in (heeding, refusing)] == ["/y", "/x"]
+        assert [node.declare_parameter("a", 1).value for node in (heeding, refusing)] == [2, 1]
+    finally:
+        heeding.destroy_node()
+        refusing.destroy_node()
+        rclpy.shutdown(context=context)
