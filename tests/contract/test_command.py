@@ -15,7 +15,8 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool
 
-from contract.commands import ROS2, Command, run
+from contract.commands import ROS2, Command
+from contract.commands import run as _run
 from contract.conftest import Graph, Program, only_layer
 
 pytestmark = pytest.mark.skipif(ROS2 is None, reason="no ros2 command")
@@ -27,26 +28,26 @@ LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 def test_lists_show_what_is_there(graph: Graph) -> None:
     node = graph.node("sim", namespace="/rig")
     node.create_publisher(Float64, "volts", 10)
-    status, output, _ = run(graph, "topic", "list", "-t")
+    status, output, _ = _run(graph, "topic", "list", "-t")
     assert status == 0 and "/rig/volts [std_msgs/msg/Float64]" in output.splitlines()
-    assert "/rig/sim" in run(graph, "node", "list")[1].splitlines()
-    assert "/rig/sim/set_parameters" in run(graph, "service", "list")[1].splitlines()
-    information = run(graph, "node", "info", "/rig/sim")[1]
+    assert "/rig/sim" in _run(graph, "node", "list")[1].splitlines()
+    assert "/rig/sim/set_parameters" in _run(graph, "service", "list")[1].splitlines()
+    information = _run(graph, "node", "info", "/rig/sim")[1]
     assert "  Publishers:\n" in information and "    /rig/volts: std_msgs/msg/Float64\n" in information
-    assert "Publisher count: 1" in run(graph, "topic", "info", "-v", "/rig/volts")[1]
+    assert "Publisher count: 1" in _run(graph, "topic", "info", "-v", "/rig/volts")[1]
 
 
 def test_echo_prints_yaml(graph: Graph) -> None:
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     graph.node("speaker").create_publisher(String, "word", latched).publish(String(data="Öl: 5"))
-    status, output, errors = run(graph, "topic", "echo", "--once", "/word")
+    status, output, errors = _run(graph, "topic", "echo", "--once", "/word")
     assert (status, output) == (0, "data: 'Öl: 5'\n---\n"), errors
 
 
 def test_pub_sends_the_number_asked_for(graph: Graph) -> None:
     received: list[float] = []
     graph.node("listener").create_subscription(Float64, "x", lambda message: received.append(message.data), 10)
-    status, output, _ = run(graph, "topic", "pub", "-t", "3", "-r", "50", "/x", "std_msgs/msg/Float64", "{data: 1e-3}")
+    status, output, _ = _run(graph, "topic", "pub", "-t", "3", "-r", "50", "/x", "std_msgs/msg/Float64", "{data: 1e-3}")
     assert status == 0 and "publishing #3: std_msgs.msg.Float64(data=0.001)" in output
     assert received == [0.001] * 3
 
@@ -67,14 +68,14 @@ def test_hz_tells_the_rate(graph: Graph) -> None:
 def test_parameters_are_set_got_and_described(graph: Graph) -> None:
     node = graph.node("sim")
     node.declare_parameter("leakage", 1e-12)
-    assert run(graph, "param", "set", "/sim", "leakage", "1.0e-10")[:2] == (0, "Set parameter successful\n")
+    assert _run(graph, "param", "set", "/sim", "leakage", "1.0e-10")[:2] == (0, "Set parameter successful\n")
     assert node.get_parameter("leakage").value == 1e-10
-    assert run(graph, "param", "get", "/sim", "leakage")[1] == "Double value is: 1e-10\n"
-    assert "  leakage\n" in run(graph, "param", "list", "/sim")[1]
-    assert "Parameter name: leakage\n  Type: double\n" in run(graph, "param", "describe", "/sim", "leakage")[1]
-    errors = run(graph, "param", "set", "/sim", "leakage", "text")[2]
+    assert _run(graph, "param", "get", "/sim", "leakage")[1] == "Double value is: 1e-10\n"
+    assert "  leakage\n" in _run(graph, "param", "list", "/sim")[1]
+    assert "Parameter name: leakage\n  Type: double\n" in _run(graph, "param", "describe", "/sim", "leakage")[1]
+    errors = _run(graph, "param", "set", "/sim", "leakage", "text")[2]
     assert errors.startswith("Setting parameter failed: Wrong parameter type")
-    assert run(graph, "param", "get", "/nobody", "leakage")[::2] == (1, "Node not found\n")
+    assert _run(graph, "param", "get", "/nobody", "leakage")[::2] == (1, "Node not found\n")
 
 
 def test_a_service_is_called(graph: Graph) -> None:
@@ -83,7 +84,7 @@ def test_a_service_is_called(graph: Graph) -> None:
         return response
 
     graph.node("server").create_service(SetBool, "switch", answer)
-    status, output, _ = run(graph, "service", "call", "/switch", "std_srvs/srv/SetBool", "{data: true}")
+    status, output, _ = _run(graph, "service", "call", "/switch", "std_srvs/srv/SetBool", "{data: true}")
     assert status == 0
     assert "requester: making request: std_srvs.srv.SetBool_Request(data=True)" in output
     assert "response:\nstd_srvs.srv.SetBool_Response(success=True, message='set')" in output
@@ -110,11 +111,11 @@ def test_a_recording_is_made_described_and_played(graph: Graph, tmp_path: Path) 
     graph.spin_until(lambda: time.monotonic() > end)
     recorder.process.send_signal(signal.SIGINT)
     recorder.result()
-    information = run(None, "bag", "info", str(bag))[1]
+    information = _run(None, "bag", "info", str(bag))[1]
     assert f"Topic: /x | Type: std_msgs/msg/Float64 | Count: {len(sent)} | Serialization Format: cdr" in information
     received: list[float] = []
     node.create_subscription(Float64, "/again", lambda message: received.append(message.data), 1000)
-    assert run(graph, "bag", "play", str(bag), "-r", "4", "-m", "/x:=/again")[0] == 0
+    assert _run(graph, "bag", "play", str(bag), "-r", "4", "-m", "/x:=/again")[0] == 0
     assert graph.spin_until(lambda: len(received) == len(sent)) and received == sent
 
 
@@ -198,7 +199,7 @@ def test_launch_starts_and_ends_what_the_file_says(package: Path, graph: Graph) 
     ],
 )
 def test_what_cannot_be_done_is_one_line_and_a_status(arguments: list[str], told: str) -> None:
-    status, output, errors = run(None, *arguments)
+    status, output, errors = _run(None, *arguments)
     assert status == 1 and told in errors
     assert "Traceback" not in output + errors
 
@@ -210,7 +211,7 @@ def test_what_cannot_be_done_is_one_line_and_a_status(arguments: list[str], told
 def test_an_unusable_launch_file_is_one_line(tmp_path: Path, text: str) -> None:
     file = tmp_path / "bad.launch.yaml"
     file.write_text(text)
-    status, _, errors = run(None, "launch", str(file))
+    status, _, errors = _run(None, "launch", str(file))
     assert status == 1 and str(file) in errors and len(errors.strip().splitlines()) == 1
 
 
@@ -220,5 +221,5 @@ def test_parameters_of_another_process(graph: Graph, program: Callable[..., Prog
         "print('ready'); rclpy.spin(n)"
     )
     program(source).wait_for("ready")
-    assert run(None, "param", "set", "/far", "a", "5")[0] == 0
-    assert run(None, "param", "get", "--hide-type", "/far", "a")[1] == "5\n"
+    assert _run(None, "param", "set", "/far", "a", "5")[0] == 0
+    assert _run(None, "param", "get", "--hide-type", "/far", "a")[1] == "5\n"

@@ -109,10 +109,12 @@ class _Type:
         self.__idl__ = data_type.__idl__
 
 
-class _DiscoveredQos(_CQos):  # type: ignore[misc]
+class _DiscoveredQos(_CQos):
     """cyclonedds's way from C to Python for what ROS uses. It forgets to free user data, and partitions, left out."""
 
-    _all_scopes = ("Reliability", "Durability", "History", "Lifespan", "Deadline", "Liveliness", "Userdata")
+    _all_scopes = (  # type: ignore[assignment]
+        "Reliability", "Durability", "History", "Lifespan", "Deadline", "Liveliness", "Userdata",
+    )  # fmt: skip
 
     @classmethod
     def _get_p_userdata(cls, qos: Any) -> Any:
