@@ -161,5 +161,5 @@ def test_nodes_that_come_and_go_leave_nothing(graph: Graph, own: bool) -> None:
             held, memory = _held(), _resident()
     assert "/observer" in names and "/brief" not in names and "/numbers" not in topics
     assert graph.spin_until(lambda: _held() <= held)
-    # 200 cycles: a list that grew by one kilobyte a cycle would show.
-    assert _resident() - memory < 200_000
+    # In 200 cycles. An allocator's own wandering is some 300 kB; one forgotten QoS of each endpoint is 1.4 MB.
+    assert _resident() - memory < 500_000
