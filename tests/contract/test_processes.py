@@ -15,7 +15,7 @@ from rclpy.node import Node
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
 
-from contract.conftest import Graph, Program, only_layer
+from contract.conftest import IS_LAYER, Graph, Program, only_layer
 
 TALKER = """
 import sys, rclpy
@@ -162,4 +162,5 @@ def test_nodes_that_come_and_go_leave_nothing(graph: Graph, own: bool) -> None:
     assert "/observer" in names and "/brief" not in names and "/numbers" not in topics
     assert graph.spin_until(lambda: _held() <= held)
     # In 200 cycles. An allocator's own wandering is some 300 kB; one forgotten QoS of each endpoint is 1.4 MB.
-    assert _resident() - memory < 500_000
+    # ROS 2's own grows by more: https://github.com/ros2/rclpy/issues/1034
+    assert not IS_LAYER or _resident() - memory < 500_000
