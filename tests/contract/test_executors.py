@@ -47,8 +47,8 @@ def test_an_exception_in_a_callback_reaches_the_spinner(graph: Graph) -> None:
 def test_a_guard_condition_wakes_a_waiting_executor(graph: Graph) -> None:
     woken: list[float] = []
     guard = graph.node("guarded").create_guard_condition(lambda: woken.append(time.monotonic()))
-    threading.Timer(0.1, guard.trigger).start()
     begun = time.monotonic()
+    threading.Timer(0.1, guard.trigger).start()
     graph.executor.spin_once(timeout_sec=5.0)
     while not woken and time.monotonic() - begun < 5.0:
         graph.executor.spin_once(timeout_sec=5.0)
