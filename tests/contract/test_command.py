@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -17,40 +15,14 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool
 
+from contract.commands import ROS2, Command
+from contract.commands import run as _run
 from contract.conftest import Graph, Program, only_layer
 
-ROS2 = shutil.which("ros2", path=os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", "")]))
 pytestmark = pytest.mark.skipif(ROS2 is None, reason="no ros2 command")
 
 
 LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-class Command:
-    """One call of `ros2`, running beside the test."""
-
-    def __init__(self, *arguments: str, cwd: Path | None = None) -> None:
-        self.process = subprocess.Popen(
-            [str(ROS2), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd
-        )
-
-    def result(self, timeout: float = 30.0) -> tuple[int, str, str]:
-        """Return exit status, output and errors."""
-        try:
-            output, errors = self.process.communicate(timeout=timeout)
-        finally:
-            if self.process.poll() is None:
-                self.process.kill()
-                self.process.communicate()
-        return self.process.returncode, output, errors
-
-
-def _run(graph: Graph | None, *arguments: str) -> tuple[int, str, str]:
-    """Run a command to its end while the test's nodes go on."""
-    command = Command(*arguments)
-    if graph is not None:
-        assert graph.spin_until(lambda: command.process.poll() is not None, 30.0)
-    return command.result()
 
 
 def test_lists_show_what_is_there(graph: Graph) -> None:

@@ -85,3 +85,27 @@ def test_matches_and_missed_deadlines_are_told(graph: Graph) -> None:
     publisher.publish(Float64())
     assert graph.spin_until(lambda: missed)
     assert matched[-1] == 1 and missed[0].total_count >= 1
+
+
+def test_a_policy_or_value_that_does_not_exist_is_refused(graph: Graph) -> None:
+    with pytest.raises(AssertionError):
+        QoSProfile(depth=1, hurry=True)
+    with pytest.raises((AssertionError, ValueError)):
+        QoSProfile(depth=1, reliability="reliable")
+    with pytest.raises(ValueError):
+        QoSProfile(depth=1, durability=77)
+    node = graph.node("owner")
+    with pytest.raises(ValueError):
+        node.create_publisher(Float64, "x", -1)
+    with pytest.raises(TypeError):
+        node.create_publisher(Float64, "x", "reliable")
+
+
+def test_a_publisher_that_is_gone_is_no_longer_alive(graph: Graph) -> None:
+    node, alive = graph.node("owner"), []
+    events = SubscriptionEventCallbacks(liveliness=lambda info: alive.append(info.alive_count))
+    node.create_subscription(Float64, "x", lambda _: None, 1, event_callbacks=events)
+    publisher = node.create_publisher(Float64, "x", 1)
+    assert graph.spin_until(lambda: alive and alive[-1] == 1)
+    node.destroy_publisher(publisher)
+    assert graph.spin_until(lambda: alive[-1] == 0)
