@@ -107,13 +107,14 @@ class _Player:
         time.sleep(0.5)
 
     def play(self) -> None:
-        begun = time.monotonic_ns()
+        begun = self.next_clock = 0
         for _, channel, message in messages(self.args.bag_path):
             publisher = self.publishers.get(channel.topic)
             if publisher is None or message.log_time < self.first:
                 continue
             if self.last is not None and message.log_time > self.last:
                 break
+            begun = begun or time.monotonic_ns()  # opening and skipping took time that is not the recording's
             if not self._sleep_until(begun, message.log_time):
                 return
             publisher.publish(message.data)
