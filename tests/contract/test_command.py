@@ -161,6 +161,24 @@ def test_a_recording_is_made_described_and_played(graph: Graph, tmp_path: Path) 
     assert graph.spin_until(lambda: len(received) == len(sent)) and received == sent
 
 
+def test_what_is_recorded_and_played_can_be_chosen_by_pattern(graph: Graph, tmp_path: Path) -> None:
+    node, bag, names = graph.node("speaker"), tmp_path / "bag", ("/rig/a", "/rig/b", "/rig/c", "/other")
+    publishers = [node.create_publisher(Float64, name, 10) for name in names]
+    timer = node.create_timer(0.02, lambda: [publisher.publish(Float64(data=1.0)) for publisher in publishers])
+    chosen = ["-e", "^/rig", "--exclude-topics", "/rig/b"]
+    recorder = Command("bag", "record", "-s", "mcap", "-o", str(bag), *chosen)
+    assert graph.spin_until(lambda: all(publishers[i].get_subscription_count() == 1 for i in (0, 2)), 15.0)
+    assert not graph.spin_until(lambda: any(publishers[i].get_subscription_count() for i in (1, 3)), 1.0)
+    recorder.process.send_signal(signal.SIGINT)
+    recorder.result()
+    timer.cancel()
+    heard: set[str] = set()
+    for name in names:
+        node.create_subscription(Float64, name, lambda _, name=name: heard.add(name), 10)
+    assert _run(graph, "bag", "play", str(bag), "-e", "/rig/.", "-x", ".*c")[0] == 0
+    assert heard == {"/rig/a"}
+
+
 LAUNCHED = """#!{python}
 import rclpy
 from rclpy.executors import ExternalShutdownException
