@@ -183,13 +183,15 @@ LAUNCHED = """#!{python}
 import rclpy
 from rclpy.executors import ExternalShutdownException
 try:
-    with rclpy.init():
-        node = rclpy.create_node("launched")
-        node.declare_parameter("gain", 0.0)
-        node.get_logger().info(f"up as {{node.get_fully_qualified_name()}} with {{node.get_parameter('gain').value}}")
-        rclpy.spin(node)
+    rclpy.init()
+    node = rclpy.create_node("launched")
+    node.declare_parameter("gain", 0.0)
+    node.get_logger().info(f"up as {{node.get_fully_qualified_name()}} with {{node.get_parameter('gain').value}}")
+    rclpy.spin(node)
 except (KeyboardInterrupt, ExternalShutdownException):
     pass
+finally:
+    rclpy.try_shutdown()
 """
 
 
