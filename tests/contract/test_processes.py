@@ -22,19 +22,21 @@ import sys, rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Float64
-with rclpy.init():
-    node = Node(sys.argv[1])
-    publisher = node.create_publisher(Float64, "numbers", 10)
-    node.create_timer(0.01, lambda: publisher.publish(Float64(data=1.0)))
-    try:
-        print("ready")
-        rclpy.spin(node)
-    except KeyboardInterrupt:
-        print("interrupted")
-    except ExternalShutdownException:
-        print("shut down")
-    else:
-        print("shut down between two callbacks")
+rclpy.init()
+node = Node(sys.argv[1])
+publisher = node.create_publisher(Float64, "numbers", 10)
+node.create_timer(0.01, lambda: publisher.publish(Float64(data=1.0)))
+try:
+    print("ready")
+    rclpy.spin(node)
+except KeyboardInterrupt:
+    print("interrupted")
+except ExternalShutdownException:
+    print("shut down")
+else:
+    print("shut down between two callbacks")
+finally:
+    rclpy.try_shutdown()
 """
 Start = Callable[..., Program]
 
@@ -99,6 +101,7 @@ print("garbage collector runs:", "gc" in threads())
     brief.end()
 
 
+@only_layer
 def test_an_idle_node_needs_no_processor(program: Start) -> None:
     source = """
 import time, rclpy
