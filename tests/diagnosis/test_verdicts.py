@@ -1,13 +1,17 @@
 """Whole diagnoses: what is planted is named, what is not there is not named, and the words and files say so."""
 
 import json
+from pathlib import Path
 
 import pytest
 from made import recorded
 
 from eha_core.cli import main
 from eha_core.diagnosis import diagnose
+from eha_core.exam.cases import draw_case
+from eha_core.exam.measuring import measure, simulate_case
 from eha_core.parameters import load_parameters, nominal_values
+from eha_core.recording import Channel, Recording
 
 
 def diagnosed(parameters, **how):
@@ -46,6 +50,46 @@ def test_overlap_is_named_from_voltage_and_position_alone():
     assert result.verdict in ("missing_physics", "ambiguous")
     assert result.effects[0].id == "valve_deadband"
     assert result.effects[0].parameters["half_width"].value == pytest.approx(2e-4, rel=0.05)
+
+
+def test_a_delay_is_not_taken_for_a_slow_valve():
+    result = diagnosed({"command_delay.delay": 6e-3, "moving_mass": 10.0})
+    assert [effect.id for effect in result.effects] == ["command_delay"]
+    assert result.effects[0].parameters["delay"].value == pytest.approx(6e-3, rel=0.03)
+
+
+def test_a_coefficient_that_is_small_in_si_units_is_not_nothing():
+    result = diagnosed({"external_leakage.coefficient_a": 2e-12, "external_leakage.coefficient_b": 1e-12})
+    assert [effect.id for effect in result.effects] == ["external_leakage"]
+
+
+def test_a_leakage_turned_on_purpose_is_no_mismatch(capsys):
+    assert main(["diagnose", "bags/paper_leakage_levels.mcap", "--json", "-"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["verdict"] == "consistent"
+    after = document["fit"]["held_out"]["position"]["rmse_after"]
+    assert after < 1e-6  # 1,600 um is what the leakage makes
+
+
+def test_a_force_that_no_name_fits_is_located_and_not_named():
+    case = draw_case("outside", 9, 101)
+    assert case.effect_ids == ("periodic_force",)
+    units = {"voltage_command": "V", "position": "m", "pressure_a": "Pa", "pressure_b": "Pa"}
+    arrays = measure(case, simulate_case(case))
+    channels = {name: Channel(name, *arrays[name], unit, name, "made") for name, unit in units.items()}
+    recording = Recording(Path("made.mcap"), channels, 0, case.duration, {}, (), None, ())
+    nominal = {**nominal_values(), **case.nominal}
+    result = diagnose(recording, nominal)
+    assert result.verdict == "unknown_physics"
+    assert not result.effects
+    assert result.location[0].site == "force"
+
+
+def test_a_piston_beyond_the_nominal_stroke_is_said_to_be_there():
+    nominal = {**nominal_values(), "actuator_displacement": 0.005}
+    result = diagnose(recorded({}), nominal)
+    assert any("beyond the nominal actuator_displacement" in remark for remark in result.remarks)
+    assert result.verdict == "parameters"
 
 
 def test_two_effects_at_once_are_both_named(tmp_path, capsys):

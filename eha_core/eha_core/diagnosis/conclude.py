@@ -24,9 +24,9 @@ from eha_core.diagnosis.result import (
     Pictures,
     UnknownLaw,
 )
-from eha_core.diagnosis.shooting import Shooting, cut, held_out
+from eha_core.diagnosis.shooting import Shooting, cut
 from eha_core.diagnosis.tournament import Entry
-from eha_core.diagnosis.validate import channel_rmse, judge, split
+from eha_core.diagnosis.validate import channel_rmse, instants_of, judge, split
 from eha_core.diagnosis.verdict import Decision, whiteness
 from eha_core.parameters import catalogue, nominal_values
 from eha_core.recording import Recording
@@ -87,7 +87,7 @@ def _channel_fits(
     shooting = evidence.calibration.shooting
     judged_nominal = decision.judged_nominal or judge(shooting, calibrated)
     judged_winner = decision.judged_winner or judged_nominal
-    training, judged = split(shooting)
+    training, judged = split(shooting, instants_of(decision.winner.fit))
     parts = (
         (channel_rmse(training, before.residuals), judged_nominal.training, judged_winner.training),
         (channel_rmse(judged, before.residuals), judged_nominal.held_out, judged_winner.held_out),
@@ -196,7 +196,8 @@ def _pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> P
         times["voltage_command"], measured["voltage_command"] = evidence.observation.inputs[0]
     equations = {one.equation: (one.time, one.residual) for one in evidence.equations}
     edges = shooting.edges * shooting.step_size
-    judged = tuple((float(edges[window]), float(edges[window + 1])) for window in held_out(shooting.windows))
+    outside = split(shooting, instants_of(after))[1]
+    judged = tuple((float(edges[window]), float(edges[window + 1])) for window in outside.windows)
     return Pictures(times, measured, models[0], models[1], models[2], variables, equations, judged)
 
 

@@ -60,9 +60,14 @@ class Fit:
     iterations: int
 
     def deviation(self, name: str) -> float:
-        """Standard deviation of a fitted parameter's value, from the curvature at the optimum."""
+        """Standard deviation of a fitted parameter's value, from the curvature at the optimum.
+
+        An instant is known no better than the span over which its derivative is taken.
+        """
         place = [one.name for one in self.free].index(name)
-        return float(np.sqrt(max(self.covariance[place, place], 0.0))) * self.free[place].slope(self.values[name])
+        one = self.free[place]
+        spread = float(np.sqrt(max(self.covariance[place, place], 0.0)))
+        return float(max(spread, one.resolution / np.sqrt(12.0))) * one.slope(self.values[name])
 
 
 def fit(

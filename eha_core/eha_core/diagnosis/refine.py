@@ -34,6 +34,9 @@ NOT_EXPLAINED = 1.03
 CROSSED = 3
 """How many of the leaders behind the best are fitted once more from where it stands."""
 
+INSTANT_SHIFTS = (-0.12, 0.12, -0.04, 0.04, -0.01, 0.01)
+"""s; how far beside its optimum an instant is tried once more."""
+
 OUT_OF_REACH = 200.0
 """A hypothesis that cannot come within this of the best objective so far is not fitted to its end."""
 
@@ -142,7 +145,7 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
             again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
-        result = _other_instants(problem, result)
+        result = _other_instants(exact, result)
         best = min(best, result.objective)
         settled[place] = (effects, result)
     return settled
@@ -175,14 +178,14 @@ def cross(problem: Problem, found: Found) -> Found:
     return crossed
 
 
-def _other_instants(problem: Problem, result: Fit) -> Fit:
-    """An instant that a fit moves can rest beside the right one: try its surroundings."""
+def _other_instants(exact: Problem, result: Fit) -> Fit:
+    """An instant that a fit moves can rest beside the right one, by far or by a little: try its surroundings."""
     for one in result.free:
         if one.resolution == 0.0:
             continue
-        for shift in (-0.12, -0.04, 0.04, 0.12):
+        for shift in INSTANT_SHIFTS:
             moved = {**result.values, one.name: result.values[one.name] + shift}
-            again = fit(problem, moved, result.free, result.states, iterations=4)
+            again = fit(exact, moved, result.free, result.states, iterations=6, give_up_above=result.objective)
             if again.objective < result.objective:
                 result = again
     return result

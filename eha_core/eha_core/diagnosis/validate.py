@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,26 +24,35 @@ class Judged:
     held_out: Mapping[str, float]
 
 
-def split(shooting: Shooting) -> tuple[Problem, Problem]:
-    """The windows to fit on, and those to judge on. Two windows or fewer are both."""
-    judged = np.array(list(held_out(shooting.windows)), dtype=np.int64)
+def split(shooting: Shooting, instants: Iterable[float] = ()) -> tuple[Problem, Problem]:
+    """The windows to fit on, and those to judge on. Two windows or fewer are both.
+
+    What happens at one of the `instants` [s] can be learnt there only: their windows, and those before and after, are
+    fitted to.
+    """
+    edges = shooting.edges[1:-1] * shooting.step_size
+    eventful = {int(window) + beside for window in np.searchsorted(edges, list(instants)) for beside in (-1, 0, 1)}
+    judged = np.array([window for window in held_out(shooting.windows) if window not in eventful], dtype=np.int64)
     rest = np.setdiff1d(np.arange(shooting.windows), judged)
-    if shooting.windows < 3:
+    if shooting.windows < 3 or len(judged) == 0:
         everything = np.arange(shooting.windows)
         return Problem(shooting, everything), Problem(shooting, everything)
     return Problem(shooting, rest), Problem(shooting, judged)
 
 
-def judge(shooting: Shooting, model: Fit, refit: bool = True) -> Judged:
+def judge(shooting: Shooting, model: Fit, instants: Iterable[float] = ()) -> Judged:
     """Refit `model` on the training windows only, then fit the judged windows' starts with its parameters held."""
-    training, judged = split(shooting)
-    fitted = (
-        fit(training, model.values, model.free, model.states, iterations=6) if refit else refit_states(training, model)
-    )
+    training, judged = split(shooting, instants)
+    fitted = fit(training, model.values, model.free, model.states, iterations=6)
     outside = refit_states(judged, fitted)
     return Judged(
         outside.data, outside.count, channel_rmse(training, fitted.residuals), channel_rmse(judged, outside.residuals)
     )
+
+
+def instants_of(model: Fit) -> list[float]:
+    """The instants that a model moves [s]."""
+    return [model.values[one.name] for one in model.free if one.resolution > 0.0]
 
 
 def channel_rmse(problem: Problem, residuals: tuple[Array, ...]) -> dict[str, float]:

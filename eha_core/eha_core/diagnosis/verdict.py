@@ -16,13 +16,10 @@ from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.refine import FAR_OFF
 from eha_core.diagnosis.tournament import ENOUGH, TIE, Entry, Tournament, bounded, parameter_cost
 from eha_core.diagnosis.unknown import Recovery
-from eha_core.diagnosis.validate import Judged, judge
+from eha_core.diagnosis.validate import Judged, instants_of, judge
 
 HELD_OUT = 5.0
 """A named effect must lower chi^2 on held-out windows by this."""
-
-EVENTFUL = frozenset({"schedule"})
-"""Sites whose effects happen at one time: a held-out window may hold the event, so they are judged on all data."""
 
 
 @dataclass(frozen=True)
@@ -68,11 +65,11 @@ def decide(
         return _unnamed(calibration, tournament, recovery)
     if not standing:
         return _without_physics(calibration, nominal, tournament)
-    judged_nominal = judge(calibration.shooting, tournament.nominal.fit)
-    judged_winner = judge(calibration.shooting, winner.fit)
+    instants = instants_of(winner.fit)
+    judged_nominal = judge(calibration.shooting, tournament.nominal.fit, instants)
+    judged_winner = judge(calibration.shooting, winner.fit, instants)
     gain = (judged_nominal.chi_square - judged_winner.chi_square) / tournament.scatter
-    eventful = any(effect.site in EVENTFUL for effect in winner.effects)
-    if gain < HELD_OUT and not eventful:
+    if gain < HELD_OUT:
         return _without_physics(calibration, nominal, tournament)
     rivals = tuple((entry, winner.score - entry.score) for entry in standing[1:] if _is_rival(winner, entry))
     verdict = "ambiguous" if rivals else "missing_physics"
