@@ -150,7 +150,7 @@ def _supports(sighting: Sighting, columns: Sequence[Array]) -> list[tuple[int, .
     found = {*combinations(there, 1), *combinations(there, 2)}
     target = sighting.seen[:, None] / np.linalg.norm(sighting.seen)
     most = min(MOST_TERMS + 1, len(able))
-    for optimiser in (FROLS(max_iter=most, alpha=1e-9), SSR(max_iter=len(able), alpha=1e-9, criteria="model_residual")):
+    for optimiser in (FROLS(max_iter=most, alpha=1e-9), SSR(max_iter=len(able), alpha=1e-9)):
         for used in _passed(optimiser, unit[able].T, target):
             support = tuple(sorted({owners[able[k]] for k in used}))
             if 0 < len(support) <= MOST_TERMS:
