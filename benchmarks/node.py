@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmarks.processes import ROOT, start, use_own_domain
 from benchmarks.row import Row, skipped
 
-ROOT = Path(__file__).resolve().parent.parent
 RATE = 1000.0
 SUBSCRIBERS = 4
 WINDOW = 10.0  # s; the node reports the lateness of this long a stretch, the longest it offers
@@ -39,9 +39,7 @@ def measure(seconds: float) -> list[Row]:
         import rclpy
     except ImportError:
         return [skipped(_WHAT, "no step lost", "there is neither ROS 2 nor rclpy_dds")]
-    # A domain of its own on this machine only, so that nobody's rig takes part.
-    os.environ["ROS_DOMAIN_ID"] = str(46 + os.getpid() % 56)
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    use_own_domain()
     options = ["-p", f"publish_rate:={RATE}", "-p", f"diagnostics_rate:={1.0 / WINDOW}"]
     simulator = subprocess.Popen([sys.executable, "-m", "eha_sim_node.sim", "--ros-args", *options], cwd=ROOT)
     started: list[subprocess.Popen[str]] = []
@@ -72,13 +70,13 @@ def _observe(rclpy: Any, simulator: int, started: list[subprocess.Popen[str]], s
     deadline = time.monotonic() + START_LIMIT
     while not reports and time.monotonic() < deadline:
         rclpy.spin_once(node, timeout_sec=0.5)
-    started += [_module("subscriber", seconds, round(1e9 / RATE)) for _ in range(SUBSCRIBERS)]
-    started.append(_module("sleep_loop", RATE, seconds, WINDOW))
+    started += [start("subscriber", seconds, round(1e9 / RATE)) for _ in range(SUBSCRIBERS)]
+    started.append(start("sleep_loop", RATE, seconds, WINDOW))
     reports.clear()
-    cpu, start = _cpu_seconds(simulator), time.monotonic()
-    while time.monotonic() - start < seconds:
+    cpu, begun = _cpu_seconds(simulator), time.monotonic()
+    while time.monotonic() - begun < seconds:
         rclpy.spin_once(node, timeout_sec=0.5)
-    share = (_cpu_seconds(simulator) - cpu) / (time.monotonic() - start)
+    share = (_cpu_seconds(simulator) - cpu) / (time.monotonic() - begun)
     *counts, bare = [process.communicate(timeout=seconds + START_LIMIT)[0].split() for process in started]
     return Run(
         # The first report still covers the start of the subscribers.
@@ -89,12 +87,6 @@ def _observe(rclpy: Any, simulator: int, started: list[subprocess.Popen[str]], s
         bare_p99=float(bare[0]),
         cpu_share=share,
     )
-
-
-def _module(name: str, *arguments: float) -> subprocess.Popen[str]:
-    """Start another module of this package as a process whose output is read."""
-    command = [sys.executable, "-m", f"benchmarks.{name}", *map(str, arguments)]
-    return subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
 
 
 def _cpu_seconds(process: int) -> float:

@@ -21,6 +21,7 @@ setup(
     package_dir={"": "."},  # so that an editable install wins over this folder when Python starts beside it
     python_requires=">=3.10",
     install_requires=["eha_core"],
+    extras_require={"test": ["pytest", "pytest-timeout"]},  # by these colcon knows that pytest runs the tests
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),

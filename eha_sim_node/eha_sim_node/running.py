@@ -8,7 +8,6 @@ from collections.abc import Callable
 
 import rclpy
 from rcl_interfaces.srv import GetParameterTypes
-from rclpy.exceptions import NotInitializedException
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
@@ -30,11 +29,15 @@ def run(make_node: Callable[[], Node], name: str) -> int:
         node = make_node()
         _refuse_namesake(node)
         rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException, NotInitializedException):
-        pass  # the last of them where a signal came before the node was made
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
     except EhaError as error:
         print(f"{name}: {' '.join(str(error).split())}", file=sys.stderr, flush=True)
         return 2
+    except Exception:
+        if rclpy.ok():
+            raise
+        # A signal has shut rclpy down, and the call that was under way failed for it.
     finally:
         if node is not None:
             if hasattr(node, "close"):

@@ -58,3 +58,10 @@ def test_run_too_short_to_measure_is_refused(capsys: pytest.CaptureFixture[str])
     message = capsys.readouterr().err
     assert message.count("\n") == 1
     assert "30" in message
+
+
+def test_unknown_benchmark_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench", "plant"]) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert "'plant'" in message

@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-# One domain for these tests, on this machine only, unless the caller has chosen.
-os.environ.setdefault("ROS_DOMAIN_ID", "41")
-os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+# A domain of their own, on this machine only. Ports of domains above 101 collide with Linux' ephemeral ones.
+os.environ["ROS_DOMAIN_ID"] = os.environ.get("EHA_TEST_DOMAIN_ID", str(46 + os.getpid() % 56))
+os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor

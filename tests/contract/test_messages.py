@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import array
+import os
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy
 import pytest
@@ -12,6 +15,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import ByteMultiArray, Float64, Header
 from std_srvs.srv import SetBool
+
+from contract.conftest import Program, only_layer
 
 
 def test_defaults_and_field_types() -> None:
@@ -29,8 +34,9 @@ def test_lists_become_arrays_and_slots_are_closed() -> None:
     assert message.position == array.array("d", [1.0, 2.5])
     with pytest.raises(AttributeError):
         message.not_a_field = 1
+    assert JointState(not_a_field=1, check_fields=False) == JointState()
     with pytest.raises(AssertionError):
-        JointState(not_a_field=1)
+        JointState(not_a_field=1, check_fields=True)
 
 
 def test_equality_and_text() -> None:
@@ -38,7 +44,7 @@ def test_equality_and_text() -> None:
     assert repr(Float64(data=1.5)) == "std_msgs.msg.Float64(data=1.5)"
     assert repr(SetBool.Request(data=True)) == "std_srvs.srv.SetBool_Request(data=True)"
     first, second = PoseWithCovariance(), PoseWithCovariance()
-    second.covariance[3] = 1.0
+    second.covariance[:] = 1.0  # ROS 2's own takes arrays for equal that share a single element
     assert first != second
 
 
@@ -61,3 +67,52 @@ def test_what_is_serialised_comes_back() -> None:
     status = DiagnosticStatus(level=DiagnosticStatus.ERROR, name="pump", message="ölig")
     for message in (pose, status, ByteMultiArray(data=[b"\x01", b"\xff"]), Header(frame_id="x")):
         assert deserialize_message(serialize_message(message), type(message)) == message
+
+
+@pytest.mark.parametrize(("switch", "said"), [("1", "refused"), ("0", "taken"), (None, "taken")])
+def test_one_switch_turns_the_checks_on(
+    program: Callable[..., Program], monkeypatch: pytest.MonkeyPatch, switch: str | None, said: str
+) -> None:
+    monkeypatch.delenv("ROS_PYTHON_CHECK_FIELDS", raising=False)
+    if switch is not None:
+        monkeypatch.setenv("ROS_PYTHON_CHECK_FIELDS", switch)
+    source = """
+from std_msgs.msg import Float64
+try:
+    Float64(data="1")
+    print("outcome: taken")
+except AssertionError:
+    print("outcome: refused")
+"""
+    assert program(source).wait_for("outcome").split()[-1] == said
+
+
+def test_slots_are_the_fields_and_constants_belong_to_the_class() -> None:
+    assert set(JointState.__slots__) >= {"_header", "_name", "_position", "_velocity", "_effort"}
+    assert list(JointState.get_fields_and_field_types()) == ["header", "name", "position", "velocity", "effort"]
+    assert (DiagnosticStatus.WARN, DiagnosticStatus.STALE) == (b"\x01", b"\x03")
+
+
+@only_layer  # elsewhere they are made when a package is built
+def test_messages_of_a_package_are_found_where_it_is_installed(
+    program: Callable[..., Program], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    share = tmp_path / "share" / "found_msgs"
+    for folder, name, text in (
+        ("msg", "Found.msg", "int8 LOW=-5\nfloat64[3] x [1, 2.5, -3]\nstd_msgs/Header header\n"),
+        ("srv", "Ask.srv", "string word\n---\nfound_msgs/Found answer\n"),
+    ):
+        (share / folder).mkdir(parents=True)
+        (share / folder / name).write_text(text)
+    before = os.environ.get("AMENT_PREFIX_PATH")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tmp_path}{os.pathsep}{before}" if before else str(tmp_path))
+    source = """
+from found_msgs.msg import Found
+from found_msgs.srv import Ask
+from rclpy.serialization import deserialize_message, serialize_message
+sent = Ask.Response(answer=Found(x=[4.0, 5.0, 6.0]))
+sent.answer.header.frame_id = "rig"
+assert deserialize_message(serialize_message(sent), Ask.Response) == sent
+print("found", Found().x.tolist(), Found.LOW, sent.answer.header.frame_id)
+"""
+    assert program(source).wait_for("found").strip() == "found [1.0, 2.5, -3.0] -5 rig"

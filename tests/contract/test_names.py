@@ -11,6 +11,8 @@ from rclpy.exceptions import (
     InvalidTopicNameException,
     NotInitializedException,
 )
+from rclpy.logging import LoggingSeverity
+from rclpy.utilities import remove_ros_args
 from std_msgs.msg import Float64
 from std_srvs.srv import Empty
 
@@ -66,3 +68,46 @@ def test_arguments_that_make_no_sense_are_refused(arguments: list[str]) -> None:
 def test_a_node_needs_init() -> None:
     with pytest.raises(NotInitializedException):
         rclpy.create_node("too_early", context=rclpy.Context())
+
+
+def test_ros_arguments_end_with_two_dashes_and_the_rest_is_the_programs_own() -> None:
+    command = ["node", "--own", "--ros-args", "-r", "x:=y", "-p", "a:=1", "--", "last"]
+    assert remove_ros_args(command) == ["node", "--own", "last"]
+
+
+def test_arguments_set_the_level_of_a_logger() -> None:
+    context = rclpy.Context()
+    rclpy.init(args=["--ros-args", "--log-level", "contract_quiet:=error"], context=context)
+    node = rclpy.create_node("contract_quiet", context=context)
+    try:
+        assert node.get_logger().get_effective_level() == LoggingSeverity.ERROR
+    finally:
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def test_arguments_name_the_enclave_and_silence_rosout() -> None:
+    context = rclpy.Context()
+    rclpy.init(args=["--ros-args", "--enclave", "/rig", "--disable-rosout-logs"], context=context)
+    node = rclpy.create_node("contract_quiet", context=context)
+    try:
+        assert ("contract_quiet", "/", "/rig") in node.get_node_names_and_namespaces_with_enclaves()
+        published = dict(node.get_publisher_names_and_types_by_node("contract_quiet", "/"))
+        assert "/parameter_events" in published and "/rosout" not in published
+    finally:
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def test_global_arguments_reach_every_node_that_does_not_refuse_them() -> None:
+    context = rclpy.Context()
+    rclpy.init(args=["--ros-args", "-r", "x:=y", "-p", "a:=2"], context=context)
+    heeding = rclpy.create_node("heeding", context=context)
+    refusing = rclpy.create_node("refusing", context=context, use_global_arguments=False)
+    try:
+        assert [node.resolve_topic_name("x") for node in (heeding, refusing)] == ["/y", "/x"]
+        assert [node.declare_parameter("a", 1).value for node in (heeding, refusing)] == [2, 1]
+    finally:
+        heeding.destroy_node()
+        refusing.destroy_node()
+        rclpy.shutdown(context=context)

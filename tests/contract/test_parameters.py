@@ -19,6 +19,7 @@ from rclpy.exceptions import (
     InvalidParameterTypeException,
     InvalidParameterValueException,
     ParameterAlreadyDeclaredException,
+    ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
@@ -197,3 +198,23 @@ def test_a_change_is_announced(graph: Graph) -> None:
     changed = next(event for event in events if event.changed_parameters)
     assert changed.node == "/owner"
     assert changed.changed_parameters[0].value.double_value == 2.0
+
+
+def test_a_type_may_be_left_open_and_a_parameter_forgotten(graph: Graph) -> None:
+    node = graph.node("owner")
+    node.declare_parameter("p", 1, ParameterDescriptor(dynamic_typing=True))
+    assert _set(node, "p", "text").successful
+    assert node.get_parameter("p").value == "text"
+    node.undeclare_parameter("p")
+    assert not node.has_parameter("p")
+    node.declare_parameter("fixed", 1, ParameterDescriptor(read_only=True))
+    with pytest.raises(ParameterImmutableException):
+        node.undeclare_parameter("fixed")
+
+
+def test_overrides_declare_where_that_is_asked_for(graph: Graph) -> None:
+    given = [Parameter("a", value=1.5), Parameter("group.b", value="x")]
+    node = graph.node("owner", parameter_overrides=given, automatically_declare_parameters_from_overrides=True)
+    assert node.get_parameter("a").value == 1.5
+    assert {name: found.value for name, found in node.get_parameters_by_prefix("group").items()} == {"b": "x"}
+    assert node.get_parameter_or("c", Parameter("c", value=7)).value == 7

@@ -2,33 +2,41 @@
 
 from __future__ import annotations
 
+import gc
+import os
 import signal
 import time
 from collections.abc import Callable
 
 import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
 from std_msgs.msg import Float64
+from std_srvs.srv import SetBool
 
-from contract.conftest import Graph, Program, only_layer
+from contract.conftest import IS_LAYER, Graph, Program, only_layer
 
 TALKER = """
 import sys, rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Float64
-with rclpy.init():
-    node = Node(sys.argv[1])
-    publisher = node.create_publisher(Float64, "numbers", 10)
-    node.create_timer(0.01, lambda: publisher.publish(Float64(data=1.0)))
-    try:
-        print("ready")
-        rclpy.spin(node)
-    except KeyboardInterrupt:
-        print("interrupted")
-    except ExternalShutdownException:
-        print("shut down")
-    else:
-        print("shut down between two callbacks")
+rclpy.init()
+node = Node(sys.argv[1])
+publisher = node.create_publisher(Float64, "numbers", 10)
+node.create_timer(0.01, lambda: publisher.publish(Float64(data=1.0)))
+try:
+    print("ready")
+    rclpy.spin(node)
+except KeyboardInterrupt:
+    print("interrupted")
+except ExternalShutdownException:
+    print("shut down")
+else:
+    print("shut down between two callbacks")
+finally:
+    rclpy.try_shutdown()
 """
 Start = Callable[..., Program]
 
@@ -93,6 +101,7 @@ print("garbage collector runs:", "gc" in threads())
     brief.end()
 
 
+@only_layer
 def test_an_idle_node_needs_no_processor(program: Start) -> None:
     source = """
 import time, rclpy
@@ -109,29 +118,52 @@ print("used", (time.process_time() - before) / 2.0)
     assert used < 0.01
 
 
-def test_nodes_that_come_and_go_leave_nothing(graph: Graph) -> None:
-    import os
+def _held() -> tuple[int, int]:
+    """Return how many files are open and how many threads there are."""
+    return len(os.listdir("/proc/self/fd")), len(os.listdir("/proc/self/task"))
 
-    def handles() -> int:
-        return len(os.listdir("/proc/self/fd"))
 
-    def resident() -> int:
-        with open("/proc/self/statm", encoding="ascii") as file:
-            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+def _resident() -> int:
+    """Return the memory in use [bytes]."""
+    gc.collect()
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
-    observer = graph.node("observer")
-    for cycle in range(300):
-        node = graph.node("brief")
-        node.create_publisher(Float64, "numbers", 10)
-        graph.executor.spin_once(timeout_sec=0)
-        graph.executor.remove_node(node)
-        node.destroy_node()
-        graph.nodes.pop()
-        if cycle == 100:
-            observer.get_node_names()
-            files, memory = handles(), resident()
-    observer.get_node_names()
-    assert handles() <= files
-    assert resident() - memory < 10_000_000
-    time.sleep(0.1)
-    assert _names(graph) == ["/observer"]
+
+def _live_and_die(context: rclpy.Context) -> None:
+    """Let a node with one of each exchange a message and a call, and destroy it."""
+    node, executor, received = Node("brief", context=context), SingleThreadedExecutor(context=context), []
+    executor.add_node(node)
+    publisher = node.create_publisher(Float64, "numbers", 10)
+    node.create_subscription(Float64, "numbers", received.append, 10)
+    node.create_timer(0.001, lambda: publisher.publish(Float64(data=1.0)))
+    node.create_service(SetBool, "switch", lambda request, response: response)
+    client = node.create_client(SetBool, "switch")
+    assert client.wait_for_service(5.0)
+    answer = client.call_async(SetBool.Request())
+    end = time.monotonic() + 5.0
+    while not (received and answer.done()) and time.monotonic() < end:
+        executor.spin_once(timeout_sec=0.1)
+    assert received and answer.done()
+    executor.shutdown()
+    node.destroy_node()
+
+
+@pytest.mark.parametrize("own", [False, True], ids=["in one context", "each in its own"])
+def test_nodes_that_come_and_go_leave_nothing(graph: Graph, own: bool) -> None:
+    observer, cycles = graph.node("observer"), 300
+    for cycle in range(cycles):
+        context = rclpy.Context() if own else observer.context
+        if own:
+            rclpy.init(args=[], context=context)
+        _live_and_die(context)
+        if own:
+            rclpy.shutdown(context=context)
+        topics, names = dict(observer.get_topic_names_and_types()), _names(graph)  # takes in what was discovered
+        if cycle == cycles // 3:  # by now every pool and cache has its size
+            held, memory = _held(), _resident()
+    assert "/observer" in names and "/brief" not in names and "/numbers" not in topics
+    assert graph.spin_until(lambda: _held() <= held)
+    # In 200 cycles. An allocator's own wandering is some 300 kB; one forgotten QoS of each endpoint is 1.4 MB.
+    # ROS 2's own grows by more: https://github.com/ros2/rclpy/issues/1034
+    assert not IS_LAYER or _resident() - memory < 500_000

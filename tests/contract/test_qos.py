@@ -9,6 +9,7 @@ from rclpy.qos import (
     DurabilityPolicy,
     HistoryPolicy,
     InvalidQoSProfileException,
+    LivelinessPolicy,
     QoSCompatibility,
     QoSPolicyKind,
     QoSProfile,
@@ -31,10 +32,16 @@ def test_profiles_need_a_depth_where_it_counts() -> None:
 
 
 def test_compatibility_is_told() -> None:
-    reliable, best_effort = QoSProfile(depth=1), QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    reliable = QoSProfile(depth=1, liveliness=LivelinessPolicy.AUTOMATIC)
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, liveliness=LivelinessPolicy.AUTOMATIC)
     assert qos_check_compatible(reliable, best_effort) == (QoSCompatibility.OK, "")
-    compatibility, reason = qos_check_compatible(best_effort, reliable)
-    assert compatibility == QoSCompatibility.ERROR and "reliable" in reason.lower()
+    refused = (QoSCompatibility.ERROR, "ERROR: Best effort publisher and reliable subscription;")
+    assert qos_check_compatible(best_effort, reliable) == refused
+    waiting = QoSProfile(depth=1, liveliness=LivelinessPolicy.AUTOMATIC, deadline=Duration(seconds=1))
+    refused = (QoSCompatibility.ERROR, "ERROR: Subscription has a deadline, but publisher does not;")
+    assert qos_check_compatible(reliable, waiting) == refused
+    left_open = "WARNING: Publisher liveliness is system_default and subscription liveliness is system_default;"
+    assert qos_check_compatible(QoSProfile(depth=1), QoSProfile(depth=1)) == (QoSCompatibility.WARNING, left_open)
 
 
 def test_endpoints_show_their_profiles_in_the_graph(graph: Graph) -> None:
@@ -69,6 +76,7 @@ def test_incompatible_endpoints_hear_of_each_other(graph: Graph) -> None:
     assert all(info.last_policy_kind == QoSPolicyKind.RELIABILITY and info.total_count == 1 for info in events.values())
 
 
+@pytest.mark.filterwarnings("ignore:QoSEventHandler is deprecated")  # rclpy uses it itself
 def test_matches_and_missed_deadlines_are_told(graph: Graph) -> None:
     node, matched, missed = graph.node("owner"), [], []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=0.05))
@@ -85,3 +93,27 @@ def test_matches_and_missed_deadlines_are_told(graph: Graph) -> None:
     publisher.publish(Float64())
     assert graph.spin_until(lambda: missed)
     assert matched[-1] == 1 and missed[0].total_count >= 1
+
+
+def test_a_policy_or_value_that_does_not_exist_is_refused(graph: Graph) -> None:
+    with pytest.raises(AssertionError):
+        QoSProfile(depth=1, hurry=True)
+    with pytest.raises((AssertionError, ValueError)):
+        QoSProfile(depth=1, reliability="reliable")
+    with pytest.raises(ValueError):
+        QoSProfile(depth=1, durability=77)
+    node = graph.node("owner")
+    with pytest.raises(ValueError):
+        node.create_publisher(Float64, "x", -1)
+    with pytest.raises(TypeError):
+        node.create_publisher(Float64, "x", "reliable")
+
+
+def test_a_publisher_that_is_gone_is_no_longer_alive(graph: Graph) -> None:
+    node, alive = graph.node("owner"), []
+    events = SubscriptionEventCallbacks(liveliness=lambda info: alive.append(info.alive_count))
+    node.create_subscription(Float64, "x", lambda _: None, 1, event_callbacks=events)
+    publisher = node.create_publisher(Float64, "x", 1)
+    assert graph.spin_until(lambda: alive and alive[-1] == 1)
+    node.destroy_publisher(publisher)
+    assert graph.spin_until(lambda: alive[-1] == 0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from time import monotonic, time_ns
+
 import pytest
 from rclpy.clock import Clock, JumpThreshold
 from rclpy.clock_type import ClockType
@@ -33,6 +35,22 @@ def test_a_steady_clock_goes_forward() -> None:
     clock = Clock(clock_type=ClockType.STEADY_TIME)
     first = clock.now()
     assert clock.now() >= first
+
+
+@pytest.mark.parametrize("kind", [ClockType.STEADY_TIME, ClockType.SYSTEM_TIME, ClockType.ROS_TIME])
+def test_every_clock_sleeps_as_long_as_it_is_told(graph: Graph, kind: ClockType) -> None:
+    clock = graph.node("sleeper").get_clock() if kind == ClockType.ROS_TIME else Clock(clock_type=kind)
+    begun = monotonic()
+    assert clock.sleep_for(Duration(seconds=0.1))
+    assert 0.099 < monotonic() - begun < 1.0
+    assert clock.sleep_until(clock.now() - Duration(seconds=1))  # long past: at once
+    assert monotonic() - begun < 1.0
+
+
+def test_the_system_clock_is_the_machines() -> None:
+    before = time_ns()
+    now = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds
+    assert before <= now <= time_ns()
 
 
 def _tell(graph: Graph, publisher: object, node: object, seconds: int) -> None:

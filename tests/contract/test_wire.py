@@ -157,6 +157,22 @@ def test_type_hashes_agree_with_rosbags() -> None:
             assert type_hash(name) == typestore().hash_rihs01(name), name
 
 
+def test_cyclone_dds_itself_still_works_beside_the_layer(program: type[Program]) -> None:
+    source = """
+import rclpy
+from cyclonedds.core import GuardCondition, WaitSet
+from cyclonedds.domain import DomainParticipant
+with rclpy.init():
+    rclpy.create_node("beside")
+    participant = DomainParticipant(rclpy.get_default_context().get_domain_id())
+    waitset, guard = WaitSet(participant), GuardCondition(participant)
+    waitset.attach(guard)
+    guard.set(True)
+    print("woken by", waitset.wait(10**9))
+"""
+    assert program(source).wait_for("woken").strip() == "woken by 1"
+
+
 def test_truncated_bytes_are_malformed_and_never_a_message() -> None:
     from sensor_msgs.msg import JointState
 

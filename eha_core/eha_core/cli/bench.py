@@ -12,6 +12,7 @@ from pathlib import Path
 from eha_core.errors import EhaError
 
 _CHECKOUT = Path(__file__).resolve().parents[3]
+_BENCHMARKS = ("plant_step", "integrators", "layer", "node")
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -19,7 +20,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "bench",
         help="measure speed against named peers",
-        description="Measures the plant's step, the integrator and the simulator node against their peers, in one run.",
+        description="Measures the plant's step, the integrator, the nodes' rclpy and the simulator node against their "
+        "peers, in one run.",
+    )
+    parser.add_argument(
+        "names", nargs="*", metavar="BENCHMARK", help=f"which of {', '.join(_BENCHMARKS)} (default: all of them)"
     )
     parser.add_argument(
         "--seconds",
@@ -36,16 +41,19 @@ def run(arguments: argparse.Namespace) -> int:
         raise EhaError("the benchmarks are not installed with the package; run this in a checkout of the project")
     if arguments.seconds and arguments.seconds < 30.0:
         raise EhaError(f"--seconds {arguments.seconds:g} is too short for reports of 10 s each; give 30 or more, or 0")
+    unknown = [name for name in arguments.names if name not in _BENCHMARKS]
+    if unknown:
+        raise EhaError(f"there is no benchmark {unknown[0]!r}; give some of {', '.join(_BENCHMARKS)}, or none for all")
     sys.path.insert(0, str(_CHECKOUT))
-    names = ("plant_step", "integrators", "node", "row")
-    plant_step, integrators, node, row = (import_module(f"benchmarks.{name}") for name in names)
     machine = f"{_processor()}, {os.cpu_count()} CPUs, load {os.getloadavg()[0]:.1f}"
     print(f"{machine}, Python {platform.python_version()}", flush=True)
-    rows = [*plant_step.measure(), *integrators.measure()]
-    if arguments.seconds:
-        print(f"measuring the node for {arguments.seconds:g} s ...", file=sys.stderr, flush=True)
-        rows += node.measure(arguments.seconds)
-    print(row.as_markdown(rows))
+    rows = []
+    for name in arguments.names or _BENCHMARKS:
+        options = (arguments.seconds,) if name == "node" else ()
+        if options != (0.0,):
+            print(f"measuring {name} ...", file=sys.stderr, flush=True)
+            rows += import_module(f"benchmarks.{name}").measure(*options)
+    print(import_module("benchmarks.row").as_markdown(rows))
     return 0
 
 

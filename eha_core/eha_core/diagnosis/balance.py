@@ -160,10 +160,11 @@ def balances(observation: Observation, shooting: Shooting, model: Fit) -> tuple[
         "spool position": np.interp(grid.time, row_times, rows[:, COLUMNS.index("spool_position")]),
         "time": grid.time,
     }
+    leaked = sum((np.where(grid.time >= time, change, 0.0) * (a - b) for time, change in observation.leakage), 0.0 * a)
     noises = (position.noise, pressure_a.noise, pressure_b.noise)
     return (
         force_balance(grid, states, a, b, noises, model.values),
-        *(continuity_balance(grid, states, side, a, b, noises, model.values) for side in ("a", "b")),
+        *(continuity_balance(grid, states, side, a, b, noises, model.values, leaked) for side in ("a", "b")),
     )
 
 
@@ -212,14 +213,20 @@ def continuity_balance(
     b: Array,
     noises: tuple[float, ...],
     values: Mapping[str, float],
+    leaked: Array | None = None,
 ) -> Balance:
-    """A chamber's: what it is swept by, less the valve's flow, compression and leakage, is the flow that is missing."""
+    """A chamber's: what it is swept by, less the valve's flow, compression and leakage, is the flow that is missing.
+
+    `leaked`: the flow from chamber 1 to 2 [m^3/s] that was turned on while recording.
+    """
     x, speed, spool = states["position"], states["velocity"], states["spool position"]
     sign = 1.0 if side == "a" else -1.0
     own, noise = (a, noises[1]) if side == "a" else (b, noises[2])
     area = values["piston_area"] if side == "a" else values["piston_area_b"]
     volume = values["line_volume"] + area * (values["actuator_displacement"] + sign * x)
     left = -sign * area * grid.integrate(grid.slope, x)
+    if leaked is not None:
+        left = left + sign * grid.integrate(grid.bump, leaked)
     filling = np.where(sign * spool >= 0.0, values["supply_pressure"] - own, own - values["return_pressure"])
     flow_an_ampere = sign * values["valve_gain"] * np.sqrt(np.maximum(filling, 0.0))
     # V dP/dt integrates by parts to -(slope V + bump dV/dt) P

@@ -101,6 +101,8 @@ def nominal_freedom(nominal: Mapping[str, float], drive: str, travel: float) -> 
             continue
         row = catalogue()[name]
         reference = nominal[name]
+        if name == "spring_stiffness" and reference == 0.0 and drive != "voltage":
+            continue  # an axis said to have no spring; a spring would only take up what an offset leaves
         logarithmic = known.scale == 0.0 and reference > 0.0
         lower, upper = row.lower, row.upper
         if logarithmic:

@@ -4,7 +4,7 @@ against."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,9 @@ FITTED = ("position", "velocity", "pressure_a", "pressure_b")
 
 RESOLVED = {"m": 1e-6, "m/s": 1e-3, "Pa": 3e3}
 """Better than any sensor and coarser than the search's simulation: a recording without noise is not held to more."""
+
+OVERSHOOT = 1.05
+"""Share of the nominal stroke that a position may show before the stroke is held to be larger than stated."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,8 @@ class Observation:
         drive: what the simulation is driven by: "voltage", "pressures" or "force".
         inputs: the driving channels, as (time, values); voltage is held between samples.
         measured: the channels that are compared.
+        leakage: (time [s], change of the internal leakage coefficient since the start [m^3/(s Pa)]) of each change that
+        the recording itself tells of: what was turned on purpose is no mismatch.
         duration: [s].
         not_examined: what could not be looked at and why, one line each.
         remarks: what was put right or left out, one line each.
@@ -52,6 +57,7 @@ class Observation:
     drive: str
     inputs: tuple[tuple[Array, Array], ...]
     measured: tuple[Measured, ...]
+    leakage: tuple[tuple[float, float], ...]
     duration: float
     channels: tuple[str, ...]
     not_examined: tuple[str, ...]
@@ -98,9 +104,45 @@ def observe(recording: Recording) -> Observation:
     for name in ("pressure_a", "pressure_b"):
         if name not in channels and drive == "voltage":
             not_examined.append(f"continuity of chamber {name[-1]}: {name} was not recorded")
+    leakage = _leakage(recording) if drive == "voltage" else ()
+    if leakage:
+        remarks.append(f"internal leakage was changed on purpose {len(leakage)} times; the simulation follows")
     return Observation(
-        where, drive, inputs, tuple(measured), recording.duration, tuple(channels), tuple(not_examined), tuple(remarks)
+        where,
+        drive,
+        inputs,
+        tuple(measured),
+        leakage,
+        recording.duration,
+        tuple(channels),
+        tuple(not_examined),
+        tuple(remarks),
     )
+
+
+def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:
+    """The changes after the start, against the coefficient in force at the start."""
+    told = recording.leakage_changes
+    if not told:
+        return ()
+    first = next((value for time, value in reversed(told) if time <= 0.0), told[0][1])
+    return tuple((time, value - first) for time, value in told if 0.0 < time < recording.duration and value != first)
+
+
+def reaching(observation: Observation, nominal: Mapping[str, float]) -> tuple[Observation, Mapping[str, float]]:
+    """The nominal values with a stroke that reaches as far as the piston was seen; a remark where it had to grow."""
+    position = observation.channel("position")
+    assert position is not None
+    farthest = float(np.max(np.abs(position.values)))
+    stroke = nominal["actuator_displacement"]
+    if farthest <= OVERSHOOT * stroke:
+        return observation, nominal
+    remark = (
+        f"position reaches {farthest:.3g} m, beyond the nominal actuator_displacement of {stroke:.3g} m: taken as"
+        f" {OVERSHOOT * farthest:.3g} m; give the rig's own, and position from mid-stroke"
+    )
+    enlarged = {**nominal, "actuator_displacement": OVERSHOOT * farthest}
+    return replace(observation, remarks=(*observation.remarks, remark)), enlarged
 
 
 def _choose_drive(

@@ -14,7 +14,7 @@ from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
 from eha_core.diagnosis.joint import join
 from eha_core.diagnosis.locate import locate
-from eha_core.diagnosis.observation import observe
+from eha_core.diagnosis.observation import observe, reaching
 from eha_core.diagnosis.pairs import second_effects
 from eha_core.diagnosis.parallel import side_by_side
 from eha_core.diagnosis.result import Diagnosis
@@ -32,7 +32,7 @@ Progress = Callable[[str], None]
 def examine(recording: Recording, nominal: Mapping[str, float], progress: Progress = lambda _: None) -> Evidence:
     """Run the stages up to the decision. Raises RecordingError where the recording cannot be used."""
     progress("reading and aligning")
-    observation = observe(recording)
+    observation, nominal = reaching(observe(recording), nominal)
     progress("calibrating the nominal equations")
     calibration = calibrate(observation, nominal, SEARCH_STEP)
     facts = gather(observation, calibration.shooting, calibration.fitted)

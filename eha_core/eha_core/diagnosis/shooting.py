@@ -53,6 +53,7 @@ class Shooting:
         step_size: [s]; `every` steps make a row.
         inputs: (1 or 2, steps) voltage, or both pressures, or force, held over each step.
         edges: (windows + 1,) first step of each window, and the end.
+        leakage: (windows,) what is added to the internal leakage coefficient in each, as the recording tells.
         samplings: one a measured channel, sorted by time.
         initial_states: (windows, STATE_SIZE) from the smoothed measurement; pressures at half supply where not
         measured. measured_starts: (windows,) smoothed measured position at each window's start.
@@ -63,6 +64,7 @@ class Shooting:
     every: int
     inputs: Array
     edges: Integers
+    leakage: Array
     samplings: tuple[Sampling, ...]
     names: tuple[str, ...]
     initial_states: Array
@@ -80,7 +82,10 @@ class Shooting:
         Rows: (steps / every, 4) position, velocity, pressure A, pressure B as the sensors say; all columns if `full`.
         """
         step = compiled_step()
-        vector, active, valve = pack(values, self.step_size)
+        packed = {
+            change: pack({**values, "internal_leakage": values["internal_leakage"] + change}, self.step_size)
+            for change in set(self.leakage.tolist())
+        }
         steps = int(self.edges[-1])
         rows = np.empty((steps // self.every, 22 if full else 4))
         ends = np.empty((self.windows, STATE_SIZE))
@@ -96,6 +101,7 @@ class Shooting:
         memory, sensor_slots = self._memory(current, states[0])
         for window in range(self.windows):
             begin, end = int(self.edges[window]), int(self.edges[window + 1])
+            vector, active, valve = packed[float(self.leakage[window])]
             state[0] = begin * self.step_size
             state[7:11] = states[window]
             memory[sensor_slots] = self.initial_states[window, 0]
@@ -161,7 +167,10 @@ def cut(
     per_row = every * step_size
     count = max(1, round(observation.duration / window))
     ticks = int(observation.duration / TICK + 1e-6)
-    edges = np.unique(np.round(np.linspace(0, ticks, count + 1)).astype(np.int64)) * round(TICK / step_size)
+    changes = np.round(np.array([time for time, _ in observation.leakage]) / TICK).astype(np.int64)
+    edges = _edges(ticks, count, changes) * round(TICK / step_size)
+    leakage = np.concatenate([[0.0], [change for _, change in observation.leakage]])
+    in_force = leakage[np.searchsorted(changes * round(TICK / step_size), edges[:-1], side="right")]
     step_times = np.arange(edges[-1]) * step_size
     hold = [
         values_[np.clip(np.searchsorted(time, step_times + 1e-9, side="right") - 1, 0, None)]
@@ -179,11 +188,20 @@ def cut(
         every,
         np.ascontiguousarray(hold),
         edges,
+        in_force,
         samplings,
         tuple(channel.name for channel in observation.measured),
         _initial_states(observation, np.asarray(edges * step_size), values),
         STATE_SIZE if observation.drive == "voltage" else 2,
     )
+
+
+def _edges(ticks: int, count: int, changes: Integers) -> Integers:
+    """About `count` windows of one length, and a new window where something is changed on purpose."""
+    even = np.round(np.linspace(0, ticks, count + 1)).astype(np.int64)
+    shortest = 0.3 * ticks / count
+    inner = [edge for edge in even[1:-1] if np.all(np.abs(changes - edge) > shortest)]
+    return np.unique(np.concatenate([[0, ticks], inner, changes[(changes > 0) & (changes < ticks)]]).astype(np.int64))
 
 
 def coarser(fine: Shooting, step_size: float) -> Shooting:

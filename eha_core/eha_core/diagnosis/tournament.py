@@ -38,7 +38,7 @@ TIE = 10.0
 """Rivals within this of the best score are not told apart."""
 
 ADEQUATE = 1.05
-DEAR = 0.1
+DEAR = 0.03
 """Where even the best model leaves more than ADEQUATE times the noise, its residual is no noise but more physics, and
 small gains mean little: a parameter must then pay for itself by up to this share of what is left over."""
 

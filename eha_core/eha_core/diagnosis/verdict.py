@@ -11,7 +11,9 @@ import numpy as np
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import Calibration, has_changed
 from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.noise import NORMAL_MEDIAN
 from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.refine import FAR_OFF
 from eha_core.diagnosis.tournament import ENOUGH, TIE, Entry, Tournament, bounded, parameter_cost
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.validate import Judged, judge
@@ -34,6 +36,21 @@ class Decision:
     judged_winner: Judged | None
 
 
+UNFITTED = 1.3
+"""Chi^2 a sample above which a model is held to leave physics over ..."""
+
+COHERENT = 1.5
+"""... if its residual, smoothed, is so many times what white noise would leave: an outlier or two is no physics ..."""
+
+PARTLY = 0.2
+"""... and more than this share of what the nominal equations leave over: a name must explain most of what is there."""
+
+NEARLY_ALL = 0.1
+"""Share of what the nominal equations leave over below which a name has explained nearly all of it."""
+
+SMOOTHED = 20
+"""Samples a block in which a residual is averaged to see whether it is coherent."""
+
 UNKNOWN_MARGIN = 50.0
 """A recovered curve must beat the best of the catalogue by this, its many knots paid for, before the catalogue is
 refused."""
@@ -44,18 +61,13 @@ def decide(
 ) -> Decision:
     """Weigh the tournament's entries, the best first, and the recovered curve against them."""
     if recovery is not None and _beats_the_catalogue(recovery, tournament):
-        entry = Entry((recovery.effect,), recovery.fit, recovery.score)
-        return Decision(
-            "unknown_physics",
-            entry,
-            (),
-            judge(calibration.shooting, tournament.nominal.fit),
-            judge(calibration.shooting, entry.fit),
-        )
+        return _unnamed(calibration, tournament, recovery)
     standing = [entry for entry in tournament.entries if entry.score > ENOUGH and not bounded(entry)]
+    winner = standing[0] if standing else tournament.nominal
+    if _leaves_physics_over(winner.fit, tournament.nominal.fit):
+        return _unnamed(calibration, tournament, recovery)
     if not standing:
         return _without_physics(calibration, nominal, tournament)
-    winner = standing[0]
     judged_nominal = judge(calibration.shooting, tournament.nominal.fit)
     judged_winner = judge(calibration.shooting, winner.fit)
     gain = (judged_nominal.chi_square - judged_winner.chi_square) / tournament.scatter
@@ -67,10 +79,45 @@ def decide(
     return Decision(verdict, winner, rivals, judged_nominal, judged_winner)
 
 
+def _unnamed(calibration: Calibration, tournament: Tournament, recovery: Recovery | None) -> Decision:
+    """Something is missing that no name fits: with the recovered curve, if one explains anything."""
+    entry = tournament.nominal
+    if recovery is not None and recovery.score > ENOUGH:
+        entry = Entry((recovery.effect,), recovery.fit, recovery.score)
+    judged = judge(calibration.shooting, tournament.nominal.fit)
+    after = judge(calibration.shooting, entry.fit) if entry.effects else judged
+    return Decision("unknown_physics", entry, (), judged, after)
+
+
+def _leaves_physics_over(best: Fit, nominal: Fit) -> bool:
+    """Whether what the best hypothesis leaves is coherent, large, and most of what there was to explain."""
+    left, before = best.data - best.count, nominal.data - nominal.count
+    if best.data < UNFITTED * best.count or left < PARTLY * before:
+        return False
+    return max(coherence(residual) for residual in best.residuals) > COHERENT
+
+
+def coherence(residual: Array) -> float:
+    """The size of a residual averaged over blocks (its median over the record), over what white noise would leave."""
+    blocks = len(residual) // SMOOTHED
+    if blocks < 3:
+        return 0.0
+    means = residual[: blocks * SMOOTHED].reshape(blocks, SMOOTHED).mean(axis=1)
+    return float(np.median(np.abs(means)) / NORMAL_MEDIAN * np.sqrt(SMOOTHED))
+
+
 def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
-    """Whether the curve explains so much more than the best named effects that its many knots are paid for."""
+    """Whether the curve explains so much more than the best named effects that its many knots are paid for.
+
+    A curve that stays far above the noise is not the law either, but bends to whatever is there; then names that
+    explain nearly all stand.
+    """
     best = tournament.entries[0] if tournament.entries else tournament.nominal
     variance = max(1.0, recovery.fit.data / recovery.fit.count)
+    nominal, curve = tournament.nominal.fit, recovery.fit
+    nearly = best.fit.data - best.fit.count < NEARLY_ALL * (nominal.data - nominal.count)
+    if nearly and best.effects and curve.data > FAR_OFF * curve.count:
+        return False
     more = (best.fit.objective - recovery.fit.objective) / variance
     knots = KNOTS - sum(len(effect.parameters) for effect in best.effects)
     return recovery.score > ENOUGH and more > UNKNOWN_MARGIN + knots * parameter_cost(recovery.fit.count, variance)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,7 @@ PIXELS_PER_INCH = 100.0
 WIDTH = 11.0
 GAP = 62
 """Pixels for a panel's title and labels."""
+LEGEND_ROW = 0.3  # inches
 
 
 def write_figures(pictures: Iterable[Picture], folder: Path) -> tuple[Path, ...]:
@@ -67,8 +69,15 @@ def drawn(picture: Picture) -> Figure:
         figure.suptitle(picture.title, x=0.01, ha="left", fontsize=13, fontweight="bold", color=COLOURS["measured"])
     handles = [Patch(color=colour, label=label) for label, colour in picture.legend()]
     if handles:
-        figure.legend(handles=handles, loc="outside lower left", ncols=min(5, len(handles)), frameon=False, fontsize=9)
+        legend_below(figure, handles, "lower left", min(5, len(handles)), fontsize=9)
     return figure
+
+
+def legend_below(figure: Figure, handles: Sequence[Any], place: str, columns: int, **options: Any) -> None:
+    """Put a legend under everything that is in a figure: what Matplotlib before 3.7 has no `place` for."""
+    height = LEGEND_ROW * math.ceil(len(handles) / columns) / figure.get_figheight()
+    figure.set_layout_engine("constrained", rect=(0.0, height, 1.0, 1.0 - height))
+    figure.legend(handles=handles, loc=place, ncols=columns, frameon=False, **options)
 
 
 def _draw(axes: Any, panel: Panel, last: bool) -> None:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from eha_core.paper.level import Level, Sweep
+from eha_core.report.figures import legend_below
 
 LEAKAGE = "$K_\\mathrm{Lin}$"
 LEAKAGE_UNIT = "m³/(s Pa)"
@@ -48,8 +49,7 @@ def displacement_figure(levels: Sequence[Level]) -> Figure:
     highest = max(axes.get_ylim()[1] for axes in panels)
     for axes in panels:
         axes.set_ylim(lowest, highest)
-    handles, labels = panels[-1].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
+    legend_below(figure, panels[-1].get_legend_handles_labels()[0], "lower center", 2)
     return figure
 
 

@@ -194,7 +194,7 @@ def _initialiser(definition: Definition) -> Any:
     scope: dict[str, Any] = {"_checks": checks_wanted()}
     names = [field.name for field in definition.fields]
     lines = ["def __init__(self, **kwargs):", "  self._check_fields = kwargs.pop('check_fields', _checks)"]
-    lines += ["  if kwargs:", "    for name in kwargs:", f"      if name not in {tuple(names)!r}:"]
+    lines += ["  if self._check_fields:", "    for name in kwargs:", f"      if name not in {tuple(names)!r}:"]
     lines += ["        raise AssertionError('Invalid arguments passed to constructor: %s' % ', '.join(sorted(kwargs)))"]
     for field in definition.fields:
         make = f"_default_{field.name}"

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cyclonedds._clayer import ddspy_take_endpoint, ddspy_take_participant
-from cyclonedds.builtin_types import cqos_to_qos
 from cyclonedds.qos import Policy, Qos
 
 from rclpy_dds.interfaces.codec import MalformedSample, decoder, encoder
@@ -159,17 +158,18 @@ class Graph:
 
     def _infos(self) -> list[tuple[Any, str]]:
         with self._lock:
-            self._take_participants()
+            # Whose entry has come was discovered before it, so who is not there after this is gone already.
             newest = {i.publication_handle: data for data, i in entities.take(self._reader, 10000) if i.valid_data}
+            self._take_participants()
             for data in newest.values():
                 try:
                     message = decoder(_INFO)(data)
                 except MalformedSample:
                     continue  # a participant of another make; its nodes stay unknown
-                self._participants[bytes(message.gid.data)] = message.node_entities_info_seq
-            return [
-                (i, self._alive[gid]) for gid, infos in self._participants.items() if gid in self._alive for i in infos
-            ]
+                gid = bytes(message.gid.data)
+                if gid in self._alive:
+                    self._participants[gid] = message.node_entities_info_seq
+            return [(info, self._alive[gid]) for gid, infos in self._participants.items() for info in infos]
 
     def _take_participants(self) -> None:
         for key, qos, info in _take(ddspy_take_participant, self._participant_reader, lambda k, q, i: (k, q, i)):
@@ -198,7 +198,7 @@ class Graph:
 def _take(function: Any, reader: int, construct: Any) -> list[Any]:
     found: list[Any] = []
     while True:
-        taken = function(reader, 256, construct, cqos_to_qos)
+        taken = function(reader, 256, construct, entities.discovered_qos)
         if type(taken) is int:
             return found
         found += taken

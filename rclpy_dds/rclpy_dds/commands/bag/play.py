@@ -13,6 +13,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
+from rclpy_dds.commands.bag import pattern
 from rclpy_dds.commands.common import command_node
 from rclpy_dds.commands.main import CommandError
 from rclpy_dds.interfaces import store
@@ -26,7 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-s", "--storage", choices=["mcap"], help="Storage implementation of the bag")
     parser.add_argument("-r", "--rate", type=float, default=1.0, help="rate at which to play back messages; > 0.0")
     parser.add_argument("--topics", nargs="+", default=[], help="topics to replay; all when not given")
-    parser.add_argument("-x", "--exclude-topics", nargs="+", default=[], help="topics not to replay")
+    parser.add_argument("-e", "--regex", type=pattern, help="replay topics whose whole name this matches")
+    parser.add_argument("-x", "--exclude-regex", type=pattern, help="replay no topic whose whole name this matches")
+    parser.add_argument("--exclude-topics", nargs="+", default=[], help="topics not to replay")
     parser.add_argument("-m", "--remap", nargs="+", default=[], help="names as old_topic:=new_topic")
     parser.add_argument("-l", "--loop", action="store_true", help="start again at the end")
     parser.add_argument("--start-offset", type=float, default=0.0, help="seconds to skip at the start")
@@ -85,13 +88,7 @@ class _Player:
             if channel.topic in seen:
                 continue
             seen.add(channel.topic)
-            wanted = not self.args.topics or channel.topic in self.args.topics
-            if (
-                not wanted
-                or channel.topic in self.args.exclude_topics
-                or channel.message_encoding != "cdr"
-                or schema is None
-            ):
+            if schema is None or channel.message_encoding != "cdr" or not self._wanted(channel.topic):
                 continue
             if schema.encoding == "ros2msg":
                 store.add_recorded(schema.name, schema.data.decode())
@@ -106,14 +103,22 @@ class _Player:
             raise CommandError(f"{self.args.bag_path}: no topic left to play")
         time.sleep(0.5)
 
+    def _wanted(self, topic: str) -> bool:
+        args = self.args
+        chosen = not (args.topics or args.regex)
+        chosen = chosen or topic in args.topics or bool(args.regex and args.regex.fullmatch(topic))
+        excluded = topic in args.exclude_topics or bool(args.exclude_regex and args.exclude_regex.fullmatch(topic))
+        return chosen and not excluded and not (args.clock and topic == "/clock")
+
     def play(self) -> None:
-        begun = time.monotonic_ns()
+        begun = self.next_clock = 0
         for _, channel, message in messages(self.args.bag_path):
             publisher = self.publishers.get(channel.topic)
             if publisher is None or message.log_time < self.first:
                 continue
             if self.last is not None and message.log_time > self.last:
                 break
+            begun = begun or time.monotonic_ns()  # opening and skipping took time that is not the recording's
             if not self._sleep_until(begun, message.log_time):
                 return
             publisher.publish(message.data)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 import time
 from typing import Any
 
@@ -12,6 +11,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
+from rclpy_dds.commands.bag import pattern
 from rclpy_dds.commands.common import command_node, offered_qos
 from rclpy_dds.interfaces.message import interface_class
 from rclpy_dds.recordings.writing import RecordingWriter
@@ -22,8 +22,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("topic_names", nargs="*", help="Space-delimited list of topics to record")
     parser.add_argument("--topics", nargs="+", default=[], help="Space-delimited list of topics to record")
     parser.add_argument("-a", "--all", "--all-topics", dest="all", action="store_true", help="Record all topics")
-    parser.add_argument("-e", "--regex", help="Record topics whose whole name matches this regular expression")
-    parser.add_argument("-x", "--exclude", "--exclude-regex", dest="exclude", help="Leave out topics that match")
+    parser.add_argument("-e", "--regex", type=pattern, help="Record topics in whose name this is found")
+    parser.add_argument("--exclude-regex", type=pattern, help="Leave out topics in whose name this is found")
+    parser.add_argument("--exclude-topics", nargs="+", default=[], help="Space-delimited list of topics to leave out")
     parser.add_argument("--include-hidden-topics", action="store_true", help="Record hidden topics as well")
     parser.add_argument("-o", "--output", help="Folder of the bag (default: rosbag2_<date and time>)")
     parser.add_argument("-s", "--storage", choices=["mcap"], default="mcap", help="Storage (default: mcap)")
@@ -37,11 +38,6 @@ def main(args: argparse.Namespace) -> str | None:
     names = [*args.topic_names, *args.topics]
     if not (args.all or args.regex or names):
         return "Need to specify at least one option out of --all, --topics or --regex"
-    for option, pattern in (("--regex", args.regex), ("--exclude", args.exclude)):
-        try:
-            re.compile(pattern or "")
-        except re.error as error:
-            return f"{option} {pattern!r} is no regular expression: {error}"
     folder = args.output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S")
     try:
         writer = RecordingWriter(folder)
@@ -108,9 +104,11 @@ class _Recorder:
     def _wanted(self, topic: str) -> bool:
         if topic_or_service_is_hidden(topic) and not self.args.include_hidden_topics and topic not in self.names:
             return False
-        if self.args.exclude and re.search(self.args.exclude, topic):
+        if topic in self.args.exclude_topics:
             return False
-        return bool(self.args.all or topic in self.names or (self.args.regex and re.fullmatch(self.args.regex, topic)))
+        if self.args.exclude_regex and self.args.exclude_regex.search(topic):
+            return False
+        return bool(self.args.all or topic in self.names or (self.args.regex and self.args.regex.search(topic)))
 
     def _writing(self, topic: str) -> Any:
         def write(data: bytes, info: dict[str, Any]) -> None:

@@ -25,12 +25,21 @@ def main(args: argparse.Namespace) -> str | None:
         values = get(node, target, names, args.timeout)
         if len(values) != len(names):
             return f"{target}: a parameter has no value"
-    nested: dict[str, Any] = {}
-    for name, value in zip(names, values, strict=True):
-        *groups, last = name.split(".")
-        place = nested
-        for group in groups:
-            place = place.setdefault(group, {})
-        place[last] = parameter_value_to_python(value)
-    print(yaml.dump({target: {"ros__parameters": nested}}, default_flow_style=False))
+    found = {name: parameter_value_to_python(value) for name, value in zip(names, values, strict=True)}
+    print(yaml.dump({target: {"ros__parameters": nested(found)}}, default_flow_style=False))
     return None
+
+
+def nested(values: dict[str, Any]) -> dict[str, Any]:
+    """Return parameters as a file groups them; a group called like a parameter stays in its members' dotted names."""
+    groups: dict[str, Any] = {}
+    for name, value in values.items():
+        place, path, rest = groups, "", name
+        while "." in rest:
+            head, _, tail = rest.partition(".")
+            path = f"{path}.{head}" if path else head
+            if path in values:
+                break
+            place, rest = place.setdefault(head, {}), tail
+        place[rest] = value
+    return groups

@@ -40,9 +40,8 @@ class InitContextManager:
         domain_id: int | None,
         options: SignalHandlerOptions | None,
     ) -> None:
-        self.context = context
         self.installed_signal_handlers = False
-        default = context is None
+        default = self._default = context is None
         context = get_default_context() if context is None else context
         if options is None:
             options = SignalHandlerOptions.ALL if default else SignalHandlerOptions.NO
@@ -56,7 +55,7 @@ class InitContextManager:
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        try_shutdown(context=self.context)
+        try_shutdown(context=None if self._default else self.context)
 
 
 def init(

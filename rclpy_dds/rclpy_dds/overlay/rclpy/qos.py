@@ -6,7 +6,8 @@ import warnings
 from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any
 
-from rclpy.duration import Duration, Infinite
+from rclpy.duration import Duration
+from rclpy_dds.wire.compatibility import incompatibilities, left_open
 
 # What rmw means by "as the others have it", in nanoseconds.
 _BEST_AVAILABLE_NANOSECONDS = 9223372036854775806
@@ -276,40 +277,8 @@ class QoSCompatibility(IntEnum):
 
 def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile) -> tuple[QoSCompatibility, str]:
     """Tell whether two profiles are compatible, and why not; a warning where defaults leave it open."""
-    errors, warned = [], []
-    offered, asked = publisher_qos, subscription_qos
-    best_effort = ReliabilityPolicy.BEST_EFFORT
-    open_values = (0, 3, 4, 5)
-    if offered.reliability == best_effort and asked.reliability == ReliabilityPolicy.RELIABLE:
-        errors.append("ERROR: Best effort publisher and reliable subscription;")
-    if offered.durability == DurabilityPolicy.VOLATILE and asked.durability == DurabilityPolicy.TRANSIENT_LOCAL:
-        errors.append("ERROR: Volatile publisher and transient local subscription;")
-    for what, offer, ask in (
-        ("deadline", offered.deadline, asked.deadline),
-        ("liveliness lease duration", offered.liveliness_lease_duration, asked.liveliness_lease_duration),
-    ):
-        if ask.nanoseconds in (0, Infinite.nanoseconds):
-            continue
-        if offer.nanoseconds == 0:
-            errors.append(f"ERROR: Subscription has a {what}, but publisher does not;")
-        elif offer > ask:
-            errors.append(f"ERROR: Subscription {what} is less than publisher {what};")
-    automatic, manual = LivelinessPolicy.AUTOMATIC, LivelinessPolicy.MANUAL_BY_TOPIC
-    if offered.liveliness == automatic and asked.liveliness == manual:
-        errors.append("ERROR: Publisher's liveliness is automatic and subscription's is manual by topic;")
-    for policy in ("reliability", "durability", "liveliness"):
-        offer, ask = getattr(offered, policy), getattr(asked, policy)
-        unknown = [offer in open_values, ask in open_values]
-        weakest = {"reliability": 2, "durability": 2, "liveliness": 1}[policy]
-        strongest = {"reliability": 1, "durability": 1, "liveliness": 3}[policy]
-        if all(unknown) and policy != "liveliness":
-            warned.append(f"WARNING: Publisher {policy} and subscription {policy} are {offer.name} and {ask.name};")
-        elif unknown[0] and ask == strongest:
-            warned.append(f"WARNING: Subscription's {policy} is {ask.name} and publisher's {offer.name};")
-        elif unknown[1] and offer == weakest:
-            warned.append(f"WARNING: Publisher's {policy} is {offer.name} and subscription's {ask.name};")
-    if errors:
-        return QoSCompatibility.ERROR, " ".join(errors + warned)
-    if warned:
-        return QoSCompatibility.WARNING, " ".join(warned)
+    if errors := incompatibilities(publisher_qos, subscription_qos):
+        return QoSCompatibility.ERROR, "".join(f"ERROR: {text};" for text in errors)
+    if doubts := left_open(publisher_qos, subscription_qos):
+        return QoSCompatibility.WARNING, "".join(f"WARNING: {text};" for text in doubts)
     return QoSCompatibility.OK, ""

@@ -1,0 +1,89 @@
+"""Environment variables: which domain, how far, and what is wrong with them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from contract.conftest import Graph, Program, only_layer
+
+Start = Callable[..., Program]
+
+NODE = """
+import rclpy
+from rclpy.executors import ExternalShutdownException
+rclpy.init()
+node = rclpy.create_node("elsewhere")
+print("ready in", rclpy.get_default_context().get_domain_id())
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+"""
+
+
+def _is_seen(graph: Graph, timeout: float) -> bool:
+    return graph.spin_until(lambda: "elsewhere" in graph.nodes[0].get_node_names(), timeout)
+
+
+def test_a_node_beside_this_one_is_seen(graph: Graph, program: Start) -> None:
+    graph.node("observer")
+    program(NODE).wait_for("ready")
+    assert _is_seen(graph, 5.0)
+
+
+@pytest.mark.parametrize(("name", "value"), [("ROS_DOMAIN_ID", "99"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")])
+def test_another_domain_and_no_discovery_hide_a_node(
+    graph: Graph, program: Start, monkeypatch: pytest.MonkeyPatch, name: str, value: str
+) -> None:
+    graph.node("observer")
+    monkeypatch.setenv(name, value)
+    line = program(NODE).wait_for("ready")
+    assert line.split()[-1] == ("99" if name == "ROS_DOMAIN_ID" else os.environ["ROS_DOMAIN_ID"])
+    assert not _is_seen(graph, 1.5)
+
+
+def test_localhost_only_still_finds_what_is_on_this_machine(
+    graph: Graph, program: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    graph.node("observer")
+    monkeypatch.delenv("ROS_AUTOMATIC_DISCOVERY_RANGE", raising=False)
+    monkeypatch.setenv("ROS_LOCALHOST_ONLY", "1")
+    program(NODE).wait_for("ready")
+    assert _is_seen(graph, 5.0)
+
+
+@only_layer
+def test_cyclone_dds_is_configured_by_its_own_variable(
+    program: Start, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    log = tmp_path / "cyclone.log"
+    tracing = f"<Tracing><Verbosity>config</Verbosity><OutputFile>{log}</OutputFile></Tracing>"
+    monkeypatch.setenv("CYCLONEDDS_URI", f"<CycloneDDS><Domain>{tracing}</Domain></CycloneDDS>")
+    program(NODE).wait_for("ready")
+    assert "Discovery/Peers" in log.read_text()  # the layer's own settings stand beside the user's
+
+
+@only_layer
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("ROS_DOMAIN_ID", "233", "ROS_DOMAIN_ID='233'"),
+        ("ROS_DOMAIN_ID", "one", "ROS_DOMAIN_ID='one'"),
+        (
+            "CYCLONEDDS_URI",
+            '<General><Interfaces><NetworkInterface name="none0"/></Interfaces></General>',
+            "network interface",
+        ),
+        ("CYCLONEDDS_URI", "<General><Nonsense/></General>", "CYCLONEDDS_URI"),
+    ],
+)
+def test_what_cannot_be_joined_is_an_error_that_says_why(
+    program: Start, monkeypatch: pytest.MonkeyPatch, name: str, value: str, told: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    source = "import rclpy\ntry:\n    rclpy.init()\nexcept RuntimeError as error:\n    print('refused:', error)"
+    assert told in program(source).wait_for("refused")
