@@ -9,58 +9,103 @@ Multiscale Modeling & Simulation 19 (2021).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.observation import Observation
-from eha_core.diagnosis.shooting import Shooting
+from eha_core.diagnosis.observation import Measured, Observation
+from eha_core.diagnosis.shooting import Shooting, smooth
+from eha_core.plant import COLUMNS
 
 HALF_WIDTH = 0.06
 """s; wide enough to average noise, narrow against a reversal's duration."""
+
+HOPS = 4
+"""Bumps that begin within one bump's length: 33 a second, so that a force of 10 Hz is not taken for a slower one."""
+
+GAP = 0.01
+"""s without a sample of a channel that a bump may not span: a straight line across is no measurement."""
+
+SPEED_SPAN = 0.04
+"""s; the position is smoothed over this to give the speed that laws are over."""
 
 EQUATIONS = ("force", "continuity_a", "continuity_b")
 
 
 @dataclass(frozen=True)
-class Balance:
-    """One equation's residual: `time` (n,) of the bumps' centres [s], `residual` (n,) in units of its noise."""
-
-    equation: str
-    time: Array
-    residual: Array
-
-    @property
-    def chi_square(self) -> float:
-        """Per degree of freedom: 1 where the equation holds."""
-        return float(np.mean(self.residual**2)) if len(self.residual) else 0.0
-
-
-@dataclass(frozen=True)
-class _Grid:
-    """The channels on one even grid, and the bump with its derivatives on it."""
+class Bumps:
+    """An even grid of times [s], and the bump with its derivatives on it; `sound` marks those without a gap under
+    them."""
 
     time: Array
     step: float
+    sound: NDArray[np.bool_]
     bump: Array
     slope: Array
     curvature: Array
 
+    @property
+    def area(self) -> float:
+        """The bump's integral [s]."""
+        return float(np.sum(self.bump)) * self.step
+
     def integrate(self, weight: Array, values: Array) -> Array:
-        """The integral of weight times values about each bump's centre."""
-        sums = np.convolve(values, weight[::-1], mode="valid")[:: len(weight) // 2]
-        return np.asarray(sums * self.step)
+        """The integral of weight times values (..., times) about each bump's centre."""
+        windows = np.lib.stride_tricks.sliding_window_view(values, len(weight), axis=-1)
+        sums = windows[..., :: len(weight) // HOPS, :] @ weight
+        return np.asarray(sums[..., self.sound]) * self.step
+
+    def average(self, values: Array) -> Array:
+        """The mean of values (..., times) under each bump."""
+        return self.integrate(self.bump, values) / self.area
 
     def centres(self) -> Array:
         """Times of the bumps' centres."""
         half = len(self.bump) // 2
-        return self.time[half : len(self.time) - half][::half]
+        return self.time[half : len(self.time) - half][:: len(self.bump) // HOPS][self.sound]
 
 
-def _grid(duration: float, step: float) -> _Grid:
+@dataclass(frozen=True)
+class Balance:
+    """What one equation lacks, averaged under each bump.
+
+    Attributes:
+        equation: one of EQUATIONS.
+        time: (n,) of the bumps' centres [s].
+        missing: (n,) the force on the piston [N], or the flow into the chamber [m^3/s], that its terms do not bring.
+        noise: standard deviation of `missing` that the sensors' noise makes.
+        terms: (n, k) the terms whose coefficients were regressed; `missing` has no part along them.
+        bumps: the grid and its bumps.
+        states: position [m], velocity [m/s], pressure difference [Pa], spool position [A] and time [s] on the grid,
+            and in a chamber's balance the `flow_an_ampere` of opening [m^3/(s A)] into it.
+    """
+
+    equation: str
+    time: Array
+    missing: Array
+    noise: float
+    terms: Array
+    bumps: Bumps
+    states: Mapping[str, Array]
+
+    @property
+    def residual(self) -> Array:
+        """(n,) what is missing in units of its noise."""
+        freedom = max(1, len(self.missing) - self.terms.shape[1])
+        return np.asarray(self.missing / self.noise * np.sqrt(len(self.missing) / freedom))
+
+    @property
+    def chi_square(self) -> float:
+        """Per degree of freedom: 1 where the equation holds."""
+        return float(np.mean(self.residual**2)) if len(self.missing) else 0.0
+
+
+def bumps(duration: float, step: float, channels: Sequence[Measured]) -> Bumps:
+    """Bumps of HALF_WIDTH all over a duration [s], on a grid of `step` [s], for channels that may have gaps."""
     half = max(8, round(HALF_WIDTH / step))
     at = np.arange(-half, half + 1) / half
     inside = 1.0 - at**2
@@ -68,50 +113,87 @@ def _grid(duration: float, step: float) -> _Grid:
     bump = inside**4
     slope = -8.0 * at * inside**3 / width
     curvature = (48.0 * at**2 * inside**2 - 8.0 * inside**3) / width**2
-    return _Grid(
-        np.asarray(np.arange(0.0, duration, step), dtype=np.float64),
-        step,
-        *(np.asarray(one) for one in (bump, slope, curvature)),
-    )
+    time = np.asarray(np.arange(0.0, duration, step), dtype=np.float64)
+    centres = time[half : len(time) - half][:: len(at) // HOPS]
+    sound = np.all([_measured_about(channel, centres, width, step) for channel in channels], axis=0)
+    return Bumps(time, step, sound, *(np.asarray(one) for one in (bump, slope, curvature)))
 
 
-def balances(
-    observation: Observation, shooting: Shooting, facts: Facts, values: Mapping[str, float]
-) -> tuple[Balance, ...]:
-    """The residual of every equation whose channels were measured; none where position or a pressure is missing."""
+def _measured_about(channel: Measured, centres: Array, width: float, step: float) -> NDArray[np.bool_]:
+    """Whether a channel has no gap within `width` of each centre."""
+    times = np.concatenate([[-np.inf], channel.time, [np.inf]])
+    wide = np.flatnonzero(np.diff(times) > max(GAP, 2.5 * step))
+    ends_before = np.searchsorted(times[wide + 1], centres - width)
+    starts_before = np.searchsorted(times[wide], centres + width)
+    return np.asarray(ends_before == starts_before)
+
+
+def least(alternatives: Sequence[tuple[Balance, ...]]) -> tuple[Balance, ...]:
+    """Of balances made with several models, the force balance and the pair of continuities that lack least.
+
+    What is not regressed (areas, pressures of the lines, stroke, the valve's motion) comes from the model. Fitted
+    values are right where nothing is missing, and may be bent out of shape where something is.
+    """
+    found = [one for one in alternatives if one]
+    if not found:
+        return ()
+    force = min((one[0] for one in found), key=lambda one: one.chi_square)
+    return (force, *min((one[1:] for one in found), key=lambda pair: sum(one.chi_square for one in pair)))
+
+
+def balances(observation: Observation, shooting: Shooting, model: Fit) -> tuple[Balance, ...]:
+    """The balance of every equation whose channels were measured; none where position or a pressure is missing."""
     pressure_a, pressure_b = observation.channel("pressure_a"), observation.channel("pressure_b")
     position = observation.channel("position")
     if position is None or pressure_a is None or pressure_b is None:
         return ()
     spacing = max(float(np.median(np.diff(one.time))) for one in (position, pressure_a, pressure_b))
-    grid = _grid(observation.duration, spacing)
-    x = np.interp(grid.time, position.time, position.values)
+    grid = bumps(observation.duration, spacing, (position, pressure_a, pressure_b))
+    rows, _ = shooting.simulate(model.values, model.states, full=True)
+    row_times = (np.arange(len(rows)) + 1) * shooting.step_size * shooting.every
     a = np.interp(grid.time, pressure_a.time, pressure_a.values)
     b = np.interp(grid.time, pressure_b.time, pressure_b.values)
+    states = {
+        "position": np.interp(grid.time, position.time, position.values),
+        "velocity": np.interp(grid.time, position.time, smooth(position, 1, SPEED_SPAN)),
+        "pressure difference": a - b,
+        "spool position": np.interp(grid.time, row_times, rows[:, COLUMNS.index("spool_position")]),
+        "time": grid.time,
+    }
+    leaked = sum((np.where(grid.time >= time, change, 0.0) * (a - b) for time, change in observation.leakage), 0.0 * a)
     noises = (position.noise, pressure_a.noise, pressure_b.noise)
-    row_times = (np.arange(len(facts.rows)) + 1) * shooting.step_size * shooting.every
-    spool = np.interp(grid.time, row_times, facts.column("spool_position"))
-    speed = np.interp(grid.time, row_times, facts.column("velocity"))
     return (
-        _force(grid, x, a, b, noises, values),
-        *(_continuity(grid, side, x, speed, spool, a, b, noises, values) for side in ("a", "b")),
+        force_balance(grid, states, a, b, noises, model.values),
+        *(continuity_balance(grid, states, side, a, b, noises, model.values, leaked) for side in ("a", "b")),
     )
 
 
-def _regressed(grid: _Grid, equation: str, left: Array, columns: list[Array], noise: float) -> Balance:
+def _regressed(
+    grid: Bumps, equation: str, left: Array, columns: list[Array], noise: float, states: Mapping[str, Array]
+) -> Balance:
+    """The balance of an equation whose left side and terms were integrated under each bump."""
     matrix = np.stack(columns, axis=1)
     scale = np.linalg.norm(matrix, axis=0)
-    solution, *_ = np.linalg.lstsq(matrix / np.where(scale > 0.0, scale, 1.0), left, rcond=None)
-    residual = left - (matrix / np.where(scale > 0.0, scale, 1.0)) @ solution
-    freedom = max(1, len(left) - matrix.shape[1])
-    return Balance(equation, grid.centres()[: len(left)], residual / noise * np.sqrt(len(left) / freedom))
+    matrix = matrix / np.where(scale > 0.0, scale, 1.0)
+    solution, *_ = np.linalg.lstsq(matrix, left, rcond=None)
+    missing = (left - matrix @ solution) / grid.area
+    return Balance(equation, grid.centres()[: len(left)], missing, noise / grid.area, matrix, grid, states)
 
 
-def _force(
-    grid: _Grid, x: Array, a: Array, b: Array, noises: tuple[float, ...], values: Mapping[str, float]
+def force_balance(
+    grid: Bumps,
+    states: Mapping[str, Array],
+    a: Array,
+    b: Array,
+    noises: tuple[float, ...],
+    values: Mapping[str, float],
 ) -> Balance:
-    area_a, area_b = values["piston_area"], values["piston_area_b"]
-    left = grid.integrate(grid.bump, area_a * a - area_b * b)
+    """The piston's: M x'' + B x' + K x - (A_a P_a - A_b P_b), its coefficients free, is the force that is missing.
+
+    `a` and `b`: pressures on the grid [Pa]; `noises`: of position [m] and of both pressures [Pa].
+    """
+    x, area_a, area_b = states["position"], values["piston_area"], values["piston_area_b"]
+    left = grid.integrate(grid.bump, area_b * b - area_a * a)
     columns = [grid.integrate(grid.curvature, x), -grid.integrate(grid.slope, x), grid.integrate(grid.bump, x)]
     position_weight = (
         values["moving_mass"] * grid.curvature
@@ -120,30 +202,37 @@ def _force(
     )
     variance = float(np.sum(grid.bump**2)) * ((area_a * noises[1]) ** 2 + (area_b * noises[2]) ** 2)
     variance += float(np.sum(position_weight**2)) * noises[0] ** 2
-    return _regressed(grid, "force", left, columns, float(np.sqrt(variance)) * grid.step)
+    return _regressed(grid, "force", left, columns, float(np.sqrt(variance)) * grid.step, states)
 
 
-def _continuity(
-    grid: _Grid,
+def continuity_balance(
+    grid: Bumps,
+    states: Mapping[str, Array],
     side: str,
-    x: Array,
-    speed: Array,
-    spool: Array,
     a: Array,
     b: Array,
     noises: tuple[float, ...],
     values: Mapping[str, float],
+    leaked: Array | None = None,
 ) -> Balance:
+    """A chamber's: what it is swept by, less the valve's flow, compression and leakage, is the flow that is missing.
+
+    `leaked`: the flow from chamber 1 to 2 [m^3/s] that was turned on while recording.
+    """
+    x, speed, spool = states["position"], states["velocity"], states["spool position"]
     sign = 1.0 if side == "a" else -1.0
     own, noise = (a, noises[1]) if side == "a" else (b, noises[2])
     area = values["piston_area"] if side == "a" else values["piston_area_b"]
     volume = values["line_volume"] + area * (values["actuator_displacement"] + sign * x)
     left = -sign * area * grid.integrate(grid.slope, x)
+    if leaked is not None:
+        left = left + sign * grid.integrate(grid.bump, leaked)
     filling = np.where(sign * spool >= 0.0, values["supply_pressure"] - own, own - values["return_pressure"])
-    flow = sign * spool * np.sqrt(np.maximum(filling, 0.0))
+    flow_an_ampere = sign * values["valve_gain"] * np.sqrt(np.maximum(filling, 0.0))
     # V dP/dt integrates by parts to -(slope V + bump dV/dt) P
     squeezed = -(grid.integrate(grid.slope, volume * own) + grid.integrate(grid.bump, sign * area * speed * own))
-    columns = [grid.integrate(grid.bump, flow), squeezed, grid.integrate(grid.bump, a - b)]
+    columns = [grid.integrate(grid.bump, flow_an_ampere * spool), squeezed, grid.integrate(grid.bump, a - b)]
     weight = grid.slope * float(np.mean(volume)) / values["bulk_modulus"]
     variance = float(np.sum(weight**2)) * noise**2 + float(np.sum(grid.slope**2)) * (area * noises[0]) ** 2
-    return _regressed(grid, f"continuity_{side}", left, columns, float(np.sqrt(variance)) * grid.step)
+    noise = float(np.sqrt(variance)) * grid.step
+    return _regressed(grid, f"continuity_{side}", left, columns, noise, {**states, "flow_an_ampere": flow_an_ampere})

@@ -10,6 +10,9 @@ from eha_core.diagnosis.calibrate import UNITS, corrected_noise, has_changed, id
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
 from eha_core.diagnosis.fit import Fit, fit, with_noise
+from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
+from eha_core.diagnosis.law import express, weak_law
+from eha_core.diagnosis.locate import DESCRIBED
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.result import (
@@ -28,6 +31,7 @@ from eha_core.diagnosis.shooting import Shooting, cut
 from eha_core.diagnosis.tournament import Entry
 from eha_core.diagnosis.validate import channel_rmse, instants_of, judge, split
 from eha_core.diagnosis.verdict import Decision, whiteness
+from eha_core.effects import effects as every_effect
 from eha_core.parameters import catalogue, nominal_values
 from eha_core.recording import Recording
 
@@ -45,7 +49,8 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     effects = () if decision.verdict == "unknown_physics" else _named(decision.winner, final)
-    location = _ordered(evidence.location, decision.winner)
+    unknown = _unknown(evidence)
+    location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
         path=str(recording.path),
         duration=recording.duration,
@@ -54,12 +59,12 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
         remarks=evidence.observation.remarks,
         damaged=recording.damaged,
         verdict=decision.verdict,
-        summary=_summary(decision, effects, evidence),
+        summary=_summary(decision, effects, unknown),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
         parameters=_parameters(final, evidence.nominal),
         effects=effects,
         alternatives=tuple(Alternative(entry.ids, gap) for entry, gap in decision.rivals),
-        unknown=_unknown(evidence),
+        unknown=unknown,
         training=training,
         held_out=held_out,
         next_experiment=experiment,
@@ -139,29 +144,52 @@ def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, .
 
 
 def _unknown(evidence: Evidence) -> UnknownLaw | None:
-    recovery = evidence.recovery
-    if evidence.decision.verdict != "unknown_physics" or recovery is None:
+    """The law that no name fits: as the weak balances hold it, or as the simulated curve where that explains more.
+
+    The balances tell the site; a curve of another site only makes up for what it does not describe.
+    """
+    if evidence.decision.verdict != "unknown_physics":
         return None
-    return UnknownLaw(recovery.effect.site, recovery.variable, "", recovery.share, recovery.knots)
+    law, curve = weak_law(evidence.balances), evidence.recovery
+    if curve is not None and (law is None or (curve.effect.site == law.site and curve.share > law.r_squared)):
+        x, y = np.array(curve.knots, dtype=np.float64).reshape(-1, 2).T
+        text = express(x, y, curve.variable, UNITS_OF_LAWS[curve.effect.site]).text
+        if not text and law is not None and law.function_of == curve.variable:
+            text = law.expression
+        return UnknownLaw(curve.effect.site, curve.variable, text, curve.share, curve.knots)
+    if law is None:
+        return None
+    return UnknownLaw(law.site, law.function_of, law.expression, law.r_squared, law.samples)
 
 
-def _summary(decision: Decision, effects: tuple[NamedEffect, ...], evidence: Evidence) -> str:
+def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
+    """The law's site first, whatever effects of other sites could make up for."""
+    where, when = (location[0].where, location[0].when) if location else ("all over the states that were visited", ())
+    statement = f"{law.r_squared:.0%} of what is missing {DESCRIBED[law.site]} is a law over {law.function_of}"
+    others = (one for one in location if one.site != law.site)
+    return (Location(law.site, law.r_squared, where, when, statement), *others)
+
+
+def _summary(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None) -> str:
     if decision.verdict == "consistent":
         return "The nominal model explains the recording down to its noise; nothing is missing."
     if decision.verdict == "parameters":
         return "No physics is missing: parameter values differ from the nominal ones."
     if decision.verdict == "unknown_physics":
-        if not decision.winner.effects or evidence.recovery is None:
-            return "Something is missing that the catalogue does not name; no law of one variable explains it."
-        return (
-            f"Something is missing that the catalogue does not name: {evidence.recovery.effect.statement}, "
-            f"as a function of {evidence.recovery.variable}."
-        )
+        return _summary_of_unknown(unknown)
     named = "; and ".join(effect.statement for effect in effects)
     if decision.verdict == "ambiguous":
         others = ", ".join(" + ".join(entry.ids) for entry, _ in decision.rivals)
         return f"Physics is missing, most likely: {named}. This recording cannot tell it from {others}."
     return f"Physics is missing: {named}."
+
+
+def _summary_of_unknown(law: UnknownLaw | None) -> str:
+    if law is None:
+        return "Something is missing that the catalogue does not name, and no law over the measured states explains it."
+    statement = next(effect.statement for effect in every_effect() if effect.site == law.site and not effect.named)
+    formula = f": {law.expression}" if law.expression else ""
+    return f"Something is missing: {statement}, as a function of {law.function_of}{formula}."
 
 
 def _changed_values(final: Fit) -> dict[str, float]:

@@ -17,13 +17,15 @@ from eha_core.diagnosis.verdict import Decision
 
 @dataclass(frozen=True)
 class Evidence:
-    """Every stage's result, in their order."""
+    """Every stage's result, in their order. `equations`: the balances that lack least; `balances`: those of each model
+    that they were chosen from."""
 
     observation: Observation
     nominal: Mapping[str, float]
     calibration: Calibration
     facts: Facts
     equations: tuple[Balance, ...]
+    balances: tuple[tuple[Balance, ...], ...]
     tournament: Tournament
     recovery: Recovery | None
     decision: Decision

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from threadpoolctl import threadpool_limits
 
-from eha_core.diagnosis.balance import balances
+from eha_core.diagnosis.balance import balances, least
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.evidence import Evidence
@@ -36,14 +36,18 @@ def examine(recording: Recording, nominal: Mapping[str, float], progress: Progre
     progress("calibrating the nominal equations")
     calibration = calibrate(observation, nominal, SEARCH_STEP)
     facts = gather(observation, calibration.shooting, calibration.fitted)
-    equations = balances(observation, calibration.shooting, facts, calibration.fitted.values)
+    models = (calibration.fitted, calibration.nominal)
+    alternatives = tuple(balances(observation, calibration.shooting, model) for model in models)
+    equations = least(alternatives)
     able = candidates(observation)
     tournament = compete(calibration.problem, calibration.fitted, able, facts, progress)
     tournament = second_effects(calibration.problem, tournament, able, facts, progress)
     recovery = recover(calibration.problem, tournament, facts, progress)
     decision = decide(calibration, nominal, tournament, recovery)
     location = locate(calibration, tournament.nominal.fit, facts, tournament, equations)
-    return Evidence(observation, nominal, calibration, facts, equations, tournament, recovery, decision, location)
+    return Evidence(
+        observation, nominal, calibration, facts, equations, alternatives, tournament, recovery, decision, location
+    )
 
 
 def diagnose(recording: Recording, nominal: Mapping[str, float], progress: Progress = lambda _: None) -> Diagnosis:

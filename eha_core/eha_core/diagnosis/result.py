@@ -66,7 +66,11 @@ class Alternative:
 
 @dataclass(frozen=True)
 class UnknownLaw:
-    """A law outside the catalogue, recovered as a curve over one variable, and as an expression where it is simple."""
+    """A law outside the catalogue, recovered as a curve over one variable, and as an expression where it is simple.
+
+    `function_of` names the variable, and after a comma what the curve is multiplied by, if it is. `samples`: the curve,
+    (variable, law) in SI.
+    """
 
     site: str
     function_of: str

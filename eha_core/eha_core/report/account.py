@@ -12,7 +12,7 @@ from eha_core.report.quantities import quantity, scale_for, short, with_deviatio
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
 _INDENT = 13
-_LONGEST = {"Recording": 2, "Verdict": 3, "Located": 2, "Named": 4, "Parameters": 2, "Next test": 3}
+_LONGEST = {"Recording": 2, "Verdict": 3, "Located": 2, "Named": 4, "Recovered": 2, "Parameters": 2, "Next test": 3}
 
 
 def account(diagnosis: Diagnosis, written: Sequence[Path] = (), width: int = 100) -> str:

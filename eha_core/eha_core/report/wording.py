@@ -62,8 +62,12 @@ LAW_AXES = {
     ("force", "position"): ("force on the piston", "N", "m"),
     ("force", "pressure difference"): ("force on the piston", "N", "Pa"),
     ("force", "time"): ("force on the piston", "N", "s"),
+    ("force", "position, times velocity"): ("force on the piston by its velocity", "N s/m", "m"),
+    ("force", "position, times direction of motion"): ("force on the piston by its direction", "N", "m"),
+    ("force", "pressure difference, times direction of motion"): ("force on the piston by its direction", "N", "Pa"),
     ("orifice", "spool position"): ("opening beyond the spool's position", "A", "A"),
     ("chamber", "pressure difference"): ("flow from chamber 1 to 2", "m^3/s", "Pa"),
+    ("chamber", "position, times pressure difference"): ("conductance from chamber 1 to 2", "m^3/(s Pa)", "m"),
 }
 """What a recovered law gives, its unit, and the unit of what it is over."""
 

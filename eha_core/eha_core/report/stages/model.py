@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eha_core.curve import KNOTS
 from eha_core.diagnosis.result import Diagnosis, UnknownLaw
 from eha_core.report.picture import LABELS, Dots, Group, Intervals, Line, Panel, Picture
 from eha_core.report.quantities import quantity, scale_for, with_deviation
@@ -27,10 +28,11 @@ def stage(diagnosis: Diagnosis) -> Stage:
     if diagnosis.unknown:
         law = diagnosis.unknown
         told = (
-            f"The law was recovered from the data as a curve; it explains {law.r_squared:.1%} of the mismatch.",
-            f"It follows {law.expression}." if law.expression else "",
+            f"The law was recovered from the data; it explains {law.r_squared:.1%} of the mismatch.",
+            "As a formula, it reads:" if law.expression else "No simple formula follows its curve.",
         )
-        return Stage("model", "Model", f"A law over {law.function_of} is missing", told, (_curve(law),))
+        headline = f"A law over {law.function_of} is missing"
+        return Stage("model", "Model", headline, told, (_curve(law),), code=law.expression)
     if not diagnosis.effects:
         ending = "with the fitted parameters" if diagnosis.verdict == "parameters" else "as it was given"
         return Stage("model", "Model", f"The model stands {ending}", ("No physics was added.",))
@@ -49,11 +51,11 @@ def _curve(law: UnknownLaw) -> Picture:
     y_title, y_unit, x_unit = LAW_AXES.get((law.site, law.function_of), ("law", "-", "-"))
     across = scale_for(x_unit, float(np.abs(x).max(initial=0.0)))
     up = scale_for(y_unit, float(np.abs(y).max(initial=0.0)))
-    marks = (
-        Line(x / across.factor, y / up.factor, "after", "recovered law", 2.2),
-        Dots(x / across.factor, y / up.factor, "after"),
-    )
-    panel = Panel(marks, f"{law.function_of} [{across.unit or '-'}]", f"{y_title} [{up.unit or '-'}]", height=340)
+    line = Line(x / across.factor, y / up.factor, "after", "recovered law", 2.2)
+    knots = Dots(x / across.factor, y / up.factor, "after")
+    marks = (line, knots) if len(x) <= KNOTS else (line,)
+    variable = law.function_of.partition(",")[0]
+    panel = Panel(marks, f"{variable} [{across.unit or '-'}]", f"{y_title} [{up.unit or '-'}]", height=340)
     return Picture(
         "5-model", (Group((panel,)),), caption="The recovered law, where the recording says something about it."
     )

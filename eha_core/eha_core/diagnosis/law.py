@@ -1,0 +1,265 @@
+"""An unknown law in words: a recovered curve as an expression, and the law that the weak balances hold.
+
+The weak form needs no simulation: what an equation lacks is regressed on functions of the measured states, each
+integrated under the same bumps and freed of what the equation's own coefficients can take over, so that the
+coefficients found are those of the law itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from eha_core.curve import KNOTS
+from eha_core.diagnosis.balance import Balance
+from eha_core.diagnosis.library import best_wave, powers, searched
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.terms import Sighting, Sum, Term, fewest
+
+SIMPLE = 0.95
+"""R^2 that an expression has to reach."""
+
+PERIODIC = (0.5, 10.0)
+"""Hz; the forces over time that are looked for."""
+
+TOLD = 0.9
+"""R^2 from which a law of the balances is written out: noise in the states it is over lowers it."""
+
+PROMISING = 0.5
+"""An expression is looked for where a curve explains this share of what the best law before it does."""
+
+FEWEST_WAVES = 1.5
+"""Cycles over the range of the variable: with less, a wave is not told from a power."""
+
+MOST_WAVES = 0.25
+"""Cycles a knot of a curve: four knots draw a wave."""
+
+MOST_RIPPLES = 15.0
+"""Most cycles over the travel that are looked for in a balance."""
+
+VIOLATED = 1.5
+"""Chi^2 a degree of freedom above which a balance is looked into."""
+
+MORE = 0.02
+"""R^2 that a law must have over a simpler one before it."""
+
+OWN = 1e-4
+"""A function of which no more than this share is left beside the equation's own terms is one of them."""
+
+REVERSING = 0.05
+"""Standard deviations of the speed within which its direction counts as reversing."""
+
+DRAWN = 800
+"""Samples of a law that was found as an expression: eight a cycle at 5 Hz over 20 s."""
+
+OVERLAP = 2.0
+"""Neighbouring bumps overlap: so many of them count as one independent row (assumed)."""
+
+SYMBOLS = {
+    "position": ("x", "m"),
+    "velocity": ("v", "m/s"),
+    "pressure difference": ("(P1 - P2)", "Pa"),
+    "spool position": ("x_v", "A"),
+    "time": ("t", "s"),
+}
+"""How each variable is written, and its unit."""
+
+UNITS = {"force": "N", "chamber": "m^3/s", "orifice": "A"}
+"""What a law of each site gives: force on the piston, flow from chamber 1 to 2, opening of the valve."""
+
+
+DIRECTION = "direction of motion"
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A formula with its units, empty where nothing simple is good enough, and the R^2 that it reaches."""
+
+    text: str
+    r_squared: float
+
+
+@dataclass(frozen=True)
+class Law:
+    """What the balances say of a law that is missing.
+
+    `r_squared`: the share that it explains of what they lack beyond noise. `samples`: the function of the variable,
+    without what multiplies it, as (variable, function) in SI.
+    """
+
+    site: str
+    function_of: str
+    expression: str
+    r_squared: float
+    samples: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Form:
+    """A kind of law: at a site, a function of one variable, times another if `times` is not empty."""
+
+    site: str
+    variable: str
+    times: str = ""
+
+    @property
+    def title(self) -> str:
+        """The form in an engineer's words."""
+        return f"{self.variable}, times {self.times}" if self.times else self.variable
+
+
+FORMS = (
+    Form("force", "position"),
+    Form("force", "velocity"),
+    Form("force", "time"),
+    Form("force", "position", "velocity"),
+    Form("force", "position", DIRECTION),
+    Form("force", "pressure difference", DIRECTION),
+    Form("chamber", "pressure difference"),
+    Form("orifice", "spool position"),
+    Form("chamber", "position", "pressure difference"),
+)
+"""The laws that are looked for, the simpler ones first. A force over the pressure difference is not among them: the
+balance itself is one, with coefficients that are free."""
+
+
+def express(x: Array, y: Array, name: str, unit_y: str) -> Expression:
+    """The simplest expression of a curve y(x) over the variable `name`, one of SYMBOLS; y in `unit_y`, x in SI.
+
+    No text where fewer than eight points are there, or nothing simple explains SIMPLE of the curve's variance.
+    """
+    total = float(np.sum((y - y.mean()) ** 2)) if len(y) else 0.0
+    if len(x) < 8 or not total > 0.0:
+        return Expression("", 0.0)
+    symbol, unit = SYMBOLS[name]
+    sighting = Sighting(x, y, lambda values: values, total, float(len(x)))
+    reach = float(np.ptp(x))
+    waves = (FEWEST_WAVES / reach, MOST_WAVES * len(x) / reach)
+    found = fewest(sighting, _library(sighting, name, waves))
+    if found.r_squared < SIMPLE:
+        return Expression("", max(found.r_squared, 0.0))
+    return Expression(f"{found.written()} [{unit_y}], {symbol.strip('()')} in {unit}", found.r_squared)
+
+
+def _library(sighting: Sighting, name: str, waves: tuple[float, float]) -> tuple[Term, ...]:
+    """The terms that a law over a variable may have; over time only what comes back, as the rest would be drift."""
+    symbol = SYMBOLS[name][0]
+    if name == "time":
+        return (powers(symbol)[0], best_wave(sighting, symbol, *waves, pitch=False))
+    return (*powers(symbol), *searched(sighting, symbol), best_wave(sighting, symbol, *waves, pitch=True))
+
+
+def weak_law(alternatives: Sequence[Sequence[Balance]]) -> Law | None:
+    """The law that explains most of what the balances lack; None where they hold, or nothing explains any of it.
+
+    `alternatives`: balances made with different models, each of the force and then of the chambers. A law is looked for
+    in each of them, and the one that leaves least counts.
+    """
+    best: Law | None = None
+    most = 0.0
+    for form in FORMS:
+        parts = [one[:1] if form.site == "force" else one[1:] for one in alternatives]
+        sides = [one for one in parts if one]
+        energies = [float(np.mean([one.chi_square for one in chosen])) for chosen in sides]
+        # the equation that is violated most comes first, whatever explains a little of another
+        lacking = min(energies, default=0.0)
+        if lacking < VIOLATED:
+            continue
+        for chosen, energy in zip(sides, energies, strict=True):
+            law = _law(form, chosen, PROMISING * most / energy)
+            explained = lacking - 1.0 - (energy - 1.0) * (1.0 - law.r_squared) if law else 0.0
+            if explained > most + MORE * lacking:
+                best, most = law, explained
+    return best
+
+
+def _law(form: Form, balances: Sequence[Balance], least_share: float = 0.0) -> Law | None:
+    """The best law of a form, as an expression if that is as good as its curve; None if a curve explains too little."""
+    sighting = _sighting(form, balances)
+    reach = float(np.ptp(sighting.at))
+    if not reach > 0.0:
+        return None
+    curve, share = _curve(sighting) if form.variable != "time" else ((), 0.0)
+    if form.variable != "time" and share < least_share:
+        return None
+    waves = PERIODIC if form.variable == "time" else (FEWEST_WAVES / reach, MOST_RIPPLES / reach)
+    found = fewest(sighting, _library(sighting, form.variable, waves))
+    if not found.terms and share <= 0.0:
+        return None
+    beyond = sighting.total / max(sighting.total - len(sighting.seen), 1.0)
+    told, drawn = min(found.r_squared * beyond, 1.0), min(share * beyond, 1.0)
+    if told < SIMPLE * drawn:
+        return Law(form.site, form.title, "", drawn, curve)
+    return Law(form.site, form.title, _text(form, found) if told >= TOLD else "", told, _drawn(sighting, found))
+
+
+def _sighting(form: Form, balances: Sequence[Balance]) -> Sighting:
+    """The balances as sightings of the form's function, in units of noise."""
+    bases = [np.linalg.qr(one.terms)[0] for one in balances]
+    factors = [_factor(form, one) / one.noise for one in balances]
+
+    def rows(values: Array) -> Array:
+        return np.concatenate(
+            [
+                _freed(one.bumps.average(values * factor), basis)
+                for one, factor, basis in zip(balances, factors, bases, strict=True)
+            ],
+            axis=-1,
+        )
+
+    seen = np.concatenate([one.missing / one.noise for one in balances])
+    at = balances[0].states[form.variable]
+    return Sighting(at, seen, rows, float(seen @ seen), len(seen) / OVERLAP)
+
+
+def _freed(rows: Array, basis: Array) -> Array:
+    """Rows (..., n) without their part along the equation's own terms; zero if that is all there was."""
+    left = rows - (rows @ basis) @ basis.T
+    kept = np.linalg.norm(left, axis=-1, keepdims=True) > OWN * np.linalg.norm(rows, axis=-1, keepdims=True)
+    return np.asarray(np.where(kept, left, 0.0))
+
+
+def _factor(form: Form, balance: Balance) -> Array | float:
+    """What the form's function is multiplied by where it enters a balance."""
+    into = {"continuity_a": -1.0, "continuity_b": 1.0}.get(balance.equation, 1.0)
+    if form.site == "orifice":
+        return balance.states["flow_an_ampere"]
+    if not form.times:
+        return into
+    if form.times == DIRECTION:
+        speed = balance.states["velocity"]
+        return into * np.asarray(np.tanh(speed / (REVERSING * float(np.std(speed)) or 1.0)))
+    return into * balance.states[form.times]
+
+
+def _curve(sighting: Sighting) -> tuple[tuple[tuple[float, float], ...], float]:
+    """The function as a curve through evenly spaced knots, and the share that it explains, its freedom paid for."""
+    low, high = np.quantile(sighting.at, [0.002, 0.998])
+    places = np.linspace(low, high, KNOTS)
+    away = np.abs(np.clip(sighting.at, low, high) - places[:, None])
+    columns = sighting.rows(np.maximum(1.0 - away * (KNOTS - 1) / (high - low), 0.0)).T
+    heights, *_ = np.linalg.lstsq(columns, sighting.seen, rcond=1e-3)
+    left = sighting.seen - columns @ heights
+    freedom = (sighting.independent - 1.0) / max(sighting.independent - KNOTS, 1.0)
+    share = 1.0 - float(left @ left) / sighting.total * freedom
+    samples = zip(places, heights, np.linalg.norm(columns, axis=0) > 0.0, strict=True)
+    return tuple((float(place), float(height)) for place, height, told in samples if told), share
+
+
+def _drawn(sighting: Sighting, found: Sum) -> tuple[tuple[float, float], ...]:
+    """An expression as samples over the range that was visited."""
+    low, high = np.quantile(sighting.at, [0.002, 0.998])
+    places = np.linspace(low, high, DRAWN)
+    return tuple(zip(places.tolist(), found.values(places).tolist(), strict=True))
+
+
+def _text(form: Form, found: Sum) -> str:
+    """The expression with the units of what it gives and of what it is over."""
+    variables = [form.variable, *([form.times] if form.times else [])]
+    times = "sign(v)" if form.times == DIRECTION else SYMBOLS[form.times][0] if form.times else ""
+    units = [
+        f"{symbol.strip('()')} in {unit}" for symbol, unit in (SYMBOLS[one] for one in variables if one in SYMBOLS)
+    ]
+    return f"{found.written(times)} [{UNITS[form.site]}], {', '.join(units)}"

@@ -1,0 +1,192 @@
+"""The fewest terms that explain what was seen of an unknown function.
+
+PySINDy's optimisers propose: FROLS adds terms one after the other, SSR takes them away. Which of their proposals stands
+is decided by the Bayesian information criterion, with every number in a term paid for. After B. de Silva et al.,
+"PySINDy", Journal of Open Source Software 5 (2020), and S. A. Billings, "Nonlinear System Identification" (2013).
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import atan2, hypot, log
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.diagnosis.numbers import Array
+
+Function = Callable[[Array], Array]
+
+MOST_TERMS = 4
+WORTH = 10.0
+"""What another term must take off the Bayesian information criterion: very strong evidence by the usual scale ..."""
+
+SLIGHT = 0.005
+"""... and the share of the variance that it must take away: what is measured is never as exact as it is many."""
+
+PRECISION = 1e-5
+"""Share of the variance below which nothing is asked to be explained: 0.3 % of the amplitude."""
+
+ALIKE = 1.0 - 1e-8
+"""Correlation from which two terms are one."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """A function of the variable with free coefficients: `text` as it is written, `parts` one for each coefficient.
+
+    A sine has two parts, sine and cosine, and `text` is its argument. `searched`: numbers inside that were searched.
+    """
+
+    text: str
+    parts: tuple[Function, ...]
+    searched: int = 0
+
+    def written(self, coefficients: Sequence[float], times: str = "") -> str:
+        """The term with its coefficients, to three digits, times another factor."""
+        size, text = coefficients[0], self.text
+        if len(self.parts) == 2:
+            size, text = hypot(*coefficients), f"sin({self.text} {signed(atan2(coefficients[1], coefficients[0]))})"
+        factors = [one for one in (number(size), "" if text == "1" else text, times) if one]
+        return " ".join(factors)
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """What was seen of an unknown function of `at` (times,).
+
+    `rows` turns any function's values (..., times) into what would be seen of them (..., n), of which `seen` (n,) was
+    seen. `total`: the sum of squares that is to be explained. `independent`: how many of the n count.
+    """
+
+    at: Array
+    seen: Array
+    rows: Callable[[Array], Array]
+    total: float
+    independent: float
+
+
+@dataclass(frozen=True)
+class Sum:
+    """Terms with the coefficients of each, the share of the variance that they explain, and the criterion of that."""
+
+    terms: tuple[Term, ...]
+    coefficients: tuple[tuple[float, ...], ...]
+    r_squared: float
+    criterion: float
+
+    def values(self, at: Array) -> Array:
+        """The sum at values of the variable."""
+        found = np.zeros_like(at)
+        for term, sizes in zip(self.terms, self.coefficients, strict=True):
+            for part, size in zip(term.parts, sizes, strict=True):
+                found += size * part(at)
+        return found
+
+    def written(self, times: str = "") -> str:
+        """The sum as a formula; empty without terms."""
+        pairs = zip(self.terms, self.coefficients, strict=True)
+        return " + ".join(term.written(sizes, times) for term, sizes in pairs).replace("+ -", "- ")
+
+
+def fewest(sighting: Sighting, terms: Sequence[Term]) -> Sum:
+    """The sum of fewest terms that is not clearly worse than a longer one; of no term where none is worth it."""
+    columns = [_columns(sighting, term) for term in terms]
+    sums = [
+        _solved(sighting, [terms[k] for k in support], [columns[k] for k in support])
+        for support in _supports(sighting, columns)
+    ]
+    best = _solved(sighting, [], [])
+    for count in range(1, MOST_TERMS + 1):
+        nearest = min((one for one in sums if len(one.terms) == count), key=lambda one: one.criterion, default=best)
+        if nearest.criterion < best.criterion - WORTH and nearest.r_squared > best.r_squared + SLIGHT:
+            best = nearest
+    return best
+
+
+def fitted(sighting: Sighting, terms: Sequence[Term]) -> Sum:
+    """Least squares over the parts of the terms."""
+    return _solved(sighting, terms, [_columns(sighting, term) for term in terms])
+
+
+def _columns(sighting: Sighting, term: Term) -> Array:
+    """What would be seen of each part of a term: (parts, n)."""
+    return sighting.rows(np.stack([part(sighting.at) for part in term.parts]))
+
+
+def _solved(sighting: Sighting, terms: Sequence[Term], columns: Sequence[Array]) -> Sum:
+    left = sighting.seen
+    solved = np.empty(0)
+    if terms:
+        matrix = np.concatenate(columns).T
+        lengths = np.linalg.norm(matrix, axis=0)
+        lengths = np.where(lengths > 0.0, lengths, 1.0)
+        solved = np.linalg.lstsq(matrix / lengths, left, rcond=None)[0] / lengths
+        left = left - matrix @ solved
+    share = float(left @ left) / sighting.total
+    numbers = len(solved) + sum(term.searched for term in terms)
+    criterion = sighting.independent * log(share + PRECISION) + numbers * log(sighting.independent)
+    sizes = iter(float(one) for one in solved)
+    coefficients = tuple(tuple(next(sizes) for _ in term.parts) for term in terms)
+    return Sum(tuple(terms), coefficients, 1.0 - share, criterion)
+
+
+def _supports(sighting: Sighting, columns: Sequence[Array]) -> list[tuple[int, ...]]:
+    """Sets of terms to try: each alone, each pair, and the longer ones that greedy optimisers pass through."""
+    from pysindy.optimizers import FROLS, SSR  # takes a second to import, and few recordings need it
+
+    owners = [k for k, parts in enumerate(columns) for _ in parts]
+    stacked = np.concatenate(columns)
+    lengths = np.linalg.norm(stacked, axis=1)
+    unit = stacked / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    able = _apart(unit)
+    if not able or not np.any(sighting.seen):
+        return []
+    there = sorted({owners[k] for k in able})
+    found = {*combinations(there, 1), *combinations(there, 2)}
+    target = sighting.seen[:, None] / np.linalg.norm(sighting.seen)
+    most = min(MOST_TERMS + 1, len(able))
+    for optimiser in (FROLS(max_iter=most, alpha=1e-9), SSR(max_iter=len(able), alpha=1e-9)):
+        for used in _passed(optimiser, unit[able].T, target):
+            support = tuple(sorted({owners[able[k]] for k in used}))
+            if 0 < len(support) <= MOST_TERMS:
+                found.add(support)
+    return sorted(found)
+
+
+def _apart(unit: Array) -> list[int]:
+    """Which columns (k, n) of unit length are there, and are not another one before them once more."""
+    alike = np.abs(unit @ unit.T)
+    found: list[int] = []
+    for k in range(len(unit)):
+        if alike[k, k] > 0.5 and np.all(alike[k, found] < ALIKE):
+            found.append(k)
+    return found
+
+
+def _passed(optimiser: Any, columns: Array, target: Array) -> Iterator[NDArray[np.intp]]:
+    """The sets of columns on an optimiser's way; none where it meets columns that depend on each other."""
+    with warnings.catch_warnings():
+        # columns that nearly depend on each other are expected: the criterion judges what comes of them
+        warnings.simplefilter("ignore")
+        try:
+            optimiser.fit(columns, target)
+        except (ValueError, np.linalg.LinAlgError):
+            return
+    for coefficients in optimiser.history_:
+        yield np.flatnonzero(np.ravel(coefficients))
+
+
+def number(value: float) -> str:
+    """Three digits, the exponent without padding: 2.1e4."""
+    digits, _, exponent = f"{value:.3g}".partition("e")
+    return f"{digits}e{int(exponent)}" if exponent else digits
+
+
+def signed(value: float) -> str:
+    """A number to be added, with its sign before it: "+ 0.52"."""
+    return f"{'-' if value < 0.0 else '+'} {number(abs(value))}"
