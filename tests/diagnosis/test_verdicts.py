@@ -3,11 +3,13 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from made import recorded
 
 from eha_core.cli import main
 from eha_core.diagnosis import diagnose
+from eha_core.diagnosis.observation import observe, reaching
 from eha_core.exam.cases import draw_case
 from eha_core.exam.measuring import measure, simulate_case
 from eha_core.parameters import load_parameters, nominal_values
@@ -87,9 +89,10 @@ def test_a_force_that_no_name_fits_is_located_and_not_named():
 
 def test_a_piston_beyond_the_nominal_stroke_is_said_to_be_there():
     nominal = {**nominal_values(), "actuator_displacement": 0.005}
-    result = diagnose(recorded({}), nominal)
-    assert any("beyond the nominal actuator_displacement" in remark for remark in result.remarks)
-    assert result.verdict == "parameters"
+    observation, reached = reaching(observe(recorded({})), nominal)
+    farthest = np.max(np.abs(observation.channel("position").values))
+    assert reached["actuator_displacement"] == pytest.approx(1.05 * farthest)
+    assert any("beyond the nominal actuator_displacement" in remark for remark in observation.remarks)
 
 
 def test_two_effects_at_once_are_both_named(tmp_path, capsys):
