@@ -21,7 +21,7 @@ VALUES = nominal_values()
 
 def numbers(text: str) -> list[float]:
     """The numbers in a formula, units and exponents of terms left aside."""
-    formula = text.split(" [")[0].replace("2π", "").replace("^2", "").replace("^3", "").replace("P1 - P2", "")
+    formula = re.sub(r"2π·?|\^\d|P1 - P2", "", text.split(" [")[0])
     return [float(one.replace(" ", "")) for one in re.findall(r"(?:[-+] )?-?\d[\d.]*(?:e-?\d+)?", formula)]
 
 

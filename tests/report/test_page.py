@@ -116,6 +116,19 @@ def test_headlines(kind: str, stage: str, headline: str, request: pytest.Fixture
     assert found[stage].headline == headline
 
 
+def test_an_unknown_law_is_drawn_and_written(unknown: Diagnosis) -> None:
+    stage = {one.name: one for one in story(unknown)}["model"]
+    assert stage.code == "250 tanh(20 v)"
+    assert "the simulation goes on without it" in " ".join(stage.sentences)
+    assert unknown.unknown is not None
+    product = replace(unknown.unknown, function_of="position, times velocity")
+    simulated = replace(unknown, unknown=product, fitted_values={"recovered_force.knot_00": 3.0})
+    stage = {one.name: one for one in story(simulated)}["model"]
+    assert "without it" not in " ".join(stage.sentences)
+    panel = stage.pictures[0].groups[0].panels[0]
+    assert (panel.x_label, panel.y_label) == ("position [mm]", "force on the piston by its velocity [N s/m]")
+
+
 def test_the_proposed_test_is_drawn_and_told_as_parameters(ambiguous: Diagnosis) -> None:
     stage = story(ambiguous)[-1]
     line = stage.pictures[0].groups[0].panels[0].marks[0]

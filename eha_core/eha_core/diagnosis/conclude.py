@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -43,13 +44,13 @@ one."""
 def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
     """Polish the winner, measure what it is worth on data it was not fitted to, and put everything into words."""
     progress("polishing the winner and its intervals")
-    decision = evidence.decision
+    unknown = _unknown(evidence)
+    decision = _without_another_curve(evidence, unknown)
     final = polish(evidence, decision.winner)
     before, calibrated = evidence.calibration.nominal, evidence.tournament.nominal.fit
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     effects = () if decision.verdict == "unknown_physics" else _named(decision.winner, final)
-    unknown = _unknown(evidence)
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
         path=str(recording.path),
@@ -162,6 +163,14 @@ def _unknown(evidence: Evidence) -> UnknownLaw | None:
     return UnknownLaw(law.site, law.function_of, law.expression, law.r_squared, law.samples)
 
 
+def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> Decision:
+    """The decision, on the nominal equations where its curve is another law than the one that was found."""
+    decision, curve = evidence.decision, evidence.recovery
+    if unknown is None or curve is None or (unknown.site, unknown.function_of) == (curve.effect.site, curve.variable):
+        return decision
+    return replace(decision, winner=evidence.tournament.nominal, judged_winner=decision.judged_nominal)
+
+
 def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
     """The law's site first, whatever effects of other sites could make up for."""
     where, when = (location[0].where, location[0].when) if location else ("all over the states that were visited", ())
@@ -188,8 +197,7 @@ def _summary_of_unknown(law: UnknownLaw | None) -> str:
     if law is None:
         return "Something is missing that the catalogue does not name, and no law over the measured states explains it."
     statement = next(effect.statement for effect in every_effect() if effect.site == law.site and not effect.named)
-    formula = f": {law.expression}" if law.expression else ""
-    return f"Something is missing: {statement}, as a function of {law.function_of}{formula}."
+    return f"Something is missing: {statement}, as a function of {law.function_of}."
 
 
 def _changed_values(final: Fit) -> dict[str, float]:

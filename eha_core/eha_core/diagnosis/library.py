@@ -74,7 +74,7 @@ def best_wave(sighting: Sighting, symbol: str, slowest: float, fastest: float, p
 
     def wave(frequency: float) -> Term:
         turns = 2.0 * pi * frequency
-        text = f"2π {symbol} / {number(1.0 / frequency)}" if pitch else f"2π {number(frequency)} {symbol}"
+        text = f"2π {symbol} / {number(1.0 / frequency)}" if pitch else f"2π·{number(frequency)} {symbol}"
         return Term(text, (lambda z: np.sin(turns * z), lambda z: np.cos(turns * z)), 1)
 
     step = FREQUENCY_STEP / float(np.ptp(sighting.at))

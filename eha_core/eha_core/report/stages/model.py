@@ -22,6 +22,8 @@ from eha_core.report.wording import (
     words,
 )
 
+WITHOUT = "It was read off the balances of measured channels; the simulation goes on without it."
+
 
 def stage(diagnosis: Diagnosis) -> Stage:
     """The named physics in equations and numbers, or the recovered law as a curve."""
@@ -29,6 +31,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
         law = diagnosis.unknown
         told = (
             f"The law was recovered from the data; it explains {law.r_squared:.1%} of the mismatch.",
+            "" if any(one.startswith("recovered_") for one in diagnosis.fitted_values) else WITHOUT,
             "As a formula, it reads:" if law.expression else "No simple formula follows its curve.",
         )
         headline = f"A law over {law.function_of} is missing"
