@@ -145,6 +145,11 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
             again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
+        unbent = with_dynamics_as_given(problem, result)
+        if unbent is not None:
+            again = fit(problem, unbent.values, result.free, unbent.states, iterations=10)
+            if again.objective < result.objective:
+                result = fit(exact, again.values, again.free, again.states, iterations=6)
         result = _other_instants(exact, result)
         best = min(best, result.objective)
         settled[place] = (effects, result)
