@@ -31,8 +31,13 @@ class Command:
 
     def __init__(self, *arguments: str, cwd: Path | None = None) -> None:
         self.process = subprocess.Popen(
-            [str(ROS2), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd
-        )
+            [str(ROS2), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd,
+            start_new_session=True,
+        )  # fmt: skip
+
+    def interrupt(self) -> None:
+        """Send what Ctrl-C sends: a signal to the command and to what it has started."""
+        os.killpg(self.process.pid, signal.SIGINT)
 
     def result(self, timeout: float = 30.0) -> tuple[int, str, str]:
         """Return exit status, output and errors."""
@@ -40,7 +45,7 @@ class Command:
             output, errors = self.process.communicate(timeout=timeout)
         finally:
             if self.process.poll() is None:
-                self.process.kill()
+                os.killpg(self.process.pid, signal.SIGKILL)
                 self.process.communicate()
         return self.process.returncode, output, errors
 
@@ -87,7 +92,7 @@ def test_hz_tells_the_rate(graph: Graph) -> None:
     command = Command("topic", "hz", "/x")
     end = time.monotonic() + 6.0
     graph.spin_until(lambda: time.monotonic() > end)
-    command.process.send_signal(signal.SIGINT)
+    command.interrupt()
     output = command.result()[1]
     rate = float(output.split("average rate: ")[1].split()[0])
     assert rate == pytest.approx(100.0, rel=0.2)
@@ -151,7 +156,7 @@ def test_a_recording_is_made_described_and_played(graph: Graph, tmp_path: Path) 
     timer.cancel()
     end = time.monotonic() + 0.5
     graph.spin_until(lambda: time.monotonic() > end)
-    recorder.process.send_signal(signal.SIGINT)
+    recorder.interrupt()
     recorder.result()
     information = _run(None, "bag", "info", str(bag))[1]
     assert f"Topic: /x | Type: std_msgs/msg/Float64 | Count: {len(sent)} | Serialization Format: cdr" in information
@@ -169,7 +174,7 @@ def test_what_is_recorded_and_played_can_be_chosen_by_pattern(graph: Graph, tmp_
     recorder = Command("bag", "record", "-s", "mcap", "-o", str(bag), *chosen)
     assert graph.spin_until(lambda: all(publishers[i].get_subscription_count() == 1 for i in (0, 2)), 15.0)
     assert not graph.spin_until(lambda: any(publishers[i].get_subscription_count() for i in (1, 3)), 1.0)
-    recorder.process.send_signal(signal.SIGINT)
+    recorder.interrupt()
     recorder.result()
     timer.cancel()
     heard: set[str] = set()
@@ -225,11 +230,11 @@ def _heard(graph: Graph, text: str) -> bool:
     return graph.spin_until(lambda: text in heard, 20.0)
 
 
-def test_run_starts_a_node_whose_signals_are_its_own(package: Path, graph: Graph) -> None:
+def test_run_starts_a_node_and_ends_with_it(package: Path, graph: Graph) -> None:
     command = Command("run", "some_package", "node", "--ros-args", "-p", "gain:=2.5", "-r", "__ns:=/a")
     assert _heard(graph, "up as /a/launched with 2.5")
     assert "/a/launched" in graph.nodes[0].get_fully_qualified_node_names()
-    command.process.send_signal(signal.SIGINT)
+    command.interrupt()
     status, _, errors = command.result()
     assert status == 0 and "up as /a/launched with 2.5" in errors
 
@@ -239,7 +244,7 @@ def test_launch_starts_and_ends_what_the_file_says(package: Path, graph: Graph) 
     assert _heard(graph, "up as /rig/renamed with 3.5")
     observer = graph.nodes[0]
     assert "/rig/renamed" in observer.get_fully_qualified_node_names()
-    command.process.send_signal(signal.SIGINT)
+    command.process.send_signal(signal.SIGINT)  # which launch passes on
     status, output, errors = command.result()
     assert status == 0, errors
     assert "up as /rig/renamed with 3.5" in output + errors

@@ -66,6 +66,7 @@ def test_a_killed_node_leaves_the_others_running(graph: Graph, program: Start) -
     assert graph.spin_until(lambda: len(received) > 20)
 
 
+@only_layer  # with ROS 2's own it stays in the graph until its lease ends
 def test_a_node_that_returns_is_gone_at_once(graph: Graph, program: Start) -> None:
     graph.node("observer")
     brief = program('import time, rclpy; rclpy.init(); rclpy.create_node("brief"); print("ready"); time.sleep(0.5)')
