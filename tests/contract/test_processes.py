@@ -27,6 +27,10 @@ except KeyboardInterrupt:
     print("interrupted")
 except ExternalShutdownException:
     print("shut down")
+except Exception:
+    if rclpy.ok():
+        raise
+    print("shut down within a call")  # with ROS 2's own it fails then with an error of its own
 else:
     print("shut down between two callbacks")
 finally:
