@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -18,8 +19,13 @@ class Command:
 
     def __init__(self, *arguments: str, cwd: Path | None = None) -> None:
         self.process = subprocess.Popen(
-            [str(ROS2), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd
-        )
+            [str(ROS2), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd,
+            start_new_session=True,
+        )  # fmt: skip
+
+    def interrupt(self) -> None:
+        """Send what Ctrl-C sends: a signal to the command and to what it has started."""
+        os.killpg(self.process.pid, signal.SIGINT)
 
     def result(self, timeout: float = 30.0) -> tuple[int, str, str]:
         """Return exit status, output and errors."""
@@ -27,7 +33,7 @@ class Command:
             output, errors = self.process.communicate(timeout=timeout)
         finally:
             if self.process.poll() is None:
-                self.process.kill()
+                os.killpg(self.process.pid, signal.SIGKILL)
                 self.process.communicate()
         return self.process.returncode, output, errors
 

@@ -33,6 +33,10 @@ except KeyboardInterrupt:
     print("interrupted")
 except ExternalShutdownException:
     print("shut down")
+except Exception:
+    if rclpy.ok():
+        raise
+    print("shut down within a call")  # with ROS 2's own it fails then with an error of its own
 else:
     print("shut down between two callbacks")
 finally:
@@ -72,6 +76,7 @@ def test_a_killed_node_leaves_the_others_running(graph: Graph, program: Start) -
     assert graph.spin_until(lambda: len(received) > 20)
 
 
+@only_layer  # with ROS 2's own it stays in the graph until its lease ends
 def test_a_node_that_returns_is_gone_at_once(graph: Graph, program: Start) -> None:
     graph.node("observer")
     brief = program('import time, rclpy; rclpy.init(); rclpy.create_node("brief"); print("ready"); time.sleep(0.5)')

@@ -242,3 +242,14 @@ def test_what_is_not_offered_says_so_at_import() -> None:
     for module in ("action", "lifecycle", "service_introspection"):
         with pytest.raises(ImportError, match="install ROS 2"):
             __import__(f"rclpy.{module}")
+
+
+def test_who_is_heard_through_loopback_alone_is_found(
+    graph: Graph, program: type[Program], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    observer = graph.node("observer")
+    interfaces = '<Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>'
+    pinned = f"<CycloneDDS><Domain><General>{interfaces}</General></Domain></CycloneDDS>"
+    monkeypatch.setenv("CYCLONEDDS_URI", pinned)
+    program("import rclpy; rclpy.init(); n = rclpy.create_node('near'); print('up'); rclpy.spin(n)").wait_for("up")
+    assert graph.spin_until(lambda: "near" in observer.get_node_names())

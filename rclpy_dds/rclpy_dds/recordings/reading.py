@@ -58,21 +58,26 @@ def find_files(path: str) -> list[str]:
         return [path]
     if not os.path.isdir(path):
         raise RecordingError(f"bag path '{path}' does not exist")
-    metadata = os.path.join(path, "metadata.yaml")
-    names: list[str] = []
-    if os.path.isfile(metadata):
-        try:
-            with open(metadata, encoding="utf-8") as file:
-                information = yaml.safe_load(file)["rosbag2_bagfile_information"]
-            names = list(information["relative_file_paths"])
-        except (OSError, yaml.YAMLError, KeyError, TypeError) as error:
-            raise RecordingError(f"{metadata} is no metadata of rosbag2: {' '.join(str(error).split())}") from None
-        if information.get("storage_identifier", "mcap") != "mcap":
-            raise RecordingError(f"{path} is stored as {information['storage_identifier']}; rclpy_dds reads mcap only")
+    information = _metadata(path)
+    if information.get("storage_identifier", "mcap") != "mcap":
+        raise RecordingError(f"{path} is stored as {information['storage_identifier']}; rclpy_dds reads mcap only")
+    names = list(information.get("relative_file_paths", []))
     names = names or sorted(name for name in os.listdir(path) if name.endswith(".mcap"))
     if not names:
         raise RecordingError(f"{path} holds no .mcap file")
     return [os.path.join(path, name) for name in names]
+
+
+def _metadata(path: str) -> dict[str, Any]:
+    """Return what a recording's metadata.yaml says; nothing where there is none."""
+    file_name = os.path.join(path, "metadata.yaml")
+    if not os.path.isfile(file_name):
+        return {}
+    try:
+        with open(file_name, encoding="utf-8") as file:
+            return dict(yaml.safe_load(file)["rosbag2_bagfile_information"])
+    except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError) as error:
+        raise RecordingError(f"{file_name} is no metadata of rosbag2: {' '.join(str(error).split())}") from None
 
 
 def summarise(path: str) -> Recording:
@@ -83,6 +88,7 @@ def summarise(path: str) -> Recording:
     """
     files = find_files(path)
     recording = Recording(path, files)
+    recording.distribution = _metadata(path).get("ros_distro") or recording.distribution
     starts, ends = [], []
     for name in files:
         times = _summarise_file(name, recording)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import array
 import atexit
 import ctypes
+import fcntl
 import os
+import socket
+import struct
 import sys
 import threading
 import time
@@ -16,6 +20,8 @@ from cyclonedds.internal import DDS
 
 MAX_DOMAIN_ID = 232
 _RANGES = ("SUBNET", "LOCALHOST", "OFF", "SYSTEM_DEFAULT")
+_LOOPBACK_TOO = '<NetworkInterface autodetermine="true"/><NetworkInterface address="127.0.0.1" multicast="false"/>'
+_SIOCGIFCONF = 0x8912  # Linux: the interfaces' IPv4 addresses
 _DELETION_LIMIT = 5.0  # s; it takes milliseconds
 # Taken by index, a function is not the object that cyclonedds's own classes declare their arguments on.
 _create_domain = DDS._dll_handle["dds_create_domain"]
@@ -49,27 +55,46 @@ def discovery_range() -> str:
     return text
 
 
-def configuration() -> str:
-    """Return Cyclone DDS's configuration as rmw_cyclonedds_cpp composes it, CYCLONEDDS_URI last so that it wins."""
+def configuration(with_loopback: bool = True) -> str:
+    """Return Cyclone DDS's configuration as rmw_cyclonedds_cpp composes it, CYCLONEDDS_URI last so that it wins.
+
+    Participants limited to this machine are found through the loopback address. Cyclone DDS 0.10, which ROS 2 has,
+    heeds what comes there in any case; the one used here only where `with_loopback` selects that interface too.
+    """
     reach = discovery_range()
+    uri = os.environ.get("CYCLONEDDS_URI", "")
     general, discovery = "", ""
     if reach in ("SUBNET", "LOCALHOST"):
         discovery = "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
     peers = [peer for peer in os.environ.get("ROS_STATIC_PEERS", "").split(";") if peer]
     if reach in ("LOCALHOST", "OFF"):
-        general = "<General><AllowMulticast>false</AllowMulticast></General>"
+        general = "<AllowMulticast>false</AllowMulticast>"
     if reach == "LOCALHOST":
         peers.append("localhost")
+        if with_loopback and "NetworkInterface" not in uri and _has_network():
+            general += f"<Interfaces>{_LOOPBACK_TOO}</Interfaces>"
     if reach == "OFF":
         peers = []
         discovery = f"<ParticipantIndex>none</ParticipantIndex><Tag>rclpy_dds_{os.getpid()}</Tag>"
     if peers:
         discovery += f"<Peers>{''.join(f'<Peer address={quoteattr(peer)}/>' for peer in peers)}</Peers>"
-    inner = general + (f"<Discovery>{discovery}</Discovery>" if discovery else "")
+    sections = (("General", general), ("Discovery", discovery))
+    inner = "".join(f"<{name}>{content}</{name}>" for name, content in sections if content)
     parts = [f"<CycloneDDS><Domain>{inner}</Domain></CycloneDDS>"] if inner else []
-    if uri := os.environ.get("CYCLONEDDS_URI", ""):
+    if uri:
         parts.append(uri)
     return ",".join(parts)
+
+
+def _has_network() -> bool:
+    """Tell whether an interface besides loopback has an address; selecting loopback twice is an error."""
+    entry = struct.calcsize("16s24x")
+    entries = array.array("B", bytes(entry * 256))
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+        answer = fcntl.ioctl(asked, _SIOCGIFCONF, struct.pack("iL", len(entries), entries.buffer_info()[0]))
+    length = struct.unpack("iL", answer)[0]
+    addresses = [entries[start + 20 : start + 24] for start in range(0, length, entry)]
+    return any(address[0] != 127 for address in addresses)
 
 
 @cache
@@ -83,6 +108,8 @@ def open_domain(domain_id: int) -> int | None:
         RuntimeError: Cyclone DDS refuses the configuration or finds no network interface.
     """
     domain: int = _create_domain(domain_id, configuration().encode())
+    if domain == DDSException.DDS_RETCODE_ERROR:
+        domain = _create_domain(domain_id, configuration(with_loopback=False).encode())
     if domain == DDSException.DDS_RETCODE_PRECONDITION_NOT_MET:
         return None
     if domain < 0:

@@ -16,6 +16,7 @@ from cyclonedds.qos import Policy, Qos
 from rclpy_dds.interfaces.codec import MalformedSample, decoder, encoder
 from rclpy_dds.interfaces.message import message_class
 from rclpy_dds.wire import entities
+from rclpy_dds.wire.hashes import type_hash
 from rclpy_dds.wire.types import topic_type
 
 _INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"
@@ -58,8 +59,9 @@ class Graph:
         self._lock = threading.RLock()
         self.gid = entities.guid(participant.handle)
         topic = participant.topic("ros_discovery_info", topic_type(_INFO))
-        self._writer = participant.writer(topic, Qos(*_COMMON, Policy.History.KeepLast(1)))
-        self._reader = participant.reader(topic, Qos(*_COMMON, Policy.History.KeepAll))
+        announced = Policy.Userdata(f"typehash={type_hash(_INFO)};".encode("ascii"))
+        self._writer = participant.writer(topic, Qos(*_COMMON, announced, Policy.History.KeepLast(1)))
+        self._reader = participant.reader(topic, Qos(*_COMMON, announced, Policy.History.KeepAll))
         self._participant_reader = participant.reader(_BUILTIN_PARTICIPANTS, None)
         self._endpoint_readers = (
             participant.reader(_BUILTIN_WRITERS, None),

@@ -39,5 +39,5 @@ def main(args: argparse.Namespace) -> str | None:
                     print(f"    {entry}: {', '.join(types)}")
             if not title.startswith("Sub") and not title.startswith("Pub"):
                 print()
-        print("  Action Servers:\n\n  Action Clients:\n")
+        print("  Action Servers:\n\n  Action Clients:")
     return None

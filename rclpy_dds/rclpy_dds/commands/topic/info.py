@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
-from rclpy_dds.commands.common import add_spin_time, command_node, topic_type
+from rclpy_dds.commands.common import add_spin_time, command_node, topic_type, wait_until
+
+_UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,11 +24,17 @@ def main(args: argparse.Namespace) -> str | None:
         if name is None:
             return f"Unknown topic '{args.topic_name}'"
         end = "\n\n" if args.verbose else "\n"
+
+        def publishers() -> list[Any]:
+            return list(node.get_publishers_info_by_topic(args.topic_name))
+
+        def subscriptions() -> list[Any]:
+            return list(node.get_subscriptions_info_by_topic(args.topic_name))
+
+        # A node tells its name on a topic, which may come after its endpoints; Fast DDS takes its time.
+        wait_until(lambda: all(one.node_name != _UNKNOWN for one in publishers() + subscriptions()), args.spin_time)
         print(f"Type: {name}", end=end)
-        for title, infos in (
-            ("Publisher", node.get_publishers_info_by_topic(args.topic_name)),
-            ("Subscription", node.get_subscriptions_info_by_topic(args.topic_name)),
-        ):
+        for title, infos in (("Publisher", publishers()), ("Subscription", subscriptions())):
             print(f"{title} count: {len(infos)}", end=end)
             for info in infos if args.verbose else ():
                 print(info, end=end)
