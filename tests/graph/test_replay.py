@@ -49,7 +49,8 @@ def drive(rig: Rig, recording: Path, *parameters: str) -> list[ActuatorState]:
     rig.node.destroy_publisher(rig.commands)
     rig.start_sim(*parameters)
     states = rig.hear(ActuatorState, "state", 20_000)
-    rig.spin(2.0)  # a simulator first looks for a namesake; what comes meanwhile would be taken all at once
+    if "time_mode:=lockstep" not in parameters:
+        rig.wait(lambda: states, "the first state")  # what comes before that is taken all at once
     player = play(rig, recording)
     rig.wait(lambda: player.process.poll() is not None, "the end of the recording")
     assert player.process.returncode == 0, player.output
