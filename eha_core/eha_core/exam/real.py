@@ -25,6 +25,7 @@ VISCOUS_ONLY = {"moving_mass": 95.1089, "damping_coefficient": 203.5034, "spring
 """The EMPS axis with its dry friction and its offset left out (A. Janot, M. Gautier, M. Brunot, 2019)."""
 
 BAGS: dict[str, tuple[str, frozenset[str]]] = {
+    "paper_leakage_levels.mcap": ("consistent", frozenset()),
     "rig_as_modelled.mcap": ("consistent", frozenset()),
     "rig_other_parameters.mcap": ("parameters", frozenset()),
     "rig_coulomb_friction.mcap": ("missing_physics", frozenset({"coulomb_friction"})),

@@ -158,7 +158,8 @@ def _effect_intervals(case: Case, diagnosis: Mapping[str, Any]) -> tuple[bool, .
     held = []
     for effect in diagnosis.get("effects") or ():
         for name, fitted in effect["parameters"].items():
-            value = truth[effect["id"]].get(name)
+            # an equivalent law of the catalogue has parameters of its own, which the truth does not know
+            value = truth.get(effect["id"], {}).get(name)
             if isinstance(value, float) and abs(value) < 1.0e30 and fitted["std"]:
                 held.append(_holds(fitted["value"], fitted["std"], value))
     return tuple(held)
