@@ -88,6 +88,17 @@ def test_intervals_are_held_against_the_truth() -> None:
     assert marked.nominal_intervals == (False,)
 
 
+def test_parameters_of_an_equivalent_law_are_not_held_against_the_truth() -> None:
+    case = replace(single(), effects=(("direction_friction", {"forward": 100.0, "backward": 300.0}),))
+    effects = [
+        {"id": name, "site": "force", "parameters": {"force": {"value": 1.0, "std": 1.0, "unit": "N"}}}
+        for name in ("coulomb_friction", "constant_load")
+    ]
+    marked = mark(case, Answer({"verdict": "missing_physics", "effects": effects}, 0, 1.0))
+    assert marked.outcome == "right"
+    assert marked.intervals == ()
+
+
 def test_a_recovered_curve_is_compared_up_to_what_the_nominal_model_absorbs() -> None:
     case = replace(single(), effects=(("position_ripple", {"force": 100.0, "pitch": 0.01, "phase": 0.3}),))
     x = np.linspace(-0.02, 0.02, 80)

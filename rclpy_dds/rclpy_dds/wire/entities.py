@@ -7,14 +7,13 @@ needs neither, so it calls the library's C functions for what is short-lived or 
 from __future__ import annotations
 
 import ctypes
-import threading
 from collections.abc import Iterable
 from typing import Any
 
 from cyclonedds._clayer import ddspy_take, ddspy_topic_create, ddspy_write
 from cyclonedds.core import DDSException
 from cyclonedds.internal import DDS, SampleInfo, dds_c_t
-from cyclonedds.qos import Policy, Qos, _CQos
+from cyclonedds.qos import Qos, _CQos
 
 from rclpy_dds.wire.domain import open_domain
 
@@ -26,7 +25,6 @@ STATUS_IDS = {
     "publication_matched": 11, "subscription_matched": 12,
 }  # fmt: skip
 _library = DDS._dll_handle
-_discovered_qos_lock = threading.Lock()
 
 
 def _function(name: str, *arguments: Any) -> Any:
@@ -98,39 +96,6 @@ def matched_handles(entity: int, *, writer: bool) -> list[int]:
     return list(handles[: max(0, min(function(entity, handles, capacity), capacity))])
 
 
-class _Type:
-    """A topic's own copy of what Cyclone DDS reads of a type.
-
-    cyclonedds describes a type anew for each topic, and where topics share the object it forgets the description that
-    was there before.
-    """
-
-    def __init__(self, data_type: Any) -> None:
-        self.__idl__ = data_type.__idl__
-
-
-class _DiscoveredQos(_CQos):
-    """cyclonedds's way from C to Python for what ROS uses. It forgets to free user data, and partitions, left out."""
-
-    _all_scopes = (  # type: ignore[assignment]
-        "Reliability", "Durability", "History", "Lifespan", "Deadline", "Liveliness", "Userdata",
-    )  # fmt: skip
-
-    @classmethod
-    def _get_p_userdata(cls, qos: Any) -> Any:
-        value, size = ctypes.c_void_p(), ctypes.c_size_t()
-        cls._get_userdata(qos, ctypes.byref(value), ctypes.byref(size))
-        data = ctypes.string_at(value, size.value) if size else b""
-        cls.free(value)
-        return Policy.Userdata(data) if data else None
-
-
-def discovered_qos(pointer: int) -> Qos:
-    """Return the policies of a participant or endpoint that discovery tells of."""
-    with _discovered_qos_lock:  # cyclonedds reads the policies into variables that all threads share
-        return _DiscoveredQos.cqos_to_qos(ctypes.cast(pointer, dds_c_t.qos_p))
-
-
 class Participant:
     """One DDS participant with the publisher, subscriber and topics every node of a context shares."""
 
@@ -139,14 +104,10 @@ class Participant:
         self.handle = _with_qos(qos, lambda q: _create_participant(domain_id, q, None), "cannot create a participant")
         self.publisher = checked(_create_publisher(self.handle, None, None), "cannot create a publisher")
         self.subscriber = checked(_create_subscriber(self.handle, None, None), "cannot create a subscriber")
-        self._topics: dict[tuple[str, Any], int] = {}
 
     def topic(self, name: str, data_type: Any) -> int:
-        """Return the topic of a name and type. It stays for those who come back to it, until the participant goes."""
-        if (name, data_type) not in self._topics:
-            made = ddspy_topic_create(self.handle, name, _Type(data_type), None, None)
-            self._topics[name, data_type] = checked(made, f"cannot create topic {name}")
-        return self._topics[name, data_type]
+        """Create a topic; each endpoint has its own, deleted with it."""
+        return checked(ddspy_topic_create(self.handle, name, data_type, None, None), f"cannot create topic {name}")
 
     def writer(self, topic: int, qos: Qos) -> int:
         """Create a writer of serialised samples."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cyclonedds._clayer import ddspy_take_endpoint, ddspy_take_participant
+from cyclonedds.builtin_types import cqos_to_qos
 from cyclonedds.qos import Policy, Qos
 
 from rclpy_dds.interfaces.codec import MalformedSample, decoder, encoder
@@ -200,7 +201,7 @@ class Graph:
 def _take(function: Any, reader: int, construct: Any) -> list[Any]:
     found: list[Any] = []
     while True:
-        taken = function(reader, 256, construct, entities.discovered_qos)
+        taken = function(reader, 256, construct, cqos_to_qos)
         if type(taken) is int:
             return found
         found += taken

@@ -22,17 +22,19 @@ class Endpoint:
         self._event_kinds: set[str] = set()
 
     def _reader(self, topic: str, type_name: str, qos: Any) -> tuple[int, int]:
-        """Create a reader and its read condition; returns both."""
-        reader = self._participant.reader(self._participant.topic(topic, topic_type(type_name)), qos)
-        self._owned.append(reader)
+        """Create topic, reader and read condition; returns the latter two."""
+        handle = self._participant.topic(topic, topic_type(type_name))
+        reader = self._participant.reader(handle, qos)
+        self._owned += [reader, handle]
         self._gids.add(entities.guid(reader))
         entities.enable_statuses(reader, ())
         return reader, self._participant.read_condition(reader)
 
     def _writer(self, topic: str, type_name: str, qos: Any) -> int:
-        """Create a writer."""
-        writer = self._participant.writer(self._participant.topic(topic, topic_type(type_name)), qos)
-        self._owned.append(writer)
+        """Create topic and writer; returns the latter."""
+        handle = self._participant.topic(topic, topic_type(type_name))
+        writer = self._participant.writer(handle, qos)
+        self._owned += [writer, handle]
         self._gids.add(entities.guid(writer))
         entities.enable_statuses(writer, ())
         return writer
