@@ -161,8 +161,6 @@ class Recorder:
         is_clock = type_name == "rosgraph_msgs/msg/Clock"
 
         def receive(data: bytes, info: Any) -> None:
-            if handler is not None:
-                handler(data)
             published = info["source_timestamp"] or time.time_ns()
             if simulated is None:
                 self._write(topic, data, published)
@@ -175,6 +173,8 @@ class Recorder:
                 self._write(topic, data, leading_stamp(data))
             elif self._writer:
                 self._waiting.append((time.monotonic(), topic, data, published))
+            if handler is not None:
+                handler(data)  # after it is written: whoever hears what came of a sample may end the node at once
 
         return receive
 
