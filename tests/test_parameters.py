@@ -29,10 +29,9 @@ def test_nominal_values_are_those_of_table_1() -> None:
     assert {name: values[name] for name in TABLE_1} == TABLE_1
 
 
-def test_the_catalogue_holds_the_nominal_rows_and_then_each_effects() -> None:
-    names = list(catalogue())
-    assert names[: len(NOMINAL)] == [row.name for row in NOMINAL]
-    assert names[len(NOMINAL) :] == [name for effect in effects() for name in effect.parameter_names()]
+def test_the_catalogue_holds_the_nominal_rows_then_each_effects_then_when_they_act() -> None:
+    of_effects = [name for effect in effects() for name in effect.parameter_names()]
+    assert list(catalogue()) == [row.name for row in NOMINAL] + of_effects + ["effects_from", "effects_until"]
 
 
 @pytest.mark.parametrize("name", list(catalogue()))

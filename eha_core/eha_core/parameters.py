@@ -54,13 +54,23 @@ NOMINAL: tuple[Parameter, ...] = (
          "absolute pressure of the return line's reference", "standard atmosphere", logarithmic=False),
 )
 
+ACTING: tuple[Parameter, ...] = (
+    _row("effects_from", "t_from", "s", 0.0, (0.0, 1e9), "time from which the catalogue's effects act", "assumed",
+         logarithmic=False),
+    _row("effects_until", "t_until", "s", 1e9, (0.0, 1e9), "time from which they no longer act", "assumed",
+         logarithmic=False),
+)
+"""The span of time in which whatever effects are switched on act: by their nominal values always."""
+
 
 @cache
 def catalogue() -> Mapping[str, Parameter]:
-    """Every parameter of the plant by its full name: the nominal rows, then each effect's as `<effect id>.<name>`."""
+    """Every parameter of the plant by its full name: the nominal rows, each effect's as `<effect id>.<name>`, and the
+    span of time in which the effects act."""
     rows = {row.name: row for row in NOMINAL}
     for effect in effects():
         rows.update(zip(effect.parameter_names(), effect.parameters, strict=True))
+    rows.update((row.name, row) for row in ACTING)
     return MappingProxyType(rows)
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from eha_core.cli import main
 from eha_core.effects import effects
-from eha_core.parameters import NOMINAL
+from eha_core.parameters import ACTING, NOMINAL
 
 
 def test_lists_every_named_effect_once(capsys: pytest.CaptureFixture[str]) -> None:
@@ -28,7 +28,8 @@ def test_lists_parameters_with_unit_value_range_and_source(capsys: pytest.Captur
     assert main(["effects", "--parameters"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert "moving_mass [kg] = 9, 0.01 to 100000: mass of piston and load (Table 1)" in lines
-    assert len(lines) == len(NOMINAL) + sum(len(effect.parameters) for effect in effects() if effect.named)
+    of_effects = sum(len(effect.parameters) for effect in effects() if effect.named)
+    assert len(lines) == len(NOMINAL) + of_effects + len(ACTING)
 
 
 def test_an_unknown_effect_is_answered_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,6 +11,7 @@ from eha_core.diagnosis.calibrate import UNITS, corrected_noise, has_changed, id
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
 from eha_core.diagnosis.fit import Fit, fit, with_noise
+from eha_core.diagnosis.intervals import with_residual
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.locate import DESCRIBED
@@ -83,7 +84,8 @@ def polish(evidence: Evidence, winner: Entry) -> Fit:
     # under the winner the residual is noise at last, so its roughness is measured best there
     shooting = with_noise(shooting, corrected_noise(evidence.calibration.shooting, winner.fit))
     problem = Problem(shooting, np.arange(shooting.windows))
-    return fit(problem, winner.fit.values, winner.fit.free, winner.fit.states, iterations=4)
+    final = fit(problem, winner.fit.values, winner.fit.free, winner.fit.states, iterations=4)
+    return with_residual(problem, final)
 
 
 def _channel_fits(
@@ -133,14 +135,20 @@ def _named(winner: Entry, final: Fit) -> tuple[NamedEffect, ...]:
             row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
             for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)
         }
-        statement = effect.describe({name: value.value for name, value in values.items()})
+        statement = effect.describe({name: value.value for name, value in values.items()}) + _while(winner)
         found.append(NamedEffect(effect.id, effect.site, effect.equation, values, winner.score, statement))
     return tuple(found)
 
 
+def _while(winner: Entry) -> str:
+    return f", from {winner.span[0]:.4g} s to {winner.span[1]:.4g} s only" if winner.span else ""
+
+
 def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, ...]:
-    """The named effect's site first: where the name is certain, so is the site."""
+    """The named effect's site first: where the name is certain, so is the site, and when it acts."""
     sites = {effect.site for effect in winner.effects}
+    if winner.span:
+        location = tuple(replace(one, when=(winner.span,)) if one.site in sites else one for one in location)
     return tuple(sorted(location, key=lambda one: (one.site not in sites, -one.share)))
 
 
@@ -220,8 +228,7 @@ def _pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> P
     """Series for the report: measured channels and the three models' at the same times, windows restarted."""
     shooting = evidence.calibration.shooting
     models = [_modelled(shooting, one) for one in (before, calibrated, after)]
-    times = {name: (one.row + 1 + one.late) * shooting.every * shooting.step_size
-             for name, one in zip(shooting.names, shooting.samplings, strict=True)}  # fmt: skip
+    times = {name: shooting.times(one) for name, one in zip(shooting.names, shooting.samplings, strict=True)}
     measured = {name: one.values for name, one in zip(shooting.names, shooting.samplings, strict=True)}
     variables: dict[str, Array] = {}
     if len(evidence.facts.rows):

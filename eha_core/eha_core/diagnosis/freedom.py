@@ -141,3 +141,15 @@ def effect_freedom(effect: Effect, start: Mapping[str, float]) -> tuple[Free, ..
             resolution = SHORTEST_INSTANT / scale if row.relative_to == "time" else 0.0
             free.append(Free(name, value, False, scale, EFFECT_TRUST, row.lower, row.upper, resolution))
     return tuple(free)
+
+
+SPAN_SCALE = 0.3
+"""s; the coordinate's unit of an instant from which, or until which, an effect acts."""
+
+
+def span_freedom(span: Mapping[str, float], bounds: Mapping[str, tuple[float, float]]) -> tuple[Free, ...]:
+    """The instants between which the effects act, free about where they are taken to be, within bounds [s]."""
+    resolution = SHORTEST_INSTANT / SPAN_SCALE
+    return tuple(
+        Free(name, at, False, SPAN_SCALE, EFFECT_TRUST, *bounds[name], resolution) for name, at in span.items()
+    )

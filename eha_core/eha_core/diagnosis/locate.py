@@ -88,7 +88,7 @@ def _promised(promise: Promise) -> float:
 
 def _energy(shooting: Shooting, result: Fit) -> tuple[Array, Array]:
     """Residual energy beyond the noise at every sample's time, all channels together: times and energies."""
-    times = [(one.row + 1 + one.late) * shooting.every * shooting.step_size for one in shooting.samplings]
+    times = [shooting.times(one) for one in shooting.samplings]
     return np.concatenate(times), np.concatenate([residual**2 for residual in result.residuals])
 
 

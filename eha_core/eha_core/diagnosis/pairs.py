@@ -40,7 +40,7 @@ def second_effects(
     leader = tournament.entries[0] if tournament.entries else tournament.nominal
     explained = nominal.objective - leader.fit.objective
     threshold = tournament.scatter * (SECOND + SECOND_SHARE * problem.count()) + IMPERFECT * explained
-    for entry in tournament.entries[:2]:
+    for entry in [one for one in tournament.entries[:2] if one.span is None]:
         # a pair must leave the leader behind, and one that adds the leader itself is screened from the leader's side
         needed = threshold + entry.fit.objective - leader.fit.objective
         others = {*entry.ids, *(() if entry is leader else leader.ids)}

@@ -69,6 +69,12 @@ class Problem:
         pieces = zip(self.shooting.samplings, samples, keep, strict=True)
         return np.concatenate([values[flags] / one.noise for one, values, flags in pieces])[order]
 
+    def flat_times(self) -> Array:
+        """The time [s] of each sample in use, in the order of `flat`."""
+        order, _, keep = self.order
+        pairs = zip(self.shooting.samplings, keep, strict=True)
+        return np.concatenate([self.shooting.times(one)[flags] for one, flags in pairs])[order]
+
 
 @dataclass(frozen=True)
 class Linearised:

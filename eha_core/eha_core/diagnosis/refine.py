@@ -17,7 +17,7 @@ from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
 from eha_core.effects import Effect
-from eha_core.parameters import NOMINAL
+from eha_core.parameters import ACTING, NOMINAL
 
 FAR_OFF = 5.0
 """Chi^2 a sample beyond which a calibration's parameter values mean little."""
@@ -34,7 +34,7 @@ NOT_EXPLAINED = 1.03
 CROSSED = 3
 """How many of the leaders behind the best are fitted once more from where it stands."""
 
-INSTANT_SHIFTS = (-0.12, 0.12, -0.04, 0.04, -0.01, 0.01)
+INSTANT_SHIFTS = (-0.12, 0.12, -0.04, 0.04, -0.01, 0.01, -0.004, 0.004, -0.0015, 0.0015)
 """s; how far beside its optimum an instant is tried once more."""
 
 OUT_OF_REACH = 200.0
@@ -47,6 +47,7 @@ BENT = 0.02
 hypotheses are tried from the dynamics as given, too, where they promise this share of what others must."""
 
 NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
+SHARED_NAMES = NOMINAL_NAMES | {row.name for row in ACTING}
 
 Progress = Callable[[str], None]
 Found = list[tuple[tuple[Effect, ...], Fit]]
@@ -157,7 +158,7 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
 
 
 def cross(problem: Problem, found: Found) -> Found:
-    """The leaders fitted once more from where the best of them has the nominal parameters and the windows' starts.
+    """The leaders fitted once more from where the best of them has what all models share, and the windows' starts.
 
     Where friction sticks, the objective is rugged: a law can rest far above its own optimum, and a richer one that
     holds it as a special case would win for that.
@@ -169,7 +170,7 @@ def cross(problem: Problem, found: Found) -> Found:
     crossed = list(found)
     for place in order[1 : CROSSED + 1]:
         effects, result = found[place]
-        shared = {one.name: best.values[one.name] for one in result.free if one.name in NOMINAL_NAMES}
+        shared = {one.name: best.values[one.name] for one in result.free if one.name in SHARED_NAMES}
         again = fit(
             problem,
             {**result.values, **shared},

@@ -14,61 +14,107 @@ from scipy.linalg import cho_factor, cho_solve
 
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.parallel import each
-from eha_core.diagnosis.problem import LINK, Problem, linearise, normal_equations
+from eha_core.diagnosis.problem import LINK, Linearised, Problem, linearise, normal_equations
 from eha_core.diagnosis.shooting import STATE_SIZE
 
 
 @dataclass(frozen=True)
 class Promise:
-    """A start, the gain in chi^2 that it promises, and the factor on its size at which it promises that."""
+    """A start, the gain in chi^2 that it promises, and the factor on its size at which it promises that; `windows`, the
+    first and the one after the last, where it acts in these alone."""
 
     start: Start
     gain: float
     factor: float
+    windows: tuple[int, int] | None = None
 
 
 def screen(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[Promise, ...]:
-    """The promise of every start, the largest first."""
+    """The promise of every start that acts all the time, the largest first."""
+    return tuple(one for one in screen_spells(problem, calibrated, starts) if one.windows is None)
+
+
+def screen_spells(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[Promise, ...]:
+    """The promise of every start, the largest first: acting all the time, and in the windows where it promises most."""
     linear = linearise(problem, calibrated.values, calibrated.free, calibrated.q, calibrated.states)
     normal, gradient = normal_equations(problem, calibrated.free, calibrated.q, calibrated.states, linear)
     factor = cho_factor(normal + 1e-9 * np.diag(np.diag(normal)))
-    shooting, size = problem.shooting, problem.shooting.free_states
-    parameters = len(calibrated.free)
-    bounds = np.searchsorted(linear.window, np.arange(shooting.windows + 1))
+    towards = np.asarray(cho_solve(factor, gradient))
     coarse = problem.slopes
-    coarse_rows, coarse_ends = coarse.simulate(calibrated.values, calibrated.states)
+    unchanged = coarse.simulate(calibrated.values, calibrated.states)
 
-    def promise(start: Start) -> Promise:
+    def promises(start: Start) -> list[Promise]:
         rows, ends = coarse.simulate({**calibrated.values, **start.values}, calibrated.states)
-        change = problem.flat(coarse.sample(rows - coarse_rows))
+        change = problem.flat(coarse.sample(rows - unchanged[0]))
         if not np.all(np.isfinite(change)):
-            return Promise(start, 0.0, 0.0)
-        overlap = np.zeros(len(gradient))
-        overlap[:parameters] = linear.by_parameter.T @ change
-        for window in range(shooting.windows):
-            piece = slice(bounds[window], bounds[window + 1])
-            place = parameters + STATE_SIZE * window + np.arange(size)
-            overlap[place] = linear.by_state[piece].T @ change[piece]
-        energy, along = float(change @ change), float(change @ linear.residual)
-        for window in problem.links():
-            shift = ((ends - coarse_ends)[window, :size]) / LINK[:size]
-            gap = (linear.ends[window] - calibrated.states[window + 1])[:size] / LINK[:size]
-            place = parameters + STATE_SIZE * window + np.arange(size)
-            overlap[:parameters] += (linear.ends_by_parameter[window, :size] / LINK[:size, None]).T @ shift
-            overlap[place] += (linear.ends_by_state[window, :size] / LINK[:size, None]).T @ shift
-            overlap[place + STATE_SIZE] -= shift / LINK[:size]
-            energy += float(shift @ shift)
-            along -= float(shift @ gap)
+            return [Promise(start, 0.0, 0.0)]
+        energy, along, overlap = _by_window(problem, calibrated, linear, change, ends - unchanged[1])
         solved = np.asarray(cho_solve(factor, overlap))
-        left = energy - float(overlap @ solved)
-        towards = along - float(gradient @ solved)
-        if left <= 1e-9 * energy or energy == 0.0:
-            return Promise(start, 0.0, 0.0)
-        return Promise(start, towards * towards / left, towards / left)
+        return _best_spells(start, energy, along - towards @ overlap, overlap.T @ solved)
 
-    promises = each(promise, starts)
-    return tuple(sorted(promises, key=lambda one: -one.gain))
+    found = [one for several in each(promises, starts) for one in several]
+    return tuple(sorted(found, key=lambda one: -one.gain))
+
+
+def _by_window(
+    problem: Problem, calibrated: Fit, linear: Linearised, change: Array, shift: Array
+) -> tuple[Array, Array, Array]:
+    """What an effect changes in each window alone: its energy (windows,), its product with the residual (windows,),
+    and with every column that can imitate it (columns, windows)."""
+    shooting, size, parameters = problem.shooting, problem.shooting.free_states, len(calibrated.free)
+    windows = shooting.windows
+    bounds = np.searchsorted(linear.window, np.arange(windows + 1))
+    energy, along = np.zeros(windows), np.zeros(windows)
+    overlap = np.zeros((parameters + STATE_SIZE * windows, windows))
+    for window in range(windows):
+        piece = slice(bounds[window], bounds[window + 1])
+        place = parameters + STATE_SIZE * window + np.arange(size)
+        part = change[piece]
+        energy[window], along[window] = part @ part, part @ linear.residual[piece]
+        overlap[:parameters, window] = linear.by_parameter[piece].T @ part
+        overlap[place, window] = linear.by_state[piece].T @ part
+    for window in problem.links():
+        place = parameters + STATE_SIZE * window + np.arange(size)
+        moved = shift[window, :size] / LINK[:size]
+        gap = (linear.ends[window] - calibrated.states[window + 1])[:size] / LINK[:size]
+        overlap[:parameters, window] += (linear.ends_by_parameter[window, :size] / LINK[:size, None]).T @ moved
+        overlap[place, window] += (linear.ends_by_state[window, :size] / LINK[:size, None]).T @ moved
+        overlap[place + STATE_SIZE, window] -= moved / LINK[:size]
+        energy[window] += moved @ moved
+        along[window] -= moved @ gap
+    return energy, along, overlap
+
+
+def _best_spells(start: Start, energy: Array, along: Array, imitated: Array) -> list[Promise]:
+    """The promise over all windows, and the best over some of them in a row.
+
+    `along` is free of what can be imitated; `imitated` (windows, windows) is what can be of each pair's energy.
+    """
+    windows = len(energy)
+    first, last = np.triu_indices(windows)
+    stop = last + 1
+    total = np.concatenate([[0.0], np.cumsum(energy)])
+    towards = np.concatenate([[0.0], np.cumsum(along)])
+    square = np.zeros((windows + 1, windows + 1))
+    square[1:, 1:] = imitated.cumsum(axis=0).cumsum(axis=1)
+    whole = total[stop] - total[first]
+    left = whole - (square[stop, stop] - square[first, stop] - square[stop, first] + square[first, first])
+    product = towards[stop] - towards[first]
+    usable = (left > 1e-9 * whole) & (whole > 0.0)
+    divisor = np.where(usable, left, 1.0)
+    gain = np.where(usable, product * product / divisor, 0.0)
+    factor = np.where(usable, product / divisor, 0.0)
+    always = windows - 1  # of the ranges that begin at the first window, the one that ends with the last
+    promises = [Promise(start, float(gain[always]), float(factor[always]))]
+    if windows > 1:
+        gain = np.where(factor < 0.0, gain if _reversible(start) else 0.0, gain)
+        gain[always] = -1.0
+        best = int(np.argmax(gain))
+        spell = (int(first[best]), int(stop[best]))
+        promises.append(Promise(start, float(gain[best]), float(factor[best]), spell))
+    return promises
 
 
 def one_each(promises: Sequence[Promise], most: int) -> tuple[Promise, ...]:

@@ -18,6 +18,7 @@ from eha_core.diagnosis.observation import Measured, Observation
 from eha_core.effects import effects
 from eha_core.plant.composite import compiled_step
 from eha_core.plant.simulator import LONGEST_DELAY, pack
+from eha_core.plant.spells import span, spells
 
 STATE_SIZE = 4
 """Free at a window's start: position, velocity, pressure A, pressure B."""
@@ -75,6 +76,10 @@ class Shooting:
         """How many windows there are."""
         return len(self.edges) - 1
 
+    def times(self, sampling: Sampling) -> Array:
+        """When a channel's samples were taken [s]: a row stands at the end of its steps."""
+        return np.asarray((sampling.row + 1 + sampling.late) * self.every * self.step_size)
+
     def simulate(self, values: Mapping[str, float], states: Array, full: bool = False) -> tuple[Array, Array]:
         """Simulate every window from its state (windows, 4); return measured rows and the windows' end states (windows,
         4).
@@ -86,6 +91,7 @@ class Shooting:
             change: pack({**values, "internal_leakage": values["internal_leakage"] + change}, self.step_size)
             for change in set(self.leakage.tolist())
         }
+        acting, none = span(values, self.step_size), (False,) * len(effects())
         steps = int(self.edges[-1])
         rows = np.empty((steps // self.every, 22 if full else 4))
         ends = np.empty((self.windows, STATE_SIZE))
@@ -105,37 +111,26 @@ class Shooting:
             state[0] = begin * self.step_size
             state[7:11] = states[window]
             memory[sensor_slots] = self.initial_states[window, 0]
-            out = rows[begin // self.every : end // self.every]
-            if self.drive == "voltage":
-                step.advance(
-                    state,
-                    memory,
-                    history,
-                    vector,
-                    active,
-                    valve,
-                    self.inputs[0, begin:end],
-                    self.step_size,
-                    self.every,
-                    out,
-                )
-            else:
-                step.advance_driven(
-                    state,
-                    memory,
-                    vector,
-                    active,
-                    self.inputs[0, begin:end],
-                    self.inputs[1, begin:end],
-                    self.step_size,
-                    self.every,
-                    out,
-                )
+            inputs, out = self.inputs[:, begin:end], rows[begin // self.every : end // self.every]
+            for spell in spells(begin, end - begin, self.every, acting):
+                if spell.acting and begin + spell.steps.start == acting[0] > 0:
+                    memory, _ = self._memory(state[4], state[7:9])
+                effects_on, piece = active if spell.acting else none, inputs[:, spell.steps]
+                if self.drive == "voltage":
+                    step.advance(
+                        state, memory, history, vector, effects_on, valve, piece[0], self.step_size, spell.every,
+                        out[spell.rows],
+                    )  # fmt: skip
+                else:
+                    step.advance_driven(
+                        state, memory, vector, effects_on, piece[0], piece[1], self.step_size, spell.every,
+                        out[spell.rows],
+                    )  # fmt: skip
             ends[window] = state[7:11]
         return rows, ends
 
     def _memory(self, current: float, start: Array) -> tuple[Array, Integers]:
-        """The effects' states at the record's start, and which of them restart from the measured position in each
+        """The effects' states where they begin to act, and which of them restart from the measured position in each
         window."""
         starts = {"zero": 0.0, "current": current, "position": start[0], "velocity": start[1]}
         memory: list[float] = []

@@ -11,6 +11,7 @@ import numpy as np
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypotheses import starts
+from eha_core.diagnosis.passing import passing_effects
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.refine import (
     FAR_OFF,
@@ -23,7 +24,7 @@ from eha_core.diagnosis.refine import (
     settle,
     try_effect,
 )
-from eha_core.diagnosis.screen import Promise, screen
+from eha_core.diagnosis.screen import Promise, screen_spells
 from eha_core.effects import Effect
 
 REFINED = 8
@@ -56,6 +57,13 @@ class Entry:
         """Ids of the effects, in the catalogue's order."""
         return tuple(effect.id for effect in self.effects)
 
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """From when until when the effects act [s], where that was fitted; None where they always do."""
+        if not any(one.name == "effects_from" for one in self.fit.free):
+            return None
+        return self.fit.values["effects_from"], self.fit.values["effects_until"]
+
 
 @dataclass(frozen=True)
 class Tournament:
@@ -71,13 +79,15 @@ class Tournament:
 def compete(
     problem: Problem, calibrated: Fit, candidates: Sequence[Effect], facts: Facts, progress: Progress = lambda _: None
 ) -> Tournament:
-    """Screen every candidate, refit the best, then try pairs with the winners."""
+    """Screen every candidate; refit those that may act for a while, if any, and the best of the others."""
     progress("screening the catalogue")
     beginnings = [start for effect in candidates for start in starts(effect, facts)]
-    promises = screen(problem, calibrated, beginnings)
+    screened = screen_spells(problem, calibrated, beginnings)
+    promises = tuple(one for one in screened if one.windows is None)
+    passing = passing_effects(problem, calibrated, beginnings, screened, ENOUGH, progress)
     far_off = calibrated.data > FAR_OFF * calibrated.count
     found: Found = []
-    best = calibrated.objective
+    best = min([calibrated.objective, *(result.objective for _, result in passing)])
     most = REFINED_FAR_OFF if far_off else REFINED
     for attempt in attempts(problem, calibrated, beginnings, promises, most, ENOUGH):
         effect = attempt.promise.start.effect
@@ -85,7 +95,7 @@ def compete(
         result = try_effect(problem, attempt, best)
         keep_better(found, (effect,), result)
         best = min(best, result.objective)
-    found = cross(problem, settle(problem, found, progress))
+    found = [*passing, *cross(problem, settle(problem, found, progress))]
     nominal = back_fit(problem, calibrated, [result for _, result in found])
     entries = rank(problem, nominal, found)
     return Tournament(Entry((), nominal, 0.0), entries, promises, scatter(nominal, entries))
@@ -108,7 +118,7 @@ def rank(problem: Problem, nominal: Fit, found: Sequence[tuple[tuple[Effect, ...
     variance = max(1.0, best.data / best.count)
     entries = []
     for effects, result in found:
-        count = sum(len(effect.parameters) for effect in effects)
+        count = len(result.free) - len(nominal.free)
         gain = (nominal.objective - result.objective) / variance
         entries.append(Entry(effects, result, gain - count * parameter_cost(problem.count(), variance)))
     return tuple(sorted(entries, key=lambda entry: -entry.score))

@@ -17,6 +17,7 @@ from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.parameters import changed, nominal_values
 from eha_core.plant.composite import compiled_step
+from eha_core.plant.spells import span, spells
 
 Array = NDArray[np.float64]
 
@@ -131,6 +132,8 @@ class Plant:
         self._advance = compiled_step().advance
         self._values = changed(nominal_values(), parameters or {})
         self._vector, self._active, self._propagator = pack(self._values, step_size)
+        self._none = (False,) * len(self._active)
+        self._span = span(self._values, step_size)
         self._row = np.zeros((1, len(COLUMNS)))
         self.reset(initial_position)
 
@@ -145,6 +148,7 @@ class Plant:
         before = self._active
         self._values = values
         self._vector, self._active, self._propagator = pack(values, self.step_size)
+        self._span = span(values, self.step_size)
         self._start_memory([now and not then for now, then in zip(self._active, before, strict=True)])
         stroke = values["actuator_displacement"]
         self._state[7] = min(max(self._state[7], -stroke), stroke)
@@ -219,8 +223,12 @@ class Plant:
         if not np.all(np.isfinite(voltages)):
             raise ParameterError("the voltage command is not finite; give volts")
         self._state[0] = self.time
-        self._advance(
-            self._state, self._memory, self._history, self._vector, self._active, self._propagator, voltages,
-            self.step_size, every, rows,
-        )
+        for spell in spells(self.step_count, len(voltages), every, self._span):
+            if spell.acting and self.step_count + spell.steps.start == self._span[0] > 0:
+                self._start_memory([True] * len(effects()))
+            active = self._active if spell.acting else self._none
+            self._advance(
+                self._state, self._memory, self._history, self._vector, active, self._propagator,
+                voltages[spell.steps], self.step_size, spell.every, rows[spell.rows],
+            )
         self.step_count += len(voltages)

@@ -1,0 +1,47 @@
+"""Standard deviations that know of what a model leaves over.
+
+The curvature at the optimum is right where the residual is white noise. A law that is right but for its form leaves a
+residual that is coherent for a while and leads parameters astray. So the variance is estimated from the residual, too,
+by adding up each parameter's pull over blocks of time (a sandwich estimator: P. J. Huber, 1967; K.-Y. Liang and
+S. L. Zeger, Biometrika 73, 1986), and the larger of the two counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.problem import Linearised, Problem, linearise
+from eha_core.diagnosis.shooting import STATE_SIZE
+
+BLOCK = 0.1
+"""s; over longer spans a residual is taken to be independent. Friction's and the oil's transients are shorter."""
+
+
+def with_residual(problem: Problem, result: Fit) -> Fit:
+    """The fit with its parameters' standard deviations widened where the residual says so."""
+    count = len(result.free)
+    pulls = _pulls(problem, result, linearise(problem, result.values, result.free, result.q, result.states))
+    blocks = (problem.flat_times() / BLOCK).astype(np.int64)
+    used, place = np.unique(blocks, return_inverse=True)
+    summed = np.zeros((len(used), count))
+    np.add.at(summed, place, pulls)
+    observed = np.sqrt(np.sum(summed**2, axis=0) * len(used) / max(len(used) - 1, 1))
+    expected = np.sqrt(np.maximum(np.diag(result.covariance)[:count], 1e-300))
+    wider = np.ones(len(result.covariance))
+    wider[:count] = np.maximum(1.0, observed / expected)
+    return replace(result, covariance=result.covariance * np.outer(wider, wider))
+
+
+def _pulls(problem: Problem, result: Fit, linear: Linearised) -> Array:
+    """How far each sample's residual moves each parameter's coordinate: (samples, parameters), sorted by window."""
+    count, size = len(result.free), problem.shooting.free_states
+    pulls = linear.by_parameter @ result.covariance[:count, :count]
+    for window in range(problem.shooting.windows):
+        own = linear.window == window
+        place = count + STATE_SIZE * window + np.arange(size)
+        pulls[own] += linear.by_state[own] @ result.covariance[place, :count]
+    return np.asarray(pulls * linear.residual[:, None])

@@ -1,0 +1,139 @@
+"""Effects that act for a while: what a model with its effects always on, or never, cannot explain.
+
+Windows in a row in which an effect promises far more than it does over the whole record tell where to look. The nominal
+equations are then fitted to the rest of the record alone, which has not bent their parameters, and the catalogue is
+screened once more from there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from math import log
+
+import numpy as np
+
+from eha_core.diagnosis.fit import Fit, fit, fit_in_stages, refit_states
+from eha_core.diagnosis.freedom import effect_freedom, span_freedom
+from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.parallel import each
+from eha_core.diagnosis.problem import Problem
+from eha_core.diagnosis.refine import OUT_OF_REACH, Found, Progress, cross, settle
+from eha_core.diagnosis.screen import Promise, scaled, screen_spells
+from eha_core.parameters import ACTING
+
+OUTSTANDING = 1.5
+"""An effect is taken to act for a while where that promises this many times what any effect promises that always
+acts. Of effects that do always act, the best windows in a row promise no more than the whole record."""
+
+SPACINGS = (0.25, 0.0625, 0.015, 0.004)
+ABREAST = 4
+"""s; an instant is tried so many times to either side of where it is taken to be, ever more closely. The search is by
+trial, for an instant that is wrong by more than a moment shows no slope that leads to the right one."""
+
+SHARPER = 0.1
+
+TRIED = 4
+"""How many effects are fitted with the span in which they act."""
+
+
+def passing_effects(
+    problem: Problem,
+    calibrated: Fit,
+    beginnings: Sequence[Start],
+    promises: Sequence[Promise],
+    least: float,
+    progress: Progress = lambda _: None,
+) -> Found:
+    """Effects with the span in which they act, fitted; none where the promises of the record's windows show no such
+    thing, or less than `least`."""
+    always = max([0.0, *(one.gain for one in promises if one.windows is None)])
+    best = max((one for one in promises if one.windows is not None), key=lambda one: one.gain, default=None)
+    if best is None or best.gain < least + 2.0 * log(problem.count()) or best.gain < OUTSTANDING * always:
+        return []
+    assert best.windows is not None
+    outside = _fitted_outside(problem, calibrated, best.windows)
+    progress("looking when an effect acts")
+    chosen = _one_each(screen_spells(problem, outside, beginnings))
+    begun = [_of_fixed_span(problem, outside, promise) for promise in chosen]
+    instants = _located(problem, min(begun, key=lambda one: one.objective))
+    found: Found = []
+    reached = calibrated.objective
+    for promise, beginning in zip(chosen, begun, strict=True):
+        effect = promise.start.effect
+        progress(f"refitting with {effect.id} for a while")
+        values = {**beginning.values, **instants.values}
+        free = (*outside.free, *effect_freedom(effect, values), *span_freedom(instants.values, instants.bounds))
+        result = fit(problem, values, free, instants.states, iterations=25, give_up_above=reached + OUT_OF_REACH)
+        reached = min(reached, result.objective)
+        found.append(((effect,), result))
+    crossed = cross(problem, settle(problem, found, progress))
+    return [(effects, _sharpened(problem, result)) for effects, result in crossed]
+
+
+def _fitted_outside(problem: Problem, nominal: Fit, windows: tuple[int, int]) -> Fit:
+    """The nominal equations as all windows but these, and those that touch them, have them; every window's start."""
+    inside = np.arange(max(windows[0] - 1, 0), windows[1] + 1)
+    rest = np.setdiff1d(problem.windows, inside)
+    if len(rest) < 2:
+        return nominal
+    untouched = {one.name: one.reference for one in nominal.free}
+    fitted = fit_in_stages(replace(problem, windows=rest), {**nominal.values, **untouched}, nominal.free)
+    started = refit_states(problem, fitted)
+    return fit(problem, fitted.values, nominal.free, started.states, iterations=0)
+
+
+def _one_each(promises: Sequence[Promise]) -> list[Promise]:
+    best: dict[str, Promise] = {}
+    for one in promises:
+        if one.windows is not None:
+            best.setdefault(one.start.effect.id, one)
+    return list(best.values())[:TRIED]
+
+
+def _of_fixed_span(problem: Problem, base: Fit, promise: Promise) -> Fit:
+    """The promised effect's own parameters fitted, in the span that the windows tell, and nothing else."""
+    assert promise.windows is not None
+    edges = problem.shooting.edges * problem.shooting.step_size
+    first, end = promise.windows
+    values = {**base.values, **scaled(promise), "effects_from": float(edges[first]), "effects_until": float(edges[end])}
+    return fit(problem, values, effect_freedom(promise.start.effect, values), base.states, iterations=8)
+
+
+@dataclass(frozen=True)
+class _Instants:
+    """When the effects begin and cease to act [s], between which bounds, and the windows' starts under that."""
+
+    values: Mapping[str, float]
+    bounds: Mapping[str, tuple[float, float]]
+    states: Array
+
+
+def _located(problem: Problem, result: Fit) -> _Instants:
+    """Move either instant by trial, with the windows' starts alone free."""
+    edges = problem.shooting.edges * problem.shooting.step_size
+    reach = ABREAST * SPACINGS[0]
+    instants = {row.name: result.values[row.name] for row in ACTING}
+    bounds = {name: (max(at - reach, 0.0), min(at + reach, float(edges[-1]))) for name, at in instants.items()}
+    best = result
+    for spacing in SPACINGS:
+        for name in instants:
+            beside = best.values[name] + spacing * np.arange(-ABREAST, ABREAST + 1)
+            at_once = partial(_moved, problem, best, name)
+            tried = each(at_once, np.unique(np.clip(beside, *bounds[name])).tolist())
+            best = min([best, *tried], key=lambda one: one.objective)
+    return _Instants({name: best.values[name] for name in instants}, bounds, best.states)
+
+
+def _moved(problem: Problem, result: Fit, name: str, at: float) -> Fit:
+    return fit(problem, {**result.values, name: at}, (), result.states, iterations=3)
+
+
+def _sharpened(problem: Problem, result: Fit) -> Fit:
+    """The fit gone on with, its instants' derivatives taken over less: they are close by now."""
+    free = tuple(replace(one, resolution=one.resolution * SHARPER) for one in result.free)
+    exact = replace(problem, slope_step=problem.shooting.step_size)
+    again = fit(exact, result.values, free, result.states, iterations=8)
+    return again if again.objective < result.objective else result
