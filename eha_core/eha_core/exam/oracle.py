@@ -60,7 +60,7 @@ class Insight:
 def consult(case: Case, truth: Mapping[str, Array], rival: Effect | None = None) -> Insight:
     """Ask what the recording of a case can tell, and how much of that a rival effect does not explain at any size."""
     starts = _telling_windows(case, truth)
-    names = [*UNCERTAIN, *(RIG_MISTAKES if case.tier == "wrong_rig" else ())]
+    names = (*UNCERTAIN, *RIG_MISTAKES)
     blocks = [_window(case, truth, first, names, rival) for first in starts]
     marks = np.concatenate([mark for mark, _ in blocks])
     columns = np.concatenate([matrix for _, matrix in blocks])
