@@ -107,6 +107,14 @@ def test_the_oracle_knows_that_a_parameter_imitates_its_own_change() -> None:
     assert not insight.decidable
 
 
+def test_what_the_oracle_sees_beside_another_effect_is_what_that_does_not_explain() -> None:
+    spring, delay = ("hardening_spring", {"coefficient": 3e8}), ("command_delay", {"delay": 1e-7})
+    case = short("single", 12, duration=3.0, effects=(spring, delay))
+    truth = simulate_case(case)
+    assert consult(case, truth, delay).beyond_rival > 1000.0
+    assert consult(case, truth, spring).beyond_rival < 1.0
+
+
 def test_a_made_case_is_kept_and_found_again(tmp_path: object, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("EHA_CACHE_DIR", str(tmp_path))
     first = make_case("null", 0, 11)

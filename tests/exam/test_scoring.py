@@ -20,6 +20,9 @@ def single(**changes: Any) -> Case:
     return replace(case, effects=(("coulomb_friction", {"force": 200.0}),), **changes)
 
 
+PAIR = (("coulomb_friction", {"force": 200.0}), ("command_delay", {"delay": 1e-4}))
+
+
 def answer(verdict: str, *ids: str, **fields: Any) -> Answer:
     effects = [{"id": name, "site": "force", "parameters": {}} for name in ids]
     return Answer({"verdict": verdict, "effects": effects, **fields}, 0, 3.0)
@@ -44,6 +47,9 @@ def answer(verdict: str, *ids: str, **fields: Any) -> Answer:
         ),
         (single(), answer("parameters"), "abstained"),
         (single(decidable=False), answer("consistent"), "right"),
+        (replace(single(), effects=PAIR), answer("missing_physics", "coulomb_friction"), "wrong"),
+        (replace(single(), effects=PAIR, decidable=False), answer("missing_physics", "coulomb_friction"), "right"),
+        (replace(single(), effects=PAIR, decidable=False), answer("missing_physics", "end_stop"), "wrong"),
         (single(), answer("unknown_physics"), "wrong"),
         (
             single(windows={"coulomb_friction": (2.0, 4.0)}),

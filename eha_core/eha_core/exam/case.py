@@ -34,7 +34,8 @@ class Case:
         duration [s], rate [1/s]: of the recording. noise: multiple of 10 um and 0.01 MPa.
         position_step [m], pressure_step [Pa]: resolution of the sensors, 0 for none. jitter [s]: standard deviation of
         the sampling times. dropout: share of samples lost, in bursts. channels: what was recorded.
-        decidable: whether an oracle that knows the concealed form gains enough from this recording to name it.
+        decidable: whether an oracle that knows the concealed form gains enough from this recording to name it; of two
+        effects, each beside the other.
         rivals: effects that this recording cannot tell from the concealed one.
     """
 

@@ -100,9 +100,10 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
     """The rule. Abstaining is "ambiguous" with the truth in the stated set, or seeing nothing of what is concealed.
 
     Where the recording cannot hold enough to tell (an oracle that knows the form gains too little), not naming anything
-    is right. Where it cannot tell the truth from a rival, the right answer is to say so: a name is a guess, and wrong
-    even when lucky. An effect that acts for a while is no law of the catalogue as it stands: to locate it without a
-    name is to abstain. Nothing missing: "consistent" and "parameters" claim no physics, and either is right.
+    is right, and so is naming one of two effects where the other cannot be seen beside it. Where it cannot tell the
+    truth from a rival, the right answer is to say so: a name is a guess, and wrong even when lucky. An effect that acts
+    for a while may be located without a name, which is to abstain. Nothing missing: "consistent" and "parameters" claim
+    no physics, and either is right.
     """
     if verdict == "none":
         return "failed"
@@ -114,7 +115,8 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
     if verdict == case.verdict == "unknown_physics":
         return "right" if _site_right(case, diagnosis) else "wrong"
     if verdict == "missing_physics":
-        return "right" if set(named) in accepted(case) and not case.rivals else "wrong"
+        tellable = not case.decidable and set(named) < set(case.effect_ids)
+        return "right" if (set(named) in accepted(case) or tellable) and not case.rivals else "wrong"
     if verdict == "ambiguous":
         if not _in_stated_set(case, diagnosis):
             return "wrong"
