@@ -12,13 +12,13 @@ from cyclonedds.qos import Policy, Qos, _CQos
 _lock = threading.Lock()
 
 
-class _DiscoveredQos(_CQos):  # type: ignore[misc]
+class _DiscoveredQos(_CQos):
     """cyclonedds's way from C to Python, for the policies ROS uses.
 
     cyclonedds forgets to free the user data; partitions, which it forgets too, ROS does not use.
     """
 
-    _all_scopes = ("Reliability", "Durability", "History", "Lifespan", "Deadline", "Liveliness", "Userdata")
+    _all_scopes: Any = ("Reliability", "Durability", "History", "Lifespan", "Deadline", "Liveliness", "Userdata")
 
     @classmethod
     def _get_p_userdata(cls, qos: Any) -> Any:
