@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import time
 from collections.abc import Callable
@@ -41,6 +42,8 @@ def run(make_node: Callable[[], Node], name: str) -> int:
             raise
         # A signal has shut rclpy down, and the call that was under way failed for it.
     finally:
+        # `ros2 launch` and the terminal may both tell of a Ctrl-C; the second must not break off the end.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         if node is not None:
             if hasattr(node, "close"):
                 node.close()
