@@ -16,6 +16,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
 from eha_core.errors import EhaError
@@ -137,13 +138,17 @@ class RigConductor(Conductor):
 
     def __init__(self, processes: Processes) -> None:
         super().__init__(processes)
-        self._recorded = 0
+        self._recorded, self._reached = 0, 0.0
         self._node.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 100)
+        self._node.create_subscription(JointState, "joint_states", self._on_state, 1)
 
     def _on_diagnostics(self, message: Any) -> None:
         for status in message.status:
             if status.name == "eha_monitor":
                 self._recorded = int({item.key: item.value for item in status.values}["messages"])
+
+    def _on_state(self, message: Any) -> None:
+        self._reached = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
 
     def run(self, seconds: float, period: float, patience: float) -> None:
         """Let the rig run for so many simulated seconds, and the monitor write all that came of them.
@@ -152,10 +157,15 @@ class RigConductor(Conductor):
         """
         for piece in range(1, round(seconds / PIECE) + 1):
             self.step(PIECE)
+            self._await_state(piece * PIECE, patience)
             messages = (len(RIG_TOPICS) + 1) * (round(piece * PIECE / period) + 1)  # with /clock, and with the start
             self._await_written(messages, patience)
         settled = time.monotonic() + _SETTLE
         self.wait(lambda: time.monotonic() > settled, patience, "the last of them")
+
+    def _await_state(self, instant: float, patience: float) -> None:
+        """Wait for the state that ends a step. The count of messages does not tell it: other topics are in it too."""
+        self.wait(lambda: instant - self._reached < _HALF_PERIOD, patience, f"the rig at {instant:g} s")
 
     def _await_written(self, messages: int, patience: float) -> None:
         self.wait(lambda: self._recorded >= messages, patience, f"the monitor to write {messages} messages")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import time
 from collections.abc import Callable
@@ -10,11 +11,13 @@ import rclpy
 from rcl_interfaces.srv import GetParameterTypes
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+from rclpy.task import Future
 
 from eha_core.errors import EhaError
 
 _DISCOVERY = 1.5  # s until a node that is there has surely been seen, on a busy machine too
 _ANSWER = 5.0  # s within which a node that lives answers
+_AGAIN = 0.5  # s until it is asked once more
 
 
 class StartError(EhaError):
@@ -39,6 +42,8 @@ def run(make_node: Callable[[], Node], name: str) -> int:
             raise
         # A signal has shut rclpy down, and the call that was under way failed for it.
     finally:
+        # `ros2 launch` and the terminal may both tell of a Ctrl-C; the second must not break off the end.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         if node is not None:
             if hasattr(node, "close"):
                 node.close()
@@ -69,13 +74,17 @@ def _refuse_namesake(node: Node) -> None:
     probe = Node("eha_start_probe", use_global_arguments=False, start_parameter_services=False, enable_rosout=False)
     try:
         client = probe.create_client(GetParameterTypes, f"{name}/get_parameter_types")
-        future = client.call_async(GetParameterTypes.Request(names=["use_sim_time"]))
-        rclpy.spin_until_future_complete(probe, future, timeout_sec=_ANSWER)
-        if future.done():
-            raise StartError(
-                f"a node named {name} is running already;"
-                " stop it, or start this one with --ros-args -r __node:=OTHER_NAME"
-            )
+        asked: list[Future] = []
+        deadline = time.monotonic() + _ANSWER
+        while not any(future.done() for future in asked):
+            if time.monotonic() > deadline:
+                return
+            # Again and again: a request gets lost as long as the name has been discovered, but not yet the service.
+            asked.append(client.call_async(GetParameterTypes.Request(names=["use_sim_time"])))
+            rclpy.spin_until_future_complete(probe, asked[-1], timeout_sec=_AGAIN)
+        raise StartError(
+            f"a node named {name} is running already; stop it, or start this one with --ros-args -r __node:=OTHER_NAME"
+        )
     finally:
         probe.destroy_node()
 

@@ -82,3 +82,13 @@ def test_a_signal_ends_a_node_cleanly(rig: Rig, number: int) -> None:
     rig.spin(1.5)
     assert sim.end(number) == 0
     assert "Traceback" not in sim.output
+
+
+def test_more_signals_do_not_break_off_the_end(rig: Rig) -> None:
+    sim = rig.start_sim()
+    rig.spin(1.5)
+    for _ in range(50):  # ros2 launch sends one beside the terminal's
+        sim.process.send_signal(signal.SIGINT)
+        rig.spin(0.002)
+    assert sim.wait(15.0) == 0
+    assert "Traceback" not in sim.output

@@ -7,8 +7,9 @@ needs neither, so it calls the library's C functions for what is short-lived or 
 from __future__ import annotations
 
 import ctypes
+import threading
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from cyclonedds._clayer import ddspy_take, ddspy_topic_create, ddspy_write
 from cyclonedds.core import DDSException
@@ -24,7 +25,10 @@ STATUS_IDS = {
     "requested_incompatible_qos": 4, "sample_lost": 5, "liveliness_lost": 9, "liveliness_changed": 10,
     "publication_matched": 11, "subscription_matched": 12,
 }  # fmt: skip
+IDLE_TOPICS = 100  # a node has about twenty
 _library = DDS._dll_handle
+_sertypes: dict[tuple[int, Any], int] = {}
+_topics_lock = threading.Lock()
 
 
 def _function(name: str, *arguments: Any) -> Any:
@@ -36,6 +40,9 @@ def _function(name: str, *arguments: Any) -> Any:
 
 _entity, _pointer, _handle = ctypes.c_int32, ctypes.c_void_p, ctypes.c_uint64
 _create_participant = _function("dds_create_participant", ctypes.c_uint32, _pointer, _pointer)
+_create_topic = _function("dds_create_topic_sertype", _entity, ctypes.c_char_p, *[_pointer] * 4)
+_get_sertype = _function("dds_get_entity_sertype", _entity, _pointer)
+_reference_sertype = _function("ddsi_sertype_ref", _pointer)
 _create_publisher = _function("dds_create_publisher", _entity, _pointer, _pointer)
 _create_subscriber = _function("dds_create_subscriber", _entity, _pointer, _pointer)
 _create_writer = _function("dds_create_writer", _entity, _entity, _pointer, _pointer)
@@ -96,18 +103,62 @@ def matched_handles(entity: int, *, writer: bool) -> list[int]:
     return list(handles[: max(0, min(function(entity, handles, capacity), capacity))])
 
 
+class Topic(NamedTuple):
+    """A topic's entity and what it was made of."""
+
+    handle: int
+    name: str
+    data_type: Any
+
+
 class Participant:
     """One DDS participant with the publisher, subscriber and topics every node of a context shares."""
 
     def __init__(self, domain_id: int, qos: Qos) -> None:
-        open_domain(domain_id)
+        self._domain_id = domain_id
+        self._owns_domain = open_domain(domain_id) is not None
+        self._idle_topics: list[Topic] = []
         self.handle = _with_qos(qos, lambda q: _create_participant(domain_id, q, None), "cannot create a participant")
         self.publisher = checked(_create_publisher(self.handle, None, None), "cannot create a publisher")
         self.subscriber = checked(_create_subscriber(self.handle, None, None), "cannot create a subscriber")
 
-    def topic(self, name: str, data_type: Any) -> int:
-        """Create a topic; each endpoint has its own, deleted with it."""
-        return checked(ddspy_topic_create(self.handle, name, data_type, None, None), f"cannot create topic {name}")
+    def topic(self, name: str, data_type: Any) -> Topic:
+        """Return a topic for one endpoint, which leaves it when it goes."""
+        with _topics_lock:
+            for idle in self._idle_topics:
+                if idle[1:] == (name, data_type):
+                    self._idle_topics.remove(idle)
+                    return idle
+            return Topic(checked(self._new_topic(name, data_type), f"cannot create topic {name}"), name, data_type)
+
+    def leave_topic(self, topic: Topic) -> None:
+        """Keep a topic for the next endpoint of its name and type: one that is deleted gives up its number for good."""
+        with _topics_lock:
+            self._idle_topics.append(topic)
+            if len(self._idle_topics) > IDLE_TOPICS:
+                delete(self._idle_topics.pop(0).handle)
+
+    def _new_topic(self, name: str, data_type: Any) -> int:
+        """Create a topic; returns its handle or an error code.
+
+        All topics of a type share its sertype, what Cyclone DDS holds of a type, which stays as long as the domain.
+        cyclonedds makes only the first topic, as for each further one it would describe the type anew and lose the
+        description in use. A sertype for every topic is no way out: Cyclone DDS's table of them has room for 32 of
+        one name, and grows without end for the next.
+        """
+        key = self._domain_id, data_type
+        if key not in _sertypes:
+            topic: int = ddspy_topic_create(self.handle, name, data_type, None, None)
+            if topic > 0 and self._owns_domain:  # the sertypes of a domain that the program opened may go with it
+                sertype = ctypes.c_void_p()
+                checked(_get_sertype(topic, ctypes.byref(sertype)), "cannot read a topic's type")
+                _reference_sertype(sertype)
+                _sertypes[key] = sertype.value or 0
+            return topic
+        _reference_sertype(_sertypes[key])  # the topic takes this reference and drops it when it is deleted
+        sertype = ctypes.c_void_p(_sertypes[key])
+        created: int = _create_topic(self.handle, name.encode(), ctypes.byref(sertype), None, None, None)
+        return created
 
     def writer(self, topic: int, qos: Qos) -> int:
         """Create a writer of serialised samples."""

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cyclonedds._clayer import ddspy_take_endpoint, ddspy_take_participant
-from cyclonedds.builtin_types import cqos_to_qos
 from cyclonedds.qos import Policy, Qos
 
 from rclpy_dds.interfaces.codec import MalformedSample, decoder, encoder
 from rclpy_dds.interfaces.message import message_class
 from rclpy_dds.wire import entities
+from rclpy_dds.wire.discovered import discovered_qos
 from rclpy_dds.wire.hashes import type_hash
 from rclpy_dds.wire.types import topic_type
 
@@ -61,8 +61,8 @@ class Graph:
         self.gid = entities.guid(participant.handle)
         topic = participant.topic("ros_discovery_info", topic_type(_INFO))
         announced = Policy.Userdata(f"typehash={type_hash(_INFO)};".encode("ascii"))
-        self._writer = participant.writer(topic, Qos(*_COMMON, announced, Policy.History.KeepLast(1)))
-        self._reader = participant.reader(topic, Qos(*_COMMON, announced, Policy.History.KeepAll))
+        self._writer = participant.writer(topic.handle, Qos(*_COMMON, announced, Policy.History.KeepLast(1)))
+        self._reader = participant.reader(topic.handle, Qos(*_COMMON, announced, Policy.History.KeepAll))
         self._participant_reader = participant.reader(_BUILTIN_PARTICIPANTS, None)
         self._endpoint_readers = (
             participant.reader(_BUILTIN_WRITERS, None),
@@ -201,7 +201,7 @@ class Graph:
 def _take(function: Any, reader: int, construct: Any) -> list[Any]:
     found: list[Any] = []
     while True:
-        taken = function(reader, 256, construct, cqos_to_qos)
+        taken = function(reader, 256, construct, discovered_qos)
         if type(taken) is int:
             return found
         found += taken

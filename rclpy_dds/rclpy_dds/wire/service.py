@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from cyclonedds._clayer import ddspy_get_matched_publication_data, ddspy_get_matched_subscription_data
-from cyclonedds.builtin_types import cqos_to_qos, endpoint_constructor
+from cyclonedds.builtin_types import endpoint_constructor
 from cyclonedds.qos import Policy
 
 from rclpy_dds.interfaces.codec import HEADER, MalformedSample, decoder, encoder
+from rclpy_dds.wire.discovered import discovered_qos
 from rclpy_dds.wire.entities import matched_handles
 
 _counter = itertools.count(1)
@@ -58,7 +59,7 @@ def matched_ids(entity: int, key: str, *, writer: bool) -> set[str]:
     """Return the ids under `key` ("serviceid", "clientid") of the endpoints a writer or reader is matched with."""
     data = ddspy_get_matched_subscription_data if writer else ddspy_get_matched_publication_data
     endpoints = (
-        data(entity, handle, endpoint_constructor, cqos_to_qos) for handle in matched_handles(entity, writer=writer)
+        data(entity, handle, endpoint_constructor, discovered_qos) for handle in matched_handles(entity, writer=writer)
     )
     return {_user_data(endpoint, key) for endpoint in endpoints if endpoint is not None}
 
@@ -70,7 +71,7 @@ def reply_can_arrive(reader: int, writer: int, request_writer: int) -> bool:
         reader: the service's reader of requests. writer: its writer of replies.
         request_writer: the instance handle of the client's writer, from the request's sample info.
     """
-    endpoint = ddspy_get_matched_publication_data(reader, request_writer, endpoint_constructor, cqos_to_qos)
+    endpoint = ddspy_get_matched_publication_data(reader, request_writer, endpoint_constructor, discovered_qos)
     client = _user_data(endpoint, "clientid") if endpoint is not None else ""
     return not client or client in matched_ids(writer, "clientid", writer=True)
 

@@ -18,23 +18,26 @@ class Endpoint:
         self._entry = node._graph_entry
         self._gids: set[bytes] = set()
         self._owned: list[int] = []
+        self._topics: list[entities.Topic] = []
         self._lifetime = Handle(self, self._delete)
         self._event_kinds: set[str] = set()
 
+    def _topic(self, name: str, type_name: str) -> int:
+        self._topics.append(self._participant.topic(name, topic_type(type_name)))
+        return self._topics[-1].handle
+
     def _reader(self, topic: str, type_name: str, qos: Any) -> tuple[int, int]:
-        """Create topic, reader and read condition; returns the latter two."""
-        handle = self._participant.topic(topic, topic_type(type_name))
-        reader = self._participant.reader(handle, qos)
-        self._owned += [reader, handle]
+        """Create a reader and its read condition; returns both."""
+        reader = self._participant.reader(self._topic(topic, type_name), qos)
+        self._owned.append(reader)
         self._gids.add(entities.guid(reader))
         entities.enable_statuses(reader, ())
         return reader, self._participant.read_condition(reader)
 
     def _writer(self, topic: str, type_name: str, qos: Any) -> int:
-        """Create topic and writer; returns the latter."""
-        handle = self._participant.topic(topic, topic_type(type_name))
-        writer = self._participant.writer(handle, qos)
-        self._owned += [writer, handle]
+        """Create a writer."""
+        writer = self._participant.writer(self._topic(topic, type_name), qos)
+        self._owned.append(writer)
         self._gids.add(entities.guid(writer))
         entities.enable_statuses(writer, ())
         return writer
@@ -58,4 +61,6 @@ class Endpoint:
             graph.remove_endpoints(self._entry, self._gids)
             for entity in self._owned:
                 entities.delete(entity)
+            for topic in self._topics:
+                self._participant.leave_topic(topic)
         self._node_context.changed()
