@@ -17,7 +17,7 @@ from eha_core.effects import Effect
 SECOND = 25.0
 
 SECOND_SHARE = 0.004
-IMPERFECT = 2e-4
+IMPERFECT = 6e-4
 CONVINCING = 0.5
 """A second effect must gain this in chi^2, and this share of the sample count, and this share of what the first
 explains: a law that is right but for its smoothing, or for the timing of a break-away, leaves less. And it must explain
@@ -44,7 +44,9 @@ def second_effects(
         # a pair must leave the leader behind, and one that adds the leader itself is screened from the leader's side
         needed = threshold + entry.fit.objective - leader.fit.objective
         others = {*entry.ids, *(() if entry is leader else leader.ids)}
-        beginnings = [start for effect in candidates if effect.id not in others for start in starts(effect, facts)]
+        kinds = {effect.kind for effect in entry.effects if effect.kind}
+        able = [effect for effect in candidates if effect.id not in others and effect.kind not in kinds]
+        beginnings = [start for effect in able for start in starts(effect, facts)]
         promises = screen(problem, entry.fit, beginnings)
         for attempt in attempts(problem, entry.fit, beginnings, promises, MOST, needed):
             both = tuple(sorted((*entry.effects, attempt.promise.start.effect), key=lambda effect: effect.id))

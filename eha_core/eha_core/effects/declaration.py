@@ -23,8 +23,9 @@ class Effect:
     `statement` completes the sentence "the recording shows that ..." and may quote parameters by name, in SI units.
     `memory` names what each of the effect's state slots starts from (one of MEMORY_STARTS). `order` ranks effects of
     one site where their sequence matters physically; equal ranks go by id. `needs` lists measured columns without which
-    no recording can show the effect. `named` is False for a curve that stands for a law nobody has named. `id` is the
-    file's name, filled in on discovery.
+    no recording can show the effect. Effects of one `kind` are forms of one law: never two of them are named together.
+    `named` is False for a curve that stands for a law nobody has named. `id` is the file's name, filled in on
+    discovery.
     """
 
     site: str
@@ -34,6 +35,7 @@ class Effect:
     memory: tuple[str, ...] = ()
     order: int = 0
     needs: tuple[str, ...] = ()
+    kind: str = ""
     named: bool = True
     id: str = ""
 
