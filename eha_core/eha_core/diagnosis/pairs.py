@@ -11,7 +11,7 @@ from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.refine import Found, Progress, attempts, keep_better, settle, try_effect
 from eha_core.diagnosis.screen import screen
-from eha_core.diagnosis.tournament import Tournament, rank, scatter
+from eha_core.diagnosis.tournament import ADEQUATE, Tournament, rank, scatter
 from eha_core.effects import Effect
 
 SECOND = 25.0
@@ -41,6 +41,8 @@ def second_effects(
     explained = nominal.objective - leader.fit.objective
     threshold = tournament.scatter * (SECOND + SECOND_SHARE * problem.count()) + IMPERFECT * explained
     for entry in [one for one in tournament.entries[:2] if one.span is None]:
+        if entry is not leader and not pairs and leader.fit.data < ADEQUATE * leader.fit.count:
+            break  # the leader leaves nothing but noise, and nothing was found that it lacks
         # a pair must leave the leader behind, and one that adds the leader itself is screened from the leader's side
         needed = threshold + entry.fit.objective - leader.fit.objective
         others = {*entry.ids, *(() if entry is leader else leader.ids)}

@@ -38,6 +38,9 @@ ENOUGH = 20.0
 TIE = 10.0
 """Rivals within this of the best score are not told apart."""
 
+HARDLY = 0.1
+"""Once a hypothesis explains all but noise, one that promises less than this share of what that gained is not tried."""
+
 ADEQUATE = 1.05
 DEAR = 0.03
 """Where even the best model leaves more than ADEQUATE times the noise, its residual is no noise but more physics, and
@@ -91,6 +94,8 @@ def compete(
     most = REFINED_FAR_OFF if far_off else REFINED
     for attempt in attempts(problem, calibrated, beginnings, promises, most, ENOUGH):
         effect = attempt.promise.start.effect
+        if best < ADEQUATE * problem.count() and attempt.promise.gain < HARDLY * (calibrated.objective - best):
+            continue
         progress(f"refitting with {effect.id}")
         result = try_effect(problem, attempt, best)
         keep_better(found, (effect,), result)
