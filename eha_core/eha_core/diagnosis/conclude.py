@@ -14,7 +14,7 @@ from eha_core.diagnosis.fit import Fit, fit, with_noise
 from eha_core.diagnosis.intervals import with_residual
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
-from eha_core.diagnosis.locate import DESCRIBED
+from eha_core.diagnosis.locate import DESCRIBED, stated
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.result import (
@@ -148,8 +148,12 @@ def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, .
     """The named effect's site first: where the name is certain, so is the site, and when it acts."""
     sites = {effect.site for effect in winner.effects}
     if winner.span:
-        location = tuple(replace(one, when=(winner.span,)) if one.site in sites else one for one in location)
+        location = tuple(_in_span(one, winner.span) if one.site in sites else one for one in location)
     return tuple(sorted(location, key=lambda one: (one.site not in sites, -one.share)))
+
+
+def _in_span(one: Location, span: tuple[float, float]) -> Location:
+    return replace(one, when=(span,), statement=stated(one.site, one.share, one.where, (span,)))
 
 
 def _unknown(evidence: Evidence) -> UnknownLaw | None:
