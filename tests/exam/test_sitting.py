@@ -9,10 +9,11 @@ import pytest
 
 from eha_core.errors import EhaError
 from eha_core.exam.files import read_answer
-from eha_core.exam.sitting import Exam, Workers, open_answers, sit
+from eha_core.exam.sitting import Exam, open_answers, sit
 from eha_core.exam.summary import summarise
 from eha_core.exam.tables import as_html, as_json, as_markdown
 from eha_core.recording import read_recording
+from eha_core.workers import Workers
 
 SILENT = """
 import json, sys

@@ -10,7 +10,9 @@ from pathlib import Path
 from eha_core.errors import EhaError
 from eha_core.parameters import NOMINAL, changed, load_parameters, nominal_values
 from eha_core.recording import Recording, read_recording
+from eha_core.workers import Workers
 
+UNUSABLE = 2
 DAMAGED = 3
 """Exit status where the recording was damaged and the diagnosis rests on the part that could be read."""
 
@@ -30,7 +32,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
     add("--out", type=Path, metavar="DIR", help="folder for the report (default out/diagnosis/<recording>)")
     add("--json", metavar="FILE|-", help="write diagnosis.json there (- is standard output) and no report")
-    add("--jobs", type=int, default=2, metavar="N", help="threads that simulate side by side (default 2)")
+    add("--jobs", type=int, default=2, metavar="N", help="threads, with --each processes, side by side (default 2)")
+    add("--each", action="store_true", help="diagnose every recording on its own, and print a line for each")
+    add("--dask", metavar="ADDRESS", help="with --each: a Dask scheduler whose workers see the same folders")
     add("--seed", type=int, default=0, metavar="N", help="kept with the result; no stage draws at random")
 
 
@@ -38,6 +42,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the verb."""
     if arguments.jobs < 1:
         raise EhaError(f"--jobs {arguments.jobs} is no number of threads; give 1 or more")
+    if arguments.each:
+        return _run_each(arguments)
+    if arguments.dask is not None:
+        raise EhaError("--dask spreads recordings that are diagnosed on their own; give --each too")
     recordings = [read_recording(path, arguments.topics) for path in arguments.recordings]
     nominal = _nominal(arguments.nominal, recordings[0])
     # compilers and plotting load slowly; bad input should be told at once
@@ -58,6 +66,39 @@ def run(arguments: argparse.Namespace) -> int:
             written = (*written, _write(Path(arguments.json), as_json(diagnosis)))
         print(account(diagnosis, written))
     return DAMAGED if any(recording.damaged for recording in recordings) else 0
+
+
+def _run_each(arguments: argparse.Namespace) -> int:
+    """Every recording on its own: what one cannot be used for stops none of the others."""
+    if arguments.json is not None:
+        raise EhaError("--json takes one diagnosis; with --each, every recording's is in its own folder below --out")
+    folders = [(arguments.out or Path("out") / "diagnosis") / path.stem for path in arguments.recordings]
+    doubled = next((folder for folder in folders if folders.count(folder) > 1), None)
+    if doubled is not None:
+        raise EhaError(f"two recordings would both write to {doubled}; rename one, or diagnose them apart")
+    calls = [
+        (path.absolute(), arguments.nominal, arguments.topics, folder.absolute())
+        for path, folder in zip(arguments.recordings, folders, strict=True)
+    ]
+    statuses = set()
+    for path, status, line in Workers(arguments.jobs, arguments.dask).run(diagnose_alone, calls):
+        print(f"{path.name}: {line}", file=sys.stderr if status == UNUSABLE else sys.stdout, flush=True)
+        statuses.add(status)
+    return next((status for status in (UNUSABLE, DAMAGED) if status in statuses), 0)
+
+
+def diagnose_alone(path: Path, nominal: Path | None, topics: Path | None, folder: Path) -> tuple[Path, int, str]:
+    """Diagnose one recording into `folder`: its path, its exit status, and the verdict or what is wrong, in a line."""
+    from eha_core.diagnosis import diagnose_together
+    from eha_core.report.files import write_report
+
+    try:
+        recording = read_recording(path, topics)
+        diagnosis = diagnose_together([recording], _nominal(nominal, recording), jobs=1)
+        write_report(diagnosis, folder)
+    except EhaError as error:
+        return path, UNUSABLE, str(error)
+    return path, DAMAGED if recording.damaged else 0, diagnosis.summary
 
 
 def _nominal(path: Path | None, recording: Recording) -> Mapping[str, float]:

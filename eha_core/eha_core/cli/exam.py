@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from eha_core.errors import EhaError
 from eha_core.exam.peers import PEERS
 from eha_core.exam.tiers import MEANINGS
+from eha_core.workers import Workers
 
 if TYPE_CHECKING:
     from eha_core.exam.summary import Summary
@@ -56,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the verb; the exit status says whether --require was met."""
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
     from eha_core.exam.real import show_bags, show_emps
-    from eha_core.exam.sitting import Exam, Workers, report_lost, sit
+    from eha_core.exam.sitting import Exam, report_lost, sit
     from eha_core.exam.summary import summarise
     from eha_core.exam.tables import as_html, as_json, as_markdown
 

@@ -13,10 +13,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +24,7 @@ from eha_core.exam.files import answer_text, digest_of, read_answer, recording_n
 from eha_core.exam.scoring import Answer, Mark, mark
 from eha_core.exam.second import second_recording
 from eha_core.exam.tiers import plan
+from eha_core.workers import Workers
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, how many are finished, and how many there are."""
@@ -50,41 +49,6 @@ class Exam:
     def members(self) -> list[tuple[str, int]]:
         """(tier, number) of each case."""
         return plan(self.cases, self.tier)
-
-
-@dataclass(frozen=True)
-class Workers:
-    """Where the work is done: processes of this machine, or workers of a Dask scheduler that see the same folder."""
-
-    jobs: int = 1
-    dask: str | None = None
-
-    def run(self, function: Callable[..., Any], calls: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
-        """Results as they come; the first exception ends it."""
-        if self.dask is not None:
-            yield from self._on_dask(function, calls)
-            return
-        with ProcessPoolExecutor(self.jobs, mp_context=get_context("spawn")) as pool:
-            waiting: list[Future[Any]] = [pool.submit(function, *call) for call in calls]
-            try:
-                for future in as_completed(waiting):
-                    yield future.result()
-            finally:
-                pool.shutdown(wait=False, cancel_futures=True)
-
-    def _on_dask(self, function: Callable[..., Any], calls: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
-        try:
-            from dask import distributed
-        except ImportError:
-            raise EhaError("--dask needs the package `distributed`; install it or use --jobs") from None
-        try:
-            client = distributed.Client(self.dask, timeout=10)
-        except (OSError, ValueError, TimeoutError) as error:
-            raise EhaError(f"--dask {self.dask}: no scheduler answers there ({error})") from None
-        with client:
-            futures = [client.submit(function, *call, pure=False) for call in calls]
-            for future in distributed.as_completed(futures):
-                yield future.result()
 
 
 def sit(exam: Exam, tools: Mapping[str, str], workers: Workers, progress: Progress) -> dict[str, list[Mark]]:

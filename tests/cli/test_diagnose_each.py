@@ -1,0 +1,64 @@
+"""Many recordings, each on its own: a line for each, an unusable one stops none, on processes and on Dask's workers."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from eha_core.cli import main
+
+BAGS = Path(__file__).parents[2] / "bags"
+
+
+def test_an_unusable_recording_stops_none_of_the_others(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    paths = [BAGS / "rig_as_modelled.mcap", tmp_path / "absent.csv", BAGS / "rig_cut_short.mcap"]
+    assert main(["diagnose", "--each", *map(str, paths), "--out", str(tmp_path / "out")]) == 2
+    out, err = capfd.readouterr()
+    assert sorted(line.split(":")[0] for line in out.splitlines()) == ["rig_as_modelled.mcap", "rig_cut_short.mcap"]
+    assert "dry friction" in out
+    assert re.fullmatch(r"absent.csv: .*absent.csv.*\n", err)
+    written = (tmp_path / "out").glob("*/diagnosis.json")
+    verdicts = {path.parent.name: json.loads(path.read_text())["verdict"] for path in written}
+    assert verdicts == {"rig_as_modelled": "consistent", "rig_cut_short": "missing_physics"}
+
+
+def test_the_workers_of_a_dask_scheduler_do_the_same(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    dask = [sys.executable, "-m", "dask"]
+    file = tmp_path / "scheduler.json"
+    common = ["--scheduler-file", str(file), "--no-dashboard"]
+    quiet = {"stderr": subprocess.DEVNULL, "cwd": tmp_path}
+    scheduler = subprocess.Popen([*dask, "scheduler", *common, "--host", "127.0.0.1", "--port", "0"], **quiet)
+    worker = subprocess.Popen([*dask, "worker", *common, "--nworkers", "1", "--nthreads", "1"], **quiet)
+    try:
+        while not file.is_file():
+            assert scheduler.poll() is None
+        address = json.loads(file.read_text())["address"]
+        words = ["--each", str(BAGS / "rig_as_modelled.mcap"), "--out", str(tmp_path / "out"), "--dask", address]
+        assert main(["diagnose", *words]) == 0
+    finally:
+        for process in (worker, scheduler):
+            process.terminate()
+            process.wait(30)
+    assert capfd.readouterr().out.startswith("rig_as_modelled.mcap: The nominal model explains")
+    assert (tmp_path / "out" / "rig_as_modelled" / "report.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--dask", "tcp://127.0.0.1:9"], "give --each too"),
+        (["--each", "--json", "-"], "--json takes one diagnosis"),
+        ([str(BAGS / "rig_as_modelled.mcap"), "--each"], "two recordings would both write to"),
+        (["--each", "--dask", "tcp://127.0.0.1:9"], "no scheduler answers there"),
+    ],
+)
+def test_what_does_not_go_together_is_said_in_one_line(
+    words: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["diagnose", str(BAGS / "rig_as_modelled.mcap"), *words, "--out", str(tmp_path)]) == 2
+    err = capsys.readouterr().err
+    assert said in err
+    assert err.count("\n") == 1
