@@ -13,7 +13,6 @@ from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Location
-from eha_core.diagnosis.screen import Promise
 from eha_core.diagnosis.shooting import Shooting
 from eha_core.diagnosis.tournament import Tournament
 
@@ -57,36 +56,31 @@ def locate(
         share = float(np.clip(gain / unexplained, 0.0, 1.0))
         if share < 0.01 and found:
             continue
-        found.append(stated(site, share, where, when))
+        found.append(Location(site, share, where, when, stated(site, share, where, when)))
     return tuple(found)
 
 
-def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> Location:
-    """A location with its words."""
-    sits = f"{share:.0%} of what the calibrated model leaves unexplained sits {DESCRIBED[site]}"
-    return Location(site, share, where, when, f"{sits}, {where}{_times(when)}")
+def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> str:
+    """A location in words."""
+    return f"{share:.0%} of what the calibrated model leaves unexplained sits {DESCRIBED[site]}, {where}{_times(when)}"
 
 
 def _site_gains(tournament: Tournament, equations: Sequence[Balance]) -> dict[str, float]:
     """The refitted gain of each site's best hypothesis, or else the promised one, which never counts as much."""
     gains: dict[str, float] = {}
     nominal = tournament.nominal.fit
-    refitted = {
-        entry.ids[0]: nominal.objective - entry.fit.objective for entry in tournament.entries if len(entry.ids) == 1
-    }
-    lowest = min([0.0, *(-gain for gain in refitted.values())])
+    refitted: dict[str, float] = {}
+    for entry in tournament.entries:  # an effect may be among them twice: acting always, and for a while
+        if len(entry.ids) == 1:
+            gain = nominal.objective - entry.fit.objective
+            refitted[entry.ids[0]] = max(gain, refitted.get(entry.ids[0], gain))
+    most = max([0.0, *refitted.values()])
     for promise in tournament.promises:
         effect = promise.start.effect
-        gain = refitted.get(effect.id)
-        if gain is None:
-            gain = min(_promised(promise), 0.5 * -lowest)
+        gain = refitted.get(effect.id, min(promise.gain, 0.5 * most))
         if gain > gains.get(effect.site, 0.0):
             gains[effect.site] = gain
     return gains
-
-
-def _promised(promise: Promise) -> float:
-    return promise.gain
 
 
 def _energy(shooting: Shooting, result: Fit) -> tuple[Array, Array]:
@@ -120,7 +114,7 @@ def _times(when: tuple[tuple[float, float], ...]) -> str:
     if len(when) == 1 and when[0][0] == 0.0:
         return ", through the whole record"
     if len(when) == 1:
-        return f", from {when[0][0]:.1f} s to {when[0][1]:.1f} s"
+        return f", from {when[0][0]:.4g} s to {when[0][1]:.4g} s"
     return f", in {len(when)} spans of time, the first from {when[0][0]:.1f} s"
 
 
