@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -28,11 +29,17 @@ def split(shooting: Shooting, instants: Iterable[float] = ()) -> tuple[Problem, 
     """The windows to fit on, and those to judge on. Two windows or fewer are both.
 
     What happens at one of the `instants` [s] can be learnt there only: their windows, and those before and after, are
-    fitted to.
+    fitted to. Between two of them a window is judged, too, where there are three or more.
     """
     edges = shooting.edges[1:-1] * shooting.step_size
-    eventful = {int(window) + beside for window in np.searchsorted(edges, list(instants)) for beside in (-1, 0, 1)}
-    judged = np.array([window for window in held_out(shooting.windows) if window not in eventful], dtype=np.int64)
+    events = [int(window) for window in np.searchsorted(edges, sorted(instants))]
+    eventful = {window + beside for window in events for beside in (-1, 0, 1)}
+    chosen = {window for window in held_out(shooting.windows) if window not in eventful}
+    for first, last in pairwise(events):
+        between = range(first + 1, last)
+        if len(between) >= 3 and chosen.isdisjoint(between):
+            chosen.add(between[len(between) // 2])
+    judged = np.array(sorted(chosen), dtype=np.int64)
     rest = np.setdiff1d(np.arange(shooting.windows), judged)
     if shooting.windows < 3 or len(judged) == 0:
         everything = np.arange(shooting.windows)
