@@ -1,7 +1,6 @@
 """Whole diagnoses: what is planted is named, what is not there is not named, and the words and files say so."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -75,7 +74,7 @@ def test_a_leakage_turned_on_purpose_is_no_mismatch(capsys):
 
 
 def test_a_force_that_no_name_fits_is_located_and_not_named():
-    case = replace(draw_case("outside", 9, 101), duration=10.0)
+    case = draw_case("outside", 9, 101)
     assert case.effect_ids == ("periodic_force",)
     units = {"voltage_command": "V", "position": "m", "pressure_a": "Pa", "pressure_b": "Pa"}
     arrays = measure(case, simulate_case(case))
