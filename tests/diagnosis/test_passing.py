@@ -17,11 +17,12 @@ def test_friction_that_acts_for_a_while_is_named_with_its_span() -> None:
     assert result.verdict == "missing_physics"
     assert [effect.id for effect in result.effects] == ["coulomb_friction"]
     assert result.effects[0].parameters["force"].value == pytest.approx(200.0, rel=0.02)
-    (when,) = result.location[0].when
+    located = result.location[0]
+    (when,) = located.when
     assert when == pytest.approx((2.37, 6.71), abs=0.02)
+    assert located.share > 0.9  # what friction that always acts would take away is a tenth of that
+    assert f"from {when[0]:.4g} s to {when[1]:.4g} s" in located.statement
     assert "from 2.37 s to 6.71 s only" in result.effects[0].statement
-    assert "from 2.37 s to 6.71 s" in result.location[0].statement
-    assert result.location[0].share > 0.9  # friction that always acts would take away a tenth of that
     # what is handed to the simulator has the effect in that span alone
     friction = Plant(result.fitted_values, 1e-4)
     rows = friction.run(0.2 * np.sin(2 * np.pi * np.arange(80_000) * 1e-4))

@@ -148,11 +148,12 @@ def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, .
     """The named effect's site first: where the name is certain, so is the site, and when it acts."""
     sites = {effect.site for effect in winner.effects}
     if winner.span:
-        when = (winner.span,)
-        location = tuple(
-            stated(one.site, one.share, one.where, when) if one.site in sites else one for one in location
-        )
+        location = tuple(_in_span(one, winner.span) if one.site in sites else one for one in location)
     return tuple(sorted(location, key=lambda one: (one.site not in sites, -one.share)))
+
+
+def _in_span(one: Location, span: tuple[float, float]) -> Location:
+    return replace(one, when=(span,), statement=stated(one.site, one.share, one.where, (span,)))
 
 
 def _unknown(evidence: Evidence) -> UnknownLaw | None:

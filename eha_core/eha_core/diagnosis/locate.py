@@ -56,14 +56,13 @@ def locate(
         share = float(np.clip(gain / unexplained, 0.0, 1.0))
         if share < 0.01 and found:
             continue
-        found.append(stated(site, share, where, when))
+        found.append(Location(site, share, where, when, stated(site, share, where, when)))
     return tuple(found)
 
 
-def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> Location:
-    """A location with its words."""
-    sits = f"{share:.0%} of what the calibrated model leaves unexplained sits {DESCRIBED[site]}"
-    return Location(site, share, where, when, f"{sits}, {where}{_times(when)}")
+def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> str:
+    """A location in words."""
+    return f"{share:.0%} of what the calibrated model leaves unexplained sits {DESCRIBED[site]}, {where}{_times(when)}"
 
 
 def _site_gains(tournament: Tournament, equations: Sequence[Balance]) -> dict[str, float]:

@@ -34,6 +34,7 @@ ABREAST = 4
 trial, for an instant that is wrong by more than a moment shows no slope that leads to the right one."""
 
 SHARPER = 0.1
+"""Share of the usual span over which an instant's derivative is taken once it is known closely."""
 
 TRIED = 4
 """How many effects are fitted with the span in which they act."""
