@@ -11,21 +11,35 @@ import pytest
 from eha_core.cli import main
 
 BAGS = Path(__file__).parents[2] / "bags"
+MULTISINE = "multisine:amplitude=0.12,lowest=0.3,highest=8,count=16,period=20,seed=3"
 
 
-def test_an_unusable_recording_stops_none_of_the_others(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    paths = [BAGS / "rig_as_modelled.mcap", tmp_path / "absent.csv", BAGS / "rig_cut_short.mcap"]
+@pytest.fixture(scope="module")
+def as_modelled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three seconds of a rig that lacks nothing."""
+    path = tmp_path_factory.mktemp("bags") / "as_modelled.mcap"
+    words = ["--command", MULTISINE, "--duration", "3", "--noise", "1", "--seed", "11", "--instruments-only"]
+    assert main(["simulate", *words, "--out", str(path)]) == 0
+    return path
+
+
+def test_an_unusable_recording_stops_none_of_the_others(
+    as_modelled: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    paths = [as_modelled, tmp_path / "absent.csv", BAGS / "rig_cut_short.mcap"]
     assert main(["diagnose", "--each", *map(str, paths), "--out", str(tmp_path / "out")]) == 2
     out, err = capfd.readouterr()
-    assert sorted(line.split(":")[0] for line in out.splitlines()) == ["rig_as_modelled.mcap", "rig_cut_short.mcap"]
+    assert sorted(line.split(":")[0] for line in out.splitlines()) == ["as_modelled.mcap", "rig_cut_short.mcap"]
     assert "dry friction" in out
     assert re.fullmatch(r"absent.csv: .*absent.csv.*\n", err)
     written = (tmp_path / "out").glob("*/diagnosis.json")
     verdicts = {path.parent.name: json.loads(path.read_text())["verdict"] for path in written}
-    assert verdicts == {"rig_as_modelled": "consistent", "rig_cut_short": "missing_physics"}
+    assert verdicts == {"as_modelled": "consistent", "rig_cut_short": "missing_physics"}
 
 
-def test_the_workers_of_a_dask_scheduler_do_the_same(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_the_workers_of_a_dask_scheduler_do_the_same(
+    as_modelled: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     dask = [sys.executable, "-m", "dask"]
     file = tmp_path / "scheduler.json"
     common = ["--scheduler-file", str(file), "--no-dashboard"]
@@ -36,14 +50,14 @@ def test_the_workers_of_a_dask_scheduler_do_the_same(tmp_path: Path, capfd: pyte
         while not file.is_file():
             assert scheduler.poll() is None
         address = json.loads(file.read_text())["address"]
-        words = ["--each", str(BAGS / "rig_as_modelled.mcap"), "--out", str(tmp_path / "out"), "--dask", address]
+        words = ["--each", str(as_modelled), "--out", str(tmp_path / "out"), "--dask", address]
         assert main(["diagnose", *words]) == 0
     finally:
         for process in (worker, scheduler):
             process.terminate()
             process.wait(30)
-    assert capfd.readouterr().out.startswith("rig_as_modelled.mcap: The nominal model explains")
-    assert (tmp_path / "out" / "rig_as_modelled" / "report.html").is_file()
+    assert capfd.readouterr().out.startswith("as_modelled.mcap: The nominal model explains")
+    assert (tmp_path / "out" / "as_modelled" / "report.html").is_file()
 
 
 @pytest.mark.parametrize(

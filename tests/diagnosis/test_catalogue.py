@@ -33,6 +33,9 @@ RIGS = {
 STEPS = {"stribeck_friction": 5e-5, "presliding_friction": 1e-4}
 """s; break-away is a matter of tenths of a millisecond."""
 
+DURATIONS = {"leakage_onset": 10.0, "thermal_drift": 10.0}
+"""s; what happens late, or slowly, asks for a longer record than others."""
+
 NOT_IDENTIFIABLE = {"position_sensor_scale"}
 """Other parameters imitate all of it (gain, mass, damping scaled): no recording of these channels shows it."""
 
@@ -44,7 +47,7 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     rig = RIGS.get(effect.id, {})
     nominal = {**nominal_values(), **rig}
     other = {"moving_mass": 1.1 * nominal["moving_mass"], "damping_coefficient": 0.93 * nominal["damping_coefficient"]}
-    observation = observe(recorded({**rig, **planted, **other}, seed=7))
+    observation = observe(recorded({**rig, **planted, **other}, seed=7, duration=DURATIONS.get(effect.id, 6.0)))
     calibration = calibrate(observation, nominal, STEPS.get(effect.id, 2e-4))
     facts = gather(observation, calibration.shooting, calibration.fitted)
     tried = [start for one in candidates(observation) for start in starts(one, facts)]

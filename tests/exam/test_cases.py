@@ -91,7 +91,7 @@ def test_a_test_that_would_hit_an_end_is_run_with_a_centring_loop() -> None:
 
 
 def test_the_oracle_sees_a_large_effect_and_not_one_lost_in_noise() -> None:
-    case = short("single", 12, duration=3.0, effects=(("hardening_spring", {"coefficient": 3e8}),))
+    case = short("single", 12, duration=1.5, effects=(("hardening_spring", {"coefficient": 3e8}),))
     assert consult(case, simulate_case(case)).decidable
     faint = replace(case, effects=(("hardening_spring", {"coefficient": 1e3}),))
     assert not consult(faint, simulate_case(faint)).decidable
@@ -99,7 +99,7 @@ def test_the_oracle_sees_a_large_effect_and_not_one_lost_in_noise() -> None:
 
 def test_the_oracle_knows_that_a_parameter_imitates_its_own_change() -> None:
     """Damping that is lower from the start is no missing physics, though an effect may describe it."""
-    case = short("single", 12)
+    case = short("single", 12, duration=2.5)
     drift = {"leakage_ratio": 0.0, "damping_ratio": 0.3, "time_constant": 1e-4}
     thin = replace(case, effects=(("thermal_drift", drift),))
     insight = consult(thin, simulate_case(thin))
@@ -109,7 +109,7 @@ def test_the_oracle_knows_that_a_parameter_imitates_its_own_change() -> None:
 
 def test_what_the_oracle_sees_beside_another_effect_is_what_that_does_not_explain() -> None:
     spring, delay = ("hardening_spring", {"coefficient": 3e8}), ("command_delay", {"delay": 1e-7})
-    case = short("single", 12, duration=3.0, effects=(spring, delay))
+    case = short("single", 12, duration=1.5, effects=(spring, delay))
     truth = simulate_case(case)
     assert consult(case, truth, delay).beyond_rival > 1000.0
     assert consult(case, truth, spring).beyond_rival < 1.0
