@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import time
 
 import pytest
@@ -57,15 +58,16 @@ def test_shutdown_is_told_to_who_asked() -> None:
 
 
 def test_contexts_are_in_domains_of_their_own() -> None:
-    contexts = [rclpy.Context(), rclpy.Context()]
-    for number, context in enumerate(contexts):
-        rclpy.init(args=[], context=context, domain_id=60 + number)
-    nodes = [Node(f"in_{context.get_domain_id()}", context=context) for context in contexts]
+    own = int(os.environ["ROS_DOMAIN_ID"])
+    contexts = {own: rclpy.Context(), own - 1: rclpy.Context()}
+    for number, context in contexts.items():
+        rclpy.init(args=[], context=context, domain_id=number)
+    nodes = [Node(f"in_{context.get_domain_id()}", context=context) for context in contexts.values()]
     time.sleep(0.5)  # long enough to be found, were they in one domain
     try:
-        assert [node.get_node_names() for node in nodes] == [["in_60"], ["in_61"]]
+        assert [node.get_node_names() for node in nodes] == [[f"in_{number}"] for number in contexts]
     finally:
-        for node, context in zip(nodes, contexts, strict=True):
+        for node, context in zip(nodes, contexts.values(), strict=True):
             node.destroy_node()
             rclpy.shutdown(context=context)
 

@@ -23,6 +23,7 @@ try:
 except (KeyboardInterrupt, ExternalShutdownException):
     pass
 """
+OTHER_DOMAIN = str(int(os.environ["ROS_DOMAIN_ID"]) - 1)
 
 
 def _is_seen(graph: Graph, timeout: float) -> bool:
@@ -35,14 +36,18 @@ def test_a_node_beside_this_one_is_seen(graph: Graph, program: Start) -> None:
     assert _is_seen(graph, 5.0)
 
 
-@pytest.mark.parametrize(("name", "value"), [("ROS_DOMAIN_ID", "99"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("ROS_DOMAIN_ID", OTHER_DOMAIN), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")],
+    ids=["another domain", "no discovery"],
+)
 def test_another_domain_and_no_discovery_hide_a_node(
     graph: Graph, program: Start, monkeypatch: pytest.MonkeyPatch, name: str, value: str
 ) -> None:
     graph.node("observer")
     monkeypatch.setenv(name, value)
     line = program(NODE).wait_for("ready")
-    assert line.split()[-1] == ("99" if name == "ROS_DOMAIN_ID" else os.environ["ROS_DOMAIN_ID"])
+    assert line.split()[-1] == os.environ["ROS_DOMAIN_ID"]
     assert not _is_seen(graph, 1.5)
 
 
