@@ -170,9 +170,7 @@ def _unknown(evidence: Evidence) -> UnknownLaw | None:
         if not text and law is not None and law.function_of == curve.variable:
             text = law.expression
         return UnknownLaw(curve.effect.site, curve.variable, text, curve.share, curve.knots)
-    if law is None:
-        return None
-    return UnknownLaw(law.site, law.function_of, law.expression, law.r_squared, law.samples)
+    return law
 
 
 def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> Decision:

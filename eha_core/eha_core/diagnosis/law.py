@@ -16,6 +16,7 @@ from eha_core.curve import KNOTS
 from eha_core.diagnosis.balance import Balance
 from eha_core.diagnosis.library import best_wave, powers, searched
 from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.result import UnknownLaw
 from eha_core.diagnosis.terms import Sighting, Sum, Term, fewest
 
 SIMPLE = 0.95
@@ -82,21 +83,6 @@ class Expression:
 
 
 @dataclass(frozen=True)
-class Law:
-    """What the balances say of a law that is missing.
-
-    `r_squared`: the share that it explains of what they lack beyond noise. `samples`: the function of the variable,
-    without what multiplies it, as (variable, function) in SI.
-    """
-
-    site: str
-    function_of: str
-    expression: str
-    r_squared: float
-    samples: tuple[tuple[float, float], ...]
-
-
-@dataclass(frozen=True)
 class Form:
     """A kind of law: at a site, a function of one variable, times another if `times` is not empty."""
 
@@ -151,13 +137,13 @@ def _library(sighting: Sighting, name: str, waves: tuple[float, float]) -> tuple
     return (*powers(symbol), *searched(sighting, symbol), best_wave(sighting, symbol, *waves, pitch=True))
 
 
-def weak_law(alternatives: Sequence[Sequence[Balance]]) -> Law | None:
+def weak_law(alternatives: Sequence[Sequence[Balance]]) -> UnknownLaw | None:
     """The law that explains most of what the balances lack; None where they hold, or nothing explains any of it.
 
     `alternatives`: balances made with different models, each of the force and then of the chambers. A law is looked for
     in each of them, and the one that leaves least counts.
     """
-    best: Law | None = None
+    best: UnknownLaw | None = None
     most = 0.0
     for form in FORMS:
         parts = [one[:1] if form.site == "force" else one[1:] for one in alternatives]
@@ -175,7 +161,7 @@ def weak_law(alternatives: Sequence[Sequence[Balance]]) -> Law | None:
     return best
 
 
-def _law(form: Form, balances: Sequence[Balance], least_share: float = 0.0) -> Law | None:
+def _law(form: Form, balances: Sequence[Balance], least_share: float = 0.0) -> UnknownLaw | None:
     """The best law of a form, as an expression if that is as good as its curve; None if a curve explains too little."""
     sighting = _sighting(form, balances)
     reach = float(np.ptp(sighting.at))
@@ -191,8 +177,8 @@ def _law(form: Form, balances: Sequence[Balance], least_share: float = 0.0) -> L
     beyond = sighting.total / max(sighting.total - len(sighting.seen), 1.0)
     told, drawn = min(found.r_squared * beyond, 1.0), min(share * beyond, 1.0)
     if told < SIMPLE * drawn:
-        return Law(form.site, form.title, "", drawn, curve)
-    return Law(form.site, form.title, _text(form, found) if told >= TOLD else "", told, _drawn(sighting, found))
+        return UnknownLaw(form.site, form.title, "", drawn, curve)
+    return UnknownLaw(form.site, form.title, _text(form, found) if told >= TOLD else "", told, _drawn(sighting, found))
 
 
 def _sighting(form: Form, balances: Sequence[Balance]) -> Sighting:

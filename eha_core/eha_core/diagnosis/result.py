@@ -68,8 +68,8 @@ class Alternative:
 class UnknownLaw:
     """A law outside the catalogue, recovered as a curve over one variable, and as an expression where it is simple.
 
-    `function_of` names the variable, and after a comma what the curve is multiplied by, if it is. `samples`: the curve,
-    (variable, law) in SI.
+    `function_of` names the variable, and after a comma what the curve is multiplied by, if it is. `r_squared` is the
+    share that it explains of what the model lacks beyond noise. `samples`: the curve, (variable, law) in SI.
     """
 
     site: str
