@@ -24,7 +24,9 @@ HIDDEN = 1.1
 FARTHEST = 0.5
 """Relative change of a nominal parameter beyond which nobody would believe a refit."""
 INDISTINCT = 3.0
-"""Nats that an oracle may gain beyond a rival where the two count as not told apart."""
+"""Nats that an oracle may gain beyond a rival where the two count as not told apart ..."""
+AIMED_AT = 1.5
+"""... and those that an effect is made so small as to gain."""
 MAKERS = (
     "case", "cases", "concealed", "drawing", "excitation", "measuring", "oracle", "outside", "plants", "tiers",
 )  # fmt: skip
@@ -99,7 +101,7 @@ def _as_twin(case: Case, truth: dict[str, Array]) -> tuple[Case, dict[str, Array
         insight = consult(case, truth, rival)
         if insight.beyond_rival is not None and insight.beyond_rival < INDISTINCT:
             return replace(case, decidable=insight.decidable), truth
-        case = _smaller(case, 0.5)
+        case = _smaller(case, 0.5 if insight.beyond_rival is None else float(np.sqrt(AIMED_AT / insight.beyond_rival)))
         truth = simulate_case(case)
     return replace(case, rivals=(), decidable=consult(case, truth).decidable), truth
 

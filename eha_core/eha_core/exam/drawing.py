@@ -27,10 +27,12 @@ WINDOWED = (
 """Effects that a rig can have for a while: a seal that drags, a load that hangs, a valve that a relief opens."""
 
 TWINS = (
-    ("position_sensor_lag", "command_delay"),
-    ("command_delay", "position_sensor_lag"),
+    ("constant_load", "flow_gain_asymmetry"),
+    ("flow_gain_asymmetry", "constant_load"),
+    ("external_leakage", "valve_null_offset"),
 )
-"""What a slow sine of command and position alone does not tell apart: (concealed, rival)."""
+"""What command and position alone hardly tell apart: (concealed, rival). A load takes pressure from one direction's
+orifices, and one chamber's leak feeds the piston a flow as a valve off its null does."""
 
 NOISES = (1.0, 3.0, 10.0)
 FRICTION = {"coulomb_friction", "stribeck_friction", "presliding_friction"}
@@ -75,12 +77,10 @@ def draw_case(tier: str, number: int, seed: int) -> Case:
 
 
 def _weakly_tested(case: Case, rival: str) -> Case:
-    """The case under a slow sine with a noisy position sensor alone, where the rival looks the same."""
+    """The case with a noisy position sensor alone, where the rival looks the same once the effect is small."""
     return replace(
         case,
         rivals=(rival,),
-        shape="slow",
-        loop=0.0,
         noise=3.0,
         position_step=0.0,
         jitter=0.0,
@@ -109,7 +109,7 @@ def _conceal(
     }
     pool = pools.get(tier, catalogue)
     name = pool[number % len(pool)]
-    share = {"small": 0.15, "twins": 0.8}.get(tier, 1.0)
+    share = 0.15 if tier == "small" else 1.0
     effect = (name, draw_effect(name, setting, g, share, other_law=tier == "other_law"))
     if tier == "window":
         start = float(g.uniform(0.2, 0.45)) * setting.duration

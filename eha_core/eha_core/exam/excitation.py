@@ -18,10 +18,9 @@ def draw_reference(
     """A reference of position [m] about mid stroke: at most `amplitude` [m] and `speed` [m/s], at rest at the start.
 
     multisine: eight sines, 0.1 to 6 Hz, amplitude falling with frequency; chirp: constant peak speed, 0.1 to 8 Hz and
-    back; steps: smooth moves with dwells; triangle: slow ramps with dwells and small fast sines on them; slow: one slow
-    sine, which tells little.
+    back; steps: smooth moves with dwells; triangle: slow ramps with dwells and small fast sines on them.
     """
-    draw = {"multisine": _multisine, "chirp": _chirp, "steps": _steps, "triangle": _triangle, "slow": _slow}[shape]
+    draw = {"multisine": _multisine, "chirp": _chirp, "steps": _steps, "triangle": _triangle}[shape]
     raw = draw(time, amplitude, speed, generator)
     raw *= np.clip(time / 0.5, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(time / 0.5, 0.0, 1.0))
     peak_speed = np.max(np.abs(np.gradient(raw, time)))
@@ -67,12 +66,6 @@ def _triangle(time: Array, amplitude: float, speed: float, generator: np.random.
         here, now, side = there, now + move + generator.uniform(0.1, 0.5), -side
     ripple = 0.1 * speed / (2.0 * np.pi * 5.0) * np.sin(2.0 * np.pi * generator.uniform(3.0, 7.0) * time)
     return reference + ripple
-
-
-def _slow(time: Array, amplitude: float, speed: float, generator: np.random.Generator) -> Array:
-    frequency = generator.uniform(0.25, 0.4)
-    size = min(amplitude, speed / (2.0 * np.pi * frequency))
-    return np.asarray(size * (1.0 - np.cos(2.0 * np.pi * frequency * time)) / 2.0)
 
 
 def feedforward(rig: Rig, reference: Array, rate: float) -> Array:

@@ -23,8 +23,6 @@ Array = NDArray[np.float64]
 
 WINDOW, WINDOWS = 1.0, 3
 """Length [s] and number of the windows."""
-SLOW_WINDOW, SLOW_WINDOWS = 4.0, 2
-"""The same for a slow test, which says nothing within a second."""
 STEP = 1e-3
 """Relative step of the derivatives."""
 TRUST = 0.5
@@ -83,7 +81,7 @@ def _best_imitation(marks: Array, columns: Array) -> tuple[float, float, Array]:
 
 
 def _length(case: Case) -> int:
-    return round((SLOW_WINDOW if case.shape == "slow" else WINDOW) * case.rate)
+    return round(WINDOW * case.rate)
 
 
 def _telling_windows(case: Case, truth: Mapping[str, Array]) -> list[int]:
@@ -91,7 +89,7 @@ def _telling_windows(case: Case, truth: Mapping[str, Array]) -> list[int]:
     length = _length(case)
     candidates = list(range(0, len(truth["time"]) - length, length))
     energies = [float(np.sum(_mark(case, truth, first) ** 2)) for first in candidates]
-    order = np.argsort(energies)[::-1][: SLOW_WINDOWS if case.shape == "slow" else WINDOWS]
+    order = np.argsort(energies)[::-1][:WINDOWS]
     return sorted(candidates[i] for i in order)
 
 

@@ -45,11 +45,11 @@ def _piece_at(table, cursor, time):  # type: ignore[no-untyped-def]
 
 def _rates(time, y, rates, automaton):  # type: ignore[no-untyped-def]
     piece = _piece_at(automaton.valve.table, automaton.cursor, time)
-    derivatives(time, y, rates, evaluate(piece, time, automaton.record)[2], automaton.mode, automaton.record)
+    derivatives(time, y, rates, evaluate(piece, time, automaton.records)[2], automaton.mode, automaton.records)
 
 
 def _events(time, y, values, automaton):  # type: ignore[no-untyped-def]
-    events(time, y, values, automaton.mode, automaton.record)
+    events(time, y, values, automaton.mode, automaton.records)
 
 
 _events.direction = [-1, -1, -1, 0, 0]  # type: ignore[attr-defined]
@@ -59,9 +59,9 @@ _events.terminal = [True] * EVENTS  # type: ignore[attr-defined]
 class Automaton:
     """State and mode of the truth; `advance` moves them to a later time."""
 
-    def __init__(self, valve: Valve, record: np.void, state: NDArray[np.float64], time: float = 0.0) -> None:
+    def __init__(self, valve: Valve, records: NDArray[np.void], state: NDArray[np.float64], time: float = 0.0) -> None:
         self.valve = valve
-        self.record = record
+        self.records = records
         self.cursor = np.zeros(1, np.int64)
         self.mode = np.array([float(state[VELOCITY] != 0.0), np.sign(state[VELOCITY]), 0.0, 0.0])
         self.time = time
@@ -78,9 +78,15 @@ class Automaton:
         )
         self._settle()
 
-    def change_record(self, record: np.void) -> None:
+    @property
+    def record(self) -> np.void:
+        """The parameters in force."""
+        record: np.void = self.records[0]
+        return record
+
+    def change_record(self, records: NDArray[np.void]) -> None:
         """Put other parameters in force from now on."""
-        self.record = record
+        self.records = records
         self._settle()
 
     def advance(self, stop: float) -> None:
@@ -108,7 +114,7 @@ class Automaton:
     def valve_state(self) -> tuple[float, float, float, float]:
         """Coil current, spool target and spool position [A], and spool rate [A/s], now."""
         piece = _piece_at(self.valve.table, self.cursor, self.time)
-        state: tuple[float, float, float, float] = evaluate(piece, self.time, self.record)
+        state: tuple[float, float, float, float] = evaluate(piece, self.time, self.records)
         return state
 
     def _settle(self, happened: NDArray[np.int64] | None = None) -> None:
@@ -131,7 +137,7 @@ class Automaton:
             stopped = True
         if stopped:
             y[VELOCITY] = 0.0
-            force, forward, backward = margins(self.time, y, mode, r)
+            force, forward, backward = margins(self.time, y, mode, self.records)
             if -backward < force < forward:
                 mode[MOTION] = 0.0
             else:

@@ -1,8 +1,9 @@
 """The truth's equations of motion, compiled, in one file so that a cached copy is never older than a law it calls.
 
 State: position, velocity, pressure A, pressure B (gauge), loss of supply pressure, rise of return pressure, position as
-a lagging sensor sees it, and four bristles. SI throughout. `p` is the record of record.py, `mode` the automaton's:
-motion 0 rests and 1 slips; direction of slip -1 or 1; contact with a soft stop -1, 0, 1; held by an end -1, 0, 1.
+a lagging sensor sees it, and four bristles. SI throughout. `p` is the record of record.py, `records` an array of that
+one (which a call from the integrator hands over ten times as fast), `mode` the automaton's: motion 0 rests and 1 slips;
+direction of slip -1 or 1; contact with a soft stop -1, 0, 1; held by an end -1, 0, 1.
 """
 
 from __future__ import annotations
@@ -169,8 +170,9 @@ def smooth_force(y, elapsed, rates, mode, p):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def derivatives(time, y, rates, spool, mode, p):  # type: ignore[no-untyped-def]
+def derivatives(time, y, rates, spool, mode, records):  # type: ignore[no-untyped-def]
     """Fill the rates of all states at a time [s] and spool position [A]."""
+    p = records[0]
     rates[:] = 0.0
     x, v = y[POSITION], y[VELOCITY]
     a, b = y[PRESSURE_A], y[PRESSURE_B]
@@ -201,8 +203,9 @@ def derivatives(time, y, rates, spool, mode, p):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def margins(time, y, mode, p):  # type: ignore[no-untyped-def]
+def margins(time, y, mode, records):  # type: ignore[no-untyped-def]
     """Net force at rest and the forces of break-away forward and backward [N]; infinite where a cylinder end holds."""
+    p = records[0]
     force = smooth_force(y, time, np.zeros(STATES), mode, p)
     hydraulic = p.piston_area * y[PRESSURE_A] - p.piston_area_b * y[PRESSURE_B]
     forward = np.inf if mode[END] > 0.0 else dry_friction(0.0, 1.0, hydraulic, p)
@@ -211,17 +214,18 @@ def margins(time, y, mode, p):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def events(time, y, values, mode, p):  # type: ignore[no-untyped-def]
+def events(time, y, values, mode, records):  # type: ignore[no-untyped-def]
     """Fill the five event functions; one that the mode does not have stays at 1.
 
     End of slip or forward break-away, upper end or backward break-away, lower end, upper soft stop, lower soft stop.
     """
+    p = records[0]
     values[:] = 1.0
     x = y[POSITION]
     values[3] = x - p.end_stop_upper
     values[4] = x - p.end_stop_lower
     if mode[MOTION] == 0.0:
-        force, forward, backward = margins(time, y, mode, p)
+        force, forward, backward = margins(time, y, mode, records)
         values[0] = 1.0 if np.isinf(forward) else forward - force
         values[1] = 1.0 if np.isinf(backward) else force + backward
         return

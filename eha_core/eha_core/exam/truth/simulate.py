@@ -82,13 +82,14 @@ def simulate_truth(
     """
     samples = round(duration * rate) + 1
     plan = schedule(plant, effects, windows or {})
-    record = plan[0][1][0]
+    records = plan[0][1]
+    record = records[0]
     command = _commands(voltage, samples, rate)
     valve = Valve(samples)
     delay = float(record["command_delay_delay"])
     if delay > 0.0:
-        valve.command(0.0, delay, 0.0, record)
-    automaton = Automaton(valve, record, _initial_state(record, initial_position))
+        valve.command(0.0, delay, 0.0, records)
+    automaton = Automaton(valve, records, _initial_state(record, initial_position))
     return _run(automaton, plan, command, rate, range(samples), initial_position)
 
 
@@ -109,7 +110,8 @@ def resume_truth(
     rate = 1.0 / (truth["time"][1] - truth["time"][0])
     start = first / rate
     plan = schedule(plant, effects, windows or {})
-    record = [records for change, records in plan if change <= start][-1][0]
+    records = [entry for change, entry in plan if change <= start][-1]
+    record = records[0]
     row = {name: float(truth[name][first]) for name in COLUMNS}
     for name, step in (shift or {}).items():
         row[name] += step
@@ -121,8 +123,8 @@ def resume_truth(
     for k in range(max(0, first - int(np.ceil(delay * rate)) - 1), first):
         begin, end = k / rate + delay, (k + 1) / rate + delay
         if end > start:
-            valve.command(max(begin, start), end, float(truth["voltage"][k]), record)
-    automaton = Automaton(valve, record, _resumed_state(record, row), start)
+            valve.command(max(begin, start), end, float(truth["voltage"][k]), records)
+    automaton = Automaton(valve, records, _resumed_state(record, row), start)
     return _run(automaton, plan, truth["voltage"], rate, range(first, last + 1), row["sensed_position"])
 
 
@@ -148,7 +150,7 @@ def _run(
             integral += error / rate
         else:
             volts = float(command[k])
-        automaton.valve.command(time + delay, (k + 1) / rate + delay, volts, record)
+        automaton.valve.command(time + delay, (k + 1) / rate + delay, volts, automaton.records)
         rows[place] = _row(automaton, time, volts, sensed, measured)
     return dict(zip(COLUMNS, rows.T.copy(), strict=True))
 
@@ -196,7 +198,7 @@ def _advance(automaton: Automaton, plan: Sequence[tuple[float, NDArray[np.void]]
     for change, records in plan[1:]:
         if automaton.time < change <= time:
             automaton.advance(change)
-            automaton.change_record(records[0])
+            automaton.change_record(records)
     if automaton.time < time:
         automaton.advance(time)
 

@@ -17,8 +17,9 @@ COLUMNS = 7
 
 
 @njit(cache=True)
-def evaluate(row, time, p):  # type: ignore[no-untyped-def]
+def evaluate(row, time, records):  # type: ignore[no-untyped-def]
     """Current [A], target [A], spool position [A] and spool rate [A/s] on one piece at an absolute time [s]."""
+    p = records[0]
     rate = p.coil_resistance / p.coil_inductance
     frequency = p.valve_natural_frequency
     decay = p.valve_damping_ratio * frequency
@@ -50,11 +51,12 @@ def _piece(row, start, current, target, spool, spool_rate, p):  # type: ignore[n
 
 
 @njit(cache=True)
-def extend(table, count, start, stop, voltage, state, p):  # type: ignore[no-untyped-def]
+def extend(table, count, start, stop, voltage, state, records):  # type: ignore[no-untyped-def]
     """Append the pieces of one constant voltage over [start, stop] and advance `state` to the stop.
 
     `state` is (current, target, spool, spool rate). Returns the new number of rows; rows past it start at infinity.
     """
+    p = records[0]
     rate = p.coil_resistance / p.coil_inductance
     half_width = p.spool_hysteresis_half_width
     limit = p.saturation_current
@@ -79,7 +81,7 @@ def extend(table, count, start, stop, voltage, state, p):  # type: ignore[no-unt
         row = table[count]
         _piece(row, start, currents, targets, state[2], state[3], p)
         count += 1
-        state[0], _, state[2], state[3] = evaluate(row, end, p)
+        state[0], _, state[2], state[3] = evaluate(row, end, records)
         state[0] = min(max(state[0], -limit), limit)
         state[1] = min(max(target, state[0] - half_width), state[0] + half_width)
         start = end
@@ -98,8 +100,8 @@ class Valve:
         """Begin from a state other than rest, before the first command."""
         self._state[:] = current, target, spool, spool_rate
 
-    def command(self, start: float, stop: float, voltage: float, record: np.void) -> None:
-        """Hold `voltage` [V] on the coil from `start` to `stop` [s]; the record in force is taken at the call."""
+    def command(self, start: float, stop: float, voltage: float, records: NDArray[np.void]) -> None:
+        """Hold `voltage` [V] on the coil from `start` to `stop` [s]; the records in force are taken at the call."""
         if self._count + 8 > len(self.table):
             self.table = np.concatenate([self.table, np.full_like(self.table, np.inf)])
-        self._count = extend(self.table, self._count, start, stop, voltage, self._state, record)
+        self._count = extend(self.table, self._count, start, stop, voltage, self._state, records)
