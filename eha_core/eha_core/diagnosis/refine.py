@@ -34,6 +34,9 @@ NOT_EXPLAINED = 1.03
 CROSSED = 3
 """How many of the leaders behind the best are fitted once more from where it stands."""
 
+INSTANT_REACHES = (2.4, 1.2, 0.6, 0.3)
+"""s; how far off an instant may be found to be before the rest is fitted to it again."""
+
 INSTANT_SHIFTS = (-0.12, 0.12, -0.04, 0.04, -0.01, 0.01, -0.004, 0.004, -0.0015, 0.0015)
 """s; how far beside its optimum an instant is tried once more."""
 
@@ -60,8 +63,18 @@ def with_dynamics_as_given(problem: Problem, calibrated: Fit) -> Fit | None:
         return None
     rest = [one for one in calibrated.free if one.name not in late]
     held = fit(problem, {**calibrated.values, **late}, rest, calibrated.states, iterations=5)
-    q = np.array([one.coordinate(held.values[one.name]) for one in calibrated.free])
-    return replace(held, free=calibrated.free, q=q)
+    return _set_free(held, calibrated.free)
+
+
+def as_given(problem: Problem, calibrated: Fit) -> Fit:
+    """The calibration with every nominal parameter back at its nominal value, only the windows' starts fitted again."""
+    given = {one.name: one.reference for one in calibrated.free if one.name in NOMINAL_NAMES}
+    return _set_free(fit(problem, {**calibrated.values, **given}, (), calibrated.states, iterations=5), calibrated.free)
+
+
+def _set_free(held: Fit, free: tuple[Free, ...]) -> Fit:
+    """A fit as a point at which all of `free` may move again."""
+    return replace(held, free=free, q=np.array([one.coordinate(held.values[one.name]) for one in free]))
 
 
 def keep_better(found: Found, effects: tuple[Effect, ...], result: Fit) -> None:
@@ -94,13 +107,20 @@ def attempts(
 ) -> tuple[Attempt, ...]:
     """What to try on top of a fit: its own most promising effects, then those of the fit with the dynamics as given.
 
-    What promises too little is left out; where the dynamics would have to bend back first, a promise says less.
+    What promises too little is left out; where the dynamics would have to bend back first, a promise says less. A fit
+    that is far off has bent its parameters, and what is missing shows against the nominal ones first.
     """
-    chosen = [attempt_on(base, promise) for promise in one_each(promises, most) if promise.gain > least]
+    leading = one_each(promises, most)
+    if base.data > FAR_OFF * base.count:
+        straight = one_each(screen(problem, as_given(problem, base), beginnings), most)
+        leading = one_each((*straight, *leading), 2 * most)
+    chosen = [attempt_on(base, promise) for promise in leading if promise.gain > least]
     unbent = with_dynamics_as_given(problem, base)
     if unbent is None:
         return tuple(chosen)
-    again = one_each(screen(problem, unbent, beginnings), WITH_DYNAMICS_AS_GIVEN)
+    # what the dynamics could imitate shows only while they are held
+    held = _set_free(unbent, tuple(one for one in base.free if one.name not in LATE))
+    again = one_each(screen(problem, held, beginnings), WITH_DYNAMICS_AS_GIVEN)
     known = {one.promise.start.effect.id for one in chosen if one.afresh}
     afresh = [Attempt(unbent, one, True) for one in again if one.start.effect.id not in known]
     return (*chosen, *(one for one in afresh if one.promise.gain > UNBENT_SHARE * least))
@@ -151,7 +171,7 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
             again = fit(problem, unbent.values, result.free, unbent.states, iterations=10)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
-        result = _other_instants(exact, result)
+        result = _other_instants(problem, exact, result)
         best = min(best, result.objective)
         settled[place] = (effects, result)
     return settled
@@ -184,17 +204,38 @@ def cross(problem: Problem, found: Found) -> Found:
     return crossed
 
 
-def _other_instants(exact: Problem, result: Fit) -> Fit:
+def _other_instants(problem: Problem, exact: Problem, result: Fit) -> Fit:
     """An instant that a fit moves can rest beside the right one, by far or by a little: try its surroundings."""
     for one in result.free:
         if one.resolution == 0.0:
             continue
+        if result.data > NOT_EXPLAINED * result.count:
+            result = _far_instant(problem, exact, result, one)
         for shift in INSTANT_SHIFTS:
             moved = {**result.values, one.name: result.values[one.name] + shift}
-            again = fit(exact, moved, result.free, result.states, iterations=6, give_up_above=result.objective)
+            again = fit(problem, moved, result.free, result.states, iterations=6, give_up_above=result.objective)
             if again.objective < result.objective:
-                result = again
+                result = fit(exact, again.values, again.free, again.states, iterations=6)
     return result
+
+
+def _far_instant(problem: Problem, exact: Problem, result: Fit, one: Free) -> Fit:
+    """The instant looked for far and wide with all else as it stands: between a wrong one and the right one the windows
+    alone are wrong."""
+    best, at = result.objective, result.values[one.name]
+    there = at
+    for reach in INSTANT_REACHES:
+        for instant in (there - reach, there + reach):
+            moved = {**result.values, one.name: min(max(instant, one.lower), one.upper)}
+            again = fit(problem, moved, (), result.states, iterations=3)
+            if again.objective < best:
+                best, at = again.objective, moved[one.name]
+        there = at
+    if best == result.objective:
+        return result
+    moved = {**result.values, one.name: at}
+    found = fit(exact, moved, result.free, result.states, iterations=12)
+    return found if found.objective < result.objective else result
 
 
 def back_fit(problem: Problem, calibrated: Fit, others: Sequence[Fit]) -> Fit:

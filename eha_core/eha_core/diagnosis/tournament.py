@@ -14,7 +14,6 @@ from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.passing import passing_effects
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.refine import (
-    FAR_OFF,
     Found,
     Progress,
     attempts,
@@ -28,9 +27,7 @@ from eha_core.diagnosis.screen import Promise, screen_spells
 from eha_core.effects import Effect
 
 REFINED = 8
-REFINED_FAR_OFF = 12
-"""How many hypotheses are refitted in full after screening; more where the calibrated model is too far off to screen
-well."""
+"""How many hypotheses are refitted in full after a screening."""
 
 ENOUGH = 20.0
 """An effect is named only if its score exceeds this: far beyond what the best of many hypotheses gains by chance."""
@@ -39,7 +36,10 @@ TIE = 10.0
 """Rivals within this of the best score are not told apart."""
 
 HARDLY = 0.1
-"""Once a hypothesis explains all but noise, one that promises less than this share of what that gained is not tried."""
+"""Once a hypothesis explains all but noise, or but OVER of what there was, one that promises less than this share of what
+that gained is not tried."""
+
+OVER = 0.05
 
 ADEQUATE = 1.05
 DEAR = 0.03
@@ -88,13 +88,12 @@ def compete(
     screened = screen_spells(problem, calibrated, beginnings)
     promises = tuple(one for one in screened if one.windows is None)
     passing = passing_effects(problem, calibrated, beginnings, screened, ENOUGH, progress)
-    far_off = calibrated.data > FAR_OFF * calibrated.count
     found: Found = []
     best = min([calibrated.objective, *(result.objective for _, result in passing)])
-    most = REFINED_FAR_OFF if far_off else REFINED
-    for attempt in attempts(problem, calibrated, beginnings, promises, most, ENOUGH):
+    for attempt in attempts(problem, calibrated, beginnings, promises, REFINED, ENOUGH):
         effect = attempt.promise.start.effect
-        if best < ADEQUATE * problem.count() and attempt.promise.gain < HARDLY * (calibrated.objective - best):
+        enough = max(ADEQUATE * problem.count(), problem.count() + OVER * (calibrated.objective - problem.count()))
+        if best < enough and attempt.promise.gain < HARDLY * (calibrated.objective - best):
             continue
         progress(f"refitting with {effect.id}")
         result = try_effect(problem, attempt, best)

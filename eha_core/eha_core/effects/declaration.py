@@ -24,8 +24,9 @@ class Effect:
     `memory` names what each of the effect's state slots starts from (one of MEMORY_STARTS). `order` ranks effects of
     one site where their sequence matters physically; equal ranks go by id. `needs` lists measured columns without which
     no recording can show the effect. Effects of one `kind` are forms of one law: never two of them are named together.
-    `named` is False for a curve that stands for a law nobody has named. `id` is the file's name, filled in on
-    discovery.
+    `approximate` says that the literature writes the law in other ways too: where the name is right, the form can still
+    leave something over. `named` is False for a curve that stands for a law nobody has named. `id` is the file's name,
+    filled in on discovery.
     """
 
     site: str
@@ -36,6 +37,7 @@ class Effect:
     order: int = 0
     needs: tuple[str, ...] = ()
     kind: str = ""
+    approximate: bool = False
     named: bool = True
     id: str = ""
 

@@ -22,6 +22,7 @@ LEAST_FORCE = 1e-6
 EFFECT = Effect(
     site="force",
     kind="dry friction",
+    approximate=True,
     statement="the seals cling before they slide: {force:.4g} N of friction ({static_force:.4g} N to break away) "
     "behind a spring of {stiffness:.3g} N/m",
     equation="F_f = stiffness z + damping z', z' = x_p' - stiffness |x_p'| z / g(x_p')",

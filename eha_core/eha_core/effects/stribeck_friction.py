@@ -18,6 +18,7 @@ from eha_core.parameter import Parameter
 EFFECT = Effect(
     site="force",
     kind="dry friction",
+    approximate=True,
     statement="the seals rub and stick: {static_force:.4g} N to break away, {force:.4g} N in motion past "
     "{stribeck_velocity:.3g} m/s",
     equation="M_p x_p'' = ... - (force + (static_force - force) exp(-(x_p' / stribeck_velocity)^2)) sign(x_p')",

@@ -18,6 +18,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="orifice",
+    approximate=True,
     statement="the valve's lands are worn: about null each passes {conductance:.3g} m^3/(s Pa), fading within "
     "{width:.3g} A",
     equation="Q_port += conductance exp(-|x_v| / width) (P_s + P_r - 2 P_port)",
