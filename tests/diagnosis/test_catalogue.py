@@ -7,9 +7,9 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates, starts
 from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.refine import attempt_on, settle, try_effect
-from eha_core.diagnosis.screen import one_each, screen
-from eha_core.diagnosis.tournament import REFINED_FAR_OFF
+from eha_core.diagnosis.refine import attempts, settle, try_effect
+from eha_core.diagnosis.screen import screen
+from eha_core.diagnosis.tournament import ENOUGH, REFINED
 from eha_core.effects import effects
 from eha_core.parameters import nominal_values
 
@@ -51,10 +51,11 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     calibration = calibrate(observation, nominal, STEPS.get(effect.id, 2e-4))
     facts = gather(observation, calibration.shooting, calibration.fitted)
     tried = [start for one in candidates(observation) for start in starts(one, facts)]
-    leading = one_each(screen(calibration.problem, calibration.fitted, tried), REFINED_FAR_OFF)
-    promise = next((one for one in leading if one.start.effect.id == effect.id), None)
-    assert promise is not None, [one.start.effect.id for one in leading]
-    first = try_effect(calibration.problem, attempt_on(calibration.fitted, promise), float("inf"))
+    promises = screen(calibration.problem, calibration.fitted, tried)
+    leading = attempts(calibration.problem, calibration.fitted, tried, promises, REFINED, ENOUGH)
+    attempt = next((one for one in leading if one.promise.start.effect.id == effect.id), None)
+    assert attempt is not None, [one.promise.start.effect.id for one in leading]
+    first = try_effect(calibration.problem, attempt, float("inf"))
     ((_, result),) = settle(calibration.problem, [((effect,), first)])
     assert result.data / result.count < 1.1
     assert calibration.fitted.objective - result.objective > 50.0

@@ -1,4 +1,4 @@
-"""An effect that acts for a while is named with when it acts; one that always acts is not given a span."""
+"""An effect that acts for a while is named with when it acts."""
 
 import numpy as np
 import pytest
@@ -33,10 +33,3 @@ def test_friction_that_acts_for_a_while_is_named_with_its_span() -> None:
         assert fit.rmse_after < 1.1 * fit.noise
     # one of the windows that judge the model lies where the friction acts
     assert result.held_out["position"].rmse_before > 1.5 * result.held_out["position"].rmse_after
-
-
-def test_friction_that_always_acts_has_no_span() -> None:
-    result = diagnose(recorded({"coulomb_friction.force": 200.0}), nominal_values())
-    assert [effect.id for effect in result.effects] == ["coulomb_friction"]
-    assert "only" not in result.effects[0].statement
-    assert "effects_from" not in result.fitted_values

@@ -42,6 +42,8 @@ def test_friction_behind_wrong_parameters_is_named_located_and_measured():
     force = result.effects[0].parameters["force"]
     assert abs(force.value - 180.0) < max(4.0 * force.std, 1.0)
     assert result.location[0].site == "force"
+    assert "only" not in result.effects[0].statement  # it acts always, and is given no span
+    assert "effects_from" not in result.fitted_values
     for fit in result.held_out.values():
         assert fit.rmse_after < 1.1 * fit.noise
         assert fit.rmse_calibrated > 1.5 * fit.rmse_after
@@ -106,6 +108,13 @@ def test_two_effects_at_once_are_both_named(tmp_path, capsys):
     assert fitted["valve_deadband.half_width"] == pytest.approx(2e-4, rel=0.02)
     assert (tmp_path / "report.html").stat().st_size > 100_000
     assert (tmp_path / "comparison.mcap").exists()
+
+
+def test_a_second_effect_is_named_that_explains_hardly_any_of_what_the_first_does():
+    result = diagnosed({"constant_load.force": 900.0, "command_delay.delay": 8e-3, "moving_mass": 10.0}, duration=6.0)
+    assert [effect.id for effect in result.effects] == ["command_delay", "constant_load"]
+    assert result.effects[0].parameters["delay"].value == pytest.approx(8e-3, rel=0.03)
+    assert result.effects[1].parameters["force"].value == pytest.approx(900.0, rel=0.01)
 
 
 def test_a_damaged_recording_is_diagnosed_as_far_as_it_goes(tmp_path, capsys):

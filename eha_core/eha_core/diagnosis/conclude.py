@@ -217,13 +217,12 @@ def _changed_values(final: Fit) -> dict[str, float]:
 
 
 def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
-    shooting = evidence.calibration.shooting
+    shooting, values = evidence.calibration.shooting, decision.winner.fit.values
     noises = {name: one.noise for name, one in zip(shooting.names, shooting.samplings, strict=True)}
-    voltage = shooting.inputs[0]
-    level = float(np.std(voltage)) or 0.01
-    limit = max(float(np.max(np.abs(voltage))), 3.0 * level)
+    limit = values["saturation_current"] * values["coil_resistance"]
+    used = float(np.std(shooting.inputs[0])) if evidence.observation.drive == "voltage" else 0.0
     rivals = [(decision.winner.ids, decision.winner.fit), *((entry.ids, entry.fit) for entry, _ in decision.rivals)]
-    return propose(rivals, noises, level, limit)
+    return propose(rivals, noises, used or 0.1 * limit, limit)
 
 
 def _pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pictures:

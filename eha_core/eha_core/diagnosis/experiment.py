@@ -20,6 +20,16 @@ ROWS_EVERY = 5
 STROKE_SHARE = 0.85
 """Of the stroke, that a proposed test may use."""
 
+PRESSURE_SHARE = 1.2
+"""Of the supply pressure, that a chamber may reach in it; and none may fall to a vacuum."""
+
+FAINTEST = 1e-4
+"""V; below this there is no test."""
+
+LEVELS = 5
+GENTLEST = 0.25
+"""How many amplitudes are tried, from this share of the voltage used so far up to the valve's saturation."""
+
 TELLING = 50.0
 """A test is worth proposing when it separates the rivals by this much chi^2."""
 
@@ -40,10 +50,9 @@ class Trial:
         }
 
 
-def trials(level: float) -> Iterator[Trial]:
-    """Tests about a voltage that the recording has shown to be usable [V], gentle to strong, slow to fast."""
-    for factor in (0.25, 1.0, 2.5):
-        amplitude = factor * level
+def trials(level: float, limit: float) -> Iterator[Trial]:
+    """Tests from a gentle share of the voltage used so far up to the limit [V], slow to fast."""
+    for amplitude in np.geomspace(min(GENTLEST * level, limit), limit, LEVELS).tolist():
         for frequency in (0.3, 1.0, 3.0, 8.0):
             yield Trial("sine", {"amplitude": amplitude, "frequency": frequency})
         yield Trial(
@@ -58,21 +67,20 @@ def trials(level: float) -> Iterator[Trial]:
 def propose(
     rivals: Sequence[tuple[tuple[str, ...], Fit]], noises: Mapping[str, float], level: float, voltage_limit: float
 ) -> Experiment:
-    """The trial that separates the first two rivals most, inside the rig's stroke and pressure and the voltage used."""
+    """The trial that separates the first two rivals most, inside the rig's stroke, its pressures and its voltage.
+
+    `noises` are the channels' [their unit], `level` is the voltage used so far and `voltage_limit` the largest [V].
+    """
     (first_ids, first), (second_ids, second) = rivals[0], rivals[1]
-    best, best_separation = None, -1.0
-    for trial in trials(level):
-        if abs(float(trial.parameters["amplitude"])) > voltage_limit:
-            continue
-        separation = _separation(trial, first, second, noises)
-        if separation is not None and separation > best_separation:
-            best, best_separation = trial, separation
+    best, best_separation = Trial("sine", {"amplitude": 0.0, "frequency": 1.0}), -1.0
+    while best_separation < 0.0 and voltage_limit > FAINTEST:
+        for trial in trials(level, voltage_limit):
+            separation = _separation(trial, first, second, noises)
+            if separation is not None and separation > best_separation:
+                best, best_separation = trial, separation
+        voltage_limit = min(GENTLEST * level, voltage_limit)  # where the rig bears none of them, fainter ones
+        level = GENTLEST * voltage_limit
     separates = tuple(dict.fromkeys([*first_ids, *second_ids]))
-    if best is None:
-        best = Trial(
-            "chirp", {"amplitude": 0.1 * level, "start_frequency": 0.2, "end_frequency": 12.0, "duration": DURATION}
-        )
-        best_separation = 0.0
     how = ", ".join(f"{name} {value:.3g}" if isinstance(value, float) else f"{name} {value}"
                     for name, value in best.parameters.items())  # fmt: skip
     told = "should tell them apart" if best_separation > TELLING else "tells them apart best, though hardly"
@@ -91,8 +99,7 @@ def _separation(trial: Trial, first: Fit, second: Fit, noises: Mapping[str, floa
     except Exception as error:
         raise RuntimeError(f"trial {trial}") from error
     one = _respond(first.values, voltage)
-    stroke = first.values["actuator_displacement"]
-    if one is None or np.max(np.abs(one[:, COLUMNS.index("position")])) > STROKE_SHARE * stroke:
+    if one is None or not _bearable(one, first.values):
         return None
     two = _respond(second.values, voltage)
     if two is None:
@@ -111,6 +118,15 @@ def _separation(trial: Trial, first: Fit, second: Fit, noises: Mapping[str, floa
         imitated, *_ = np.linalg.lstsq(matrix, difference, rcond=1e-8)
         difference = difference - matrix @ imitated
     return float(difference @ difference)
+
+
+def _bearable(rows: Array, values: Mapping[str, float]) -> bool:
+    """Whether a response stays inside the stroke, and its pressures between a vacuum and what the rig bears."""
+    position = rows[:, COLUMNS.index("position")]
+    pressures = rows[:, [COLUMNS.index("pressure_a"), COLUMNS.index("pressure_b")]]
+    inside = bool(np.max(np.abs(position)) < STROKE_SHARE * values["actuator_displacement"])
+    most = PRESSURE_SHARE * values["supply_pressure"]
+    return inside and bool(np.min(pressures) > -values["atmospheric_pressure"] and np.max(pressures) < most)
 
 
 def _nudged(values: Mapping[str, float], free: Free) -> dict[str, float]:

@@ -36,8 +36,8 @@ TIE = 10.0
 """Rivals within this of the best score are not told apart."""
 
 HARDLY = 0.1
-"""Once a hypothesis explains all but noise, or but OVER of what there was, one that promises less than this share of what
-that gained is not tried."""
+"""Once a hypothesis explains all but noise, or but OVER of what there was, one that promises less than this share of
+what that gained is not tried."""
 
 OVER = 0.05
 

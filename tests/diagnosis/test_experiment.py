@@ -1,0 +1,72 @@
+"""The test that is proposed to tell two explanations apart does so, and is one that the rig can bear."""
+
+import re
+
+import numpy as np
+import pytest
+
+from eha_core.diagnosis.experiment import DURATION, propose
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.freedom import nominal_freedom
+from eha_core.parameters import nominal_values
+from eha_core.plant import Plant
+from eha_core.signals import make_signal
+
+NOISE = {"position": 1e-5}
+LIMIT = 2.0
+SAMPLE = 1e-3
+
+
+def explanation(changes, free=()):
+    """A fit as the tournament hands it over, of a plant with these parameters."""
+    values = {**nominal_values(), **changes}
+    n = len(free)
+    q = np.array([one.coordinate(values[one.name]) for one in free])
+    return Fit(free, q, values, np.zeros((1, 4)), 0.0, 0.0, 1, (), np.eye(n), True, 0)
+
+
+def voltage_of(reference):
+    prefix = reference["signal"] + "."
+    parameters = {name.removeprefix(prefix): value for name, value in reference.items() if name.startswith(prefix)}
+    return make_signal(reference["signal"], parameters).value(np.arange(round(DURATION / 2e-4)) * 2e-4)
+
+
+def driven(changes, reference):
+    return Plant({**nominal_values(), **changes}, 2e-4).run(voltage_of(reference), round(SAMPLE / 2e-4))
+
+
+def deviations(experiment):
+    return float(re.search(r"expected: (\d+) deviations", experiment.statement).group(1))
+
+
+LOAD, ASYMMETRY = {"constant_load.force": 200.0}, {"flow_gain_asymmetry.ratio": -0.015}
+
+
+def test_the_outcome_differs_by_what_is_promised():
+    rivals = [(("constant_load",), explanation(LOAD)), (("flow_gain_asymmetry",), explanation(ASYMMETRY))]
+    experiment = propose(rivals, NOISE, 0.1, LIMIT)
+    assert experiment.separates == ("constant_load", "flow_gain_asymmetry")
+    assert experiment.reference["mode"] == "voltage"
+    one, two = (driven(changes, experiment.reference).measured_position for changes in (LOAD, ASYMMETRY))
+    apart = (two - two.mean() - one + one.mean()) / NOISE["position"]
+    assert np.sqrt(np.sum(apart**2)) == pytest.approx(deviations(experiment), rel=0.01)
+    assert "should tell them apart" in experiment.statement
+
+
+def test_what_the_nominal_parameters_could_imitate_does_not_count():
+    known = [(("constant_load",), explanation(LOAD)), (("flow_gain_asymmetry",), explanation(ASYMMETRY))]
+    free = nominal_freedom(nominal_values(), "voltage", 0.02)
+    fitted = [(known[0][0], explanation(LOAD, free)), known[1]]
+    assert deviations(propose(fitted, NOISE, 0.1, LIMIT)) < 0.9 * deviations(propose(known, NOISE, 0.1, LIMIT))
+
+
+def test_the_rig_can_bear_the_test():
+    rig = {"actuator_displacement": 0.004, "supply_pressure": 7e6}
+    rivals = [(("constant_load",), explanation(LOAD | rig)), (("flow_gain_asymmetry",), explanation(ASYMMETRY | rig))]
+    experiment = propose(rivals, NOISE, 0.5, LIMIT)
+    assert abs(experiment.reference[f"{experiment.reference['signal']}.amplitude"]) <= LIMIT
+    rows = driven(LOAD | rig, experiment.reference)
+    assert np.max(np.abs(rows.position)) < 0.85 * 0.004
+    for pressure in (rows.pressure_a, rows.pressure_b):
+        assert pressure.min() > -101325.0
+        assert pressure.max() < 1.2 * 7e6
