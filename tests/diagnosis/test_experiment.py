@@ -60,6 +60,16 @@ def test_what_the_nominal_parameters_could_imitate_does_not_count():
     assert deviations(propose(fitted, NOISE, 0.1, LIMIT)) < 0.9 * deviations(propose(known, NOISE, 0.1, LIMIT))
 
 
+def test_pressures_are_asked_for_where_no_voltage_tells():
+    free = nominal_freedom(nominal_values(), "voltage", 0.02)
+    load, area = {"constant_load.force": 5.0}, {"unequal_piston_area.ratio": 0.9993}
+    rivals = [(("constant_load",), explanation(load, free)), (("unequal_piston_area",), explanation(area))]
+    experiment = propose(rivals, NOISE, 0.1, LIMIT)
+    assert experiment.record == ("pressure_a", "pressure_b")
+    assert "pressures recorded too" in experiment.statement
+    assert propose(rivals, {**NOISE, "pressure_a": 1e4, "pressure_b": 1e4}, 0.1, LIMIT).record == ()
+
+
 def test_the_rig_can_bear_the_test():
     rig = {"actuator_displacement": 0.004, "supply_pressure": 7e6}
     rivals = [(("constant_load",), explanation(LOAD | rig)), (("flow_gain_asymmetry",), explanation(ASYMMETRY | rig))]

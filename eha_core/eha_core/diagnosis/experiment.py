@@ -26,12 +26,18 @@ PRESSURE_SHARE = 1.2
 FAINTEST = 1e-4
 """V; below this there is no test."""
 
+MOST_RIVALS = 3
+"""How many rivals of the winner a test is made for."""
+
 LEVELS = 5
 GENTLEST = 0.25
 """How many amplitudes are tried, from this share of the voltage used so far up to the valve's saturation."""
 
 TELLING = 50.0
 """A test is worth proposing when it separates the rivals by this much chi^2."""
+
+PRESSURES = {"pressure_a": 1e4, "pressure_b": 1e4}
+"""Channels that tell more where a voltage alone does not, and the noise [Pa] that is assumed of their sensors."""
 
 
 @dataclass(frozen=True)
@@ -67,57 +73,70 @@ def trials(level: float, limit: float) -> Iterator[Trial]:
 def propose(
     rivals: Sequence[tuple[tuple[str, ...], Fit]], noises: Mapping[str, float], level: float, voltage_limit: float
 ) -> Experiment:
-    """The trial that separates the first two rivals most, inside the rig's stroke, its pressures and its voltage.
+    """The trial that separates the first rival most from all others, inside the rig's stroke, pressures and voltage.
 
-    `noises` are the channels' [their unit], `level` is the voltage used so far and `voltage_limit` the largest [V].
+    Where no voltage separates them in the channels there are, the pressures are asked for too. `noises` are the
+    channels' [their unit], `level` is the voltage used so far and `voltage_limit` the largest [V].
     """
-    (first_ids, first), (second_ids, second) = rivals[0], rivals[1]
+    first, others = rivals[0][1], [rival for _, rival in rivals[1 : MOST_RIVALS + 1]]
+    record: tuple[str, ...] = ()
+    best, separation = _best_trial(first, others, noises, level, voltage_limit)
+    if separation < TELLING and not set(PRESSURES) <= set(noises):
+        record = tuple(name for name in PRESSURES if name not in noises)
+        best, separation = _best_trial(first, others, {**PRESSURES, **noises}, level, voltage_limit)
+    how = ", ".join(f"{name} {value:.3g}" if isinstance(value, float) else f"{name} {value}"
+                    for name, value in best.parameters.items())  # fmt: skip
+    names = [ids for ids, _ in rivals[: MOST_RIVALS + 1]]
+    beside = ", with the chambers' pressures recorded too," if record else ""
+    told = "should tell them apart" if separation > TELLING else "tells them apart best, though hardly"
+    statement = (
+        f"{' or '.join(' and '.join(ids) for ids in names)}: a {best.signal} of voltage ({how})"
+        f" for {DURATION:g} s{beside} {told} (expected: {np.sqrt(max(separation, 0.0)):.0f} deviations of noise)"
+    )
+    separates = tuple(dict.fromkeys(name for ids in names for name in ids))
+    return Experiment(statement, separates, best.reference(), record)
+
+
+def _best_trial(
+    first: Fit, others: Sequence[Fit], noises: Mapping[str, float], level: float, voltage_limit: float
+) -> tuple[Trial, float]:
+    """The trial that separates a model most from the nearest of the others, and by how much chi^2."""
     best, best_separation = Trial("sine", {"amplitude": 0.0, "frequency": 1.0}), -1.0
     while best_separation < 0.0 and voltage_limit > FAINTEST:
         for trial in trials(level, voltage_limit):
-            separation = _separation(trial, first, second, noises)
+            separation = _separation(trial, first, others, noises)
             if separation is not None and separation > best_separation:
                 best, best_separation = trial, separation
         voltage_limit = min(GENTLEST * level, voltage_limit)  # where the rig bears none of them, fainter ones
         level = GENTLEST * voltage_limit
-    separates = tuple(dict.fromkeys([*first_ids, *second_ids]))
-    how = ", ".join(f"{name} {value:.3g}" if isinstance(value, float) else f"{name} {value}"
-                    for name, value in best.parameters.items())  # fmt: skip
-    told = "should tell them apart" if best_separation > TELLING else "tells them apart best, though hardly"
-    statement = (
-        f"{' and '.join(first_ids)} or {' and '.join(second_ids)}: a {best.signal} of voltage ({how})"
-        f" for {DURATION:g} s {told} (expected: {np.sqrt(max(best_separation, 0.0)):.0f} deviations of noise)"
-    )
-    return Experiment(statement, separates, best.reference())
+    return best, best_separation
 
 
-def _separation(trial: Trial, first: Fit, second: Fit, noises: Mapping[str, float]) -> float | None:
-    """Chi^2 between the two models' responses that the first one's parameters cannot imitate; None past a limit."""
+def _separation(trial: Trial, first: Fit, others: Sequence[Fit], noises: Mapping[str, float]) -> float | None:
+    """Least chi^2 between the first model's response and another's that the first one's parameters cannot imitate; None
+    past a limit."""
     times = np.arange(round(DURATION / STEP)) * STEP
-    try:
-        voltage = np.asarray(make_signal(trial.signal, dict(trial.parameters)).value(times))
-    except Exception as error:
-        raise RuntimeError(f"trial {trial}") from error
-    one = _respond(first.values, voltage)
-    if one is None or not _bearable(one, first.values):
+    voltage = np.asarray(make_signal(trial.signal, dict(trial.parameters)).value(times))
+    rows = _respond(first.values, voltage)
+    if rows is None or not _bearable(rows, first.values):
         return None
-    two = _respond(second.values, voltage)
-    if two is None:
+    responses = [_respond(other.values, voltage) for other in others]
+    base = _scaled(rows, noises)
+    differences = np.stack([_scaled(one, noises) - base for one in responses if one is not None], axis=1)
+    if differences.shape[1] < len(others):
         return None
-    base, other = _scaled(one, noises), _scaled(two, noises)
     columns = []
     for free in first.free:
         moved = _respond(_nudged(first.values, free), voltage)
         if moved is not None:
             columns.append(_scaled(moved, noises) - base)
-    difference = other - base
     if columns:
         matrix = np.stack(columns, axis=1)
         norms = np.linalg.norm(matrix, axis=0)
         matrix = matrix[:, norms > 1e-9] / norms[norms > 1e-9]
-        imitated, *_ = np.linalg.lstsq(matrix, difference, rcond=1e-8)
-        difference = difference - matrix @ imitated
-    return float(difference @ difference)
+        imitated, *_ = np.linalg.lstsq(matrix, differences, rcond=1e-8)
+        differences = differences - matrix @ imitated
+    return float(np.min(np.sum(differences**2, axis=0)))
 
 
 def _bearable(rows: Array, values: Mapping[str, float]) -> bool:

@@ -91,11 +91,15 @@ class ChannelFit:
 
 @dataclass(frozen=True)
 class Experiment:
-    """A test for the rig whose outcome would tell the rivals apart, as parameters of the reference generator."""
+    """A test for the rig whose outcome would tell the rivals apart, as parameters of the reference generator.
+
+    `record`: channels that have to be recorded beside those of the recording, where no voltage alone would tell.
+    """
 
     statement: str
     separates: tuple[str, ...]
     reference: Mapping[str, object]
+    record: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

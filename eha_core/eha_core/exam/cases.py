@@ -23,9 +23,10 @@ HIDDEN = 1.1
 """RMS that a refit may leave of an effect, over the noise: with the noise itself, within 1.5 times the noise."""
 FARTHEST = 0.5
 """Relative change of a nominal parameter beyond which nobody would believe a refit."""
-INDISTINCT = 3.0
-"""Nats that an oracle may gain beyond a rival where the two count as not told apart ..."""
-AIMED_AT = 1.5
+INDISTINCT = 0.2
+"""Nats that an oracle may gain beyond a rival in its windows where the two count as not told apart: over the whole
+recording, whose windows also meet, that is some ten times as much ..."""
+AIMED_AT = 0.1
 """... and those that an effect is made so small as to gain."""
 MAKERS = (
     "case", "cases", "concealed", "drawing", "excitation", "measuring", "oracle", "outside", "plants", "tiers",

@@ -31,11 +31,16 @@ def prescribed_voltage(reference: Mapping[str, Any], time: Array) -> Array:
     return np.asarray(make_signal(signal, parameters).value(time), dtype=float)
 
 
-def second_recording(case: Case, reference: Mapping[str, Any]) -> Arrays:
-    """What the sensors of a case's rig record of the prescribed test."""
-    again = replace(case, seed=case.seed + 1, duration=DURATION, windows={})
+def second_recording(case: Case, prescribed: Mapping[str, Any]) -> Arrays:
+    """What the sensors of a case's rig record of the prescribed test: its channels, and those it is to `record`."""
+    more = [str(name) for name in prescribed.get("record") or ()]
+    unknown = [name for name in more if name not in Case.channels]
+    if unknown:
+        raise EhaError(f"the prescribed test wants {', '.join(unknown)} recorded, which this rig has no sensor for")
+    channels = tuple(name for name in Case.channels if name in (*case.channels, *more))
+    again = replace(case, seed=case.seed + 1, duration=DURATION, windows={}, channels=channels)
     time = np.arange(round(DURATION * case.rate) + 1) / case.rate
-    voltage = prescribed_voltage(reference, time)
+    voltage = prescribed_voltage(prescribed["reference"], time)
     truth = simulate_truth(case.plant, case.effects, voltage, DURATION, case.rate)
     generator = np.random.default_rng([case.seed, 4])
     noise = case.noise * POSITION_NOISE * generator.standard_normal(len(time))

@@ -123,12 +123,12 @@ def _repeat(exam: Exam, tool: str, command: str, workers: Workers, progress: Pro
         prescribed = given.get("next_experiment")
         done = (answers / SECOND / f"{stem}.json").is_file()
         if given.get("verdict") == "ambiguous" and prescribed and not done:
-            calls.append((str(sealed), str(exam.folder), tool, command, prescribed["reference"]))
+            calls.append((str(sealed), str(exam.folder), tool, command, prescribed))
     for count, _ in enumerate(workers.run(repeat_case, calls), 1):
         progress(f"{tool}, second recordings", count, len(calls))
 
 
-def repeat_case(sealed: str, folder: str, tool: str, command: str, reference: Mapping[str, Any]) -> None:
+def repeat_case(sealed: str, folder: str, tool: str, command: str, prescribed: Mapping[str, Any]) -> None:
     """Drive the rig of one case with a prescribed test and have a tool diagnose both recordings together.
 
     A test that the rig cannot run is an answer too: it resolves nothing.
@@ -140,7 +140,7 @@ def repeat_case(sealed: str, folder: str, tool: str, command: str, reference: Ma
     second.parent.mkdir(parents=True, exist_ok=True)
     second.unlink(missing_ok=True)
     try:
-        write_case(case, second_recording(case, reference), second)
+        write_case(case, second_recording(case, prescribed), second)
     except EhaError as error:
         _write(answers / f"{second.stem}.json", json.dumps(asdict(Answer(None, -1, 0.0, str(error)))))
         return
