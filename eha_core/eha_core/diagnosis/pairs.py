@@ -116,9 +116,14 @@ def alone(problem: Problem, paired: Found, singles: Found) -> Found:
 def _worth_two(
     pair: tuple[tuple[Effect, ...], Fit], singles: Found, earning: Callable[[Sequence[Effect]], float]
 ) -> bool:
-    """Whether a pair leaves each of its members alone behind by what a second effect must earn beside it."""
+    """Whether a pair leaves its members alone, and whatever explains most alone, behind by what a second effect must
+    earn beside it."""
     effects, result = pair
-    members = [one for one in singles if len(one[0]) < len(effects) and set(one[0]) <= set(effects)]
-    first, alone = min(members, key=lambda one: one[1].objective)
-    gain = alone.objective - result.objective
-    return gain > max(earning(first), CONVINCING * (alone.data - alone.count))
+    members = [one for one in singles if set(one[0]) <= set(effects)]
+
+    def earned(first: tuple[tuple[Effect, ...], Fit]) -> bool:
+        kept, alone = first
+        gain = alone.objective - result.objective
+        return gain > max(earning(kept), CONVINCING * (alone.data - alone.count))
+
+    return all(earned(min(some, key=lambda one: one[1].objective)) for some in (members, singles))

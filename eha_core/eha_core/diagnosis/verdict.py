@@ -45,6 +45,9 @@ PARTLY = 0.2
 NEARLY_ALL = 0.1
 """Share of what the nominal equations leave over below which a name has explained nearly all of it."""
 
+ITS_FORM = 0.05
+"""Share below which what a name leaves over may be its law's other form, which a curve of the same site follows."""
+
 SMOOTHED = 20
 """Samples a block in which a residual is averaged to see whether it is coherent."""
 
@@ -107,13 +110,15 @@ def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
     """Whether the curve explains so much more than the best named effects that its many knots are paid for.
 
     A curve that stays far above the noise is not the law either, but bends to whatever is there; then names that
-    explain nearly all stand.
+    explain nearly all stand. So do they where the curve only draws the form of the law that they name.
     """
     best = tournament.entries[0] if tournament.entries else tournament.nominal
     variance = max(1.0, recovery.fit.data / recovery.fit.count)
     nominal, curve = tournament.nominal.fit, recovery.fit
-    nearly = best.fit.data - best.fit.count < NEARLY_ALL * (nominal.data - nominal.count)
-    if nearly and best.effects and curve.data > FAR_OFF * curve.count:
+    left = (best.fit.data - best.fit.count) / max(nominal.data - nominal.count, 1.0)
+    if left < NEARLY_ALL and best.effects and curve.data > FAR_OFF * curve.count:
+        return False
+    if left < ITS_FORM and any(one.approximate and one.site == recovery.effect.site for one in best.effects):
         return False
     more = (best.fit.objective - recovery.fit.objective) / variance
     knots = KNOTS - sum(len(effect.parameters) for effect in best.effects)
