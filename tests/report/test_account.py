@@ -39,6 +39,9 @@ def test_rivals_and_the_test_that_separates_them(ambiguous: Diagnosis) -> None:
 
 def test_an_unknown_law_is_told_with_its_expression(unknown: Diagnosis) -> None:
     assert "a law over velocity: 250 tanh(20 v) (R² 0.980)" in account(unknown)
+    assert "bent, it may be" in " ".join(account(unknown).split())
+    simulated = replace(unknown, fitted_values={**unknown.fitted_values, "recovered_force.knot_00": 3.0})
+    assert "bent" not in account(simulated)
 
 
 def test_what_was_not_examined_or_damaged_is_told(position_alone: Diagnosis) -> None:

@@ -151,3 +151,9 @@ class Diagnosis:
     fitted_values: Mapping[str, float]
     pictures: Pictures
     start_stamp: int = 0
+
+    @property
+    def bent(self) -> bool:
+        """Whether the parameters were fitted without a law that is known to be missing, and may imitate it."""
+        simulated = any(name.startswith("recovered_") for name in self.fitted_values)
+        return self.verdict == "unknown_physics" and not simulated

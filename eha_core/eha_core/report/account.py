@@ -40,7 +40,8 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         law = diagnosis.unknown
         expression = f": {law.expression}" if law.expression else ""
         yield "Recovered", f"a law over {law.function_of}{expression} (R² {law.r_squared:.3f})"
-    yield "Parameters", "; ".join(_changed(one) for one in diagnosis.parameters if one.changed)
+    changed = "; ".join(_changed(one) for one in diagnosis.parameters if one.changed)
+    yield "Parameters", f"{changed}: bent, it may be, by what is missing" if changed and diagnosis.bent else changed
     rivals = [f"{' + '.join(one.effects)} (evidence {one.evidence_gap:.1f} less)" for one in diagnosis.alternatives]
     yield "Not told", f"from {', nor from '.join(rivals)}" if rivals else ""
 

@@ -39,6 +39,8 @@ def stage(diagnosis: Diagnosis) -> Stage:
             f"This recording says little about {listed([words(one.name) for one in held])};"
             " these stay near their nominal values."
         )
+    if diagnosis.bent and changed:
+        sentences.append("What is missing may have bent these values to imitate it: do not take them for the rig's.")
     picture = _picture(diagnosis.parameters)
     return Stage(
         "calibrate", "Calibrate", headline, tuple(sentences), (picture,) if picture else (), (_table(diagnosis),)

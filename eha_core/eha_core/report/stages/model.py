@@ -31,7 +31,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
         law = diagnosis.unknown
         told = (
             f"The law was recovered from the data; it explains {law.r_squared:.1%} of the mismatch.",
-            "" if any(one.startswith("recovered_") for one in diagnosis.fitted_values) else WITHOUT,
+            WITHOUT if diagnosis.bent else "",
             "As a formula, it reads:" if law.expression else "No simple formula follows its curve.",
         )
         headline = f"A law over {law.function_of} is missing"
