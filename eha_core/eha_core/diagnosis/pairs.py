@@ -18,7 +18,7 @@ SECOND = 25.0
 """A second effect must gain this in chi^2 ..."""
 
 OF_SAMPLES = {False: 0.001, True: 0.004}
-OF_EXPLAINED = {False: 1e-5, True: 6e-4}
+OF_EXPLAINED = {False: 1e-6, True: 6e-4}
 """... and these shares of the sample count and of what the first explains: what is left by another step of integration,
 and (True) by a law that is right but for its form, its smoothing, or the timing of a break-away ..."""
 

@@ -46,7 +46,9 @@ NEARLY_ALL = 0.1
 """Share of what the nominal equations leave over below which a name has explained nearly all of it."""
 
 ITS_FORM = 0.05
-"""Share below which what a name leaves over may be its law's other form, which a curve of the same site follows."""
+WHATEVER_FORM = 0.005
+"""Shares below which what a name leaves over may be its law's other form: a curve of the same site follows it, or
+whatever curve has knots enough."""
 
 SMOOTHED = 20
 """Samples a block in which a residual is averaged to see whether it is coherent."""
@@ -118,7 +120,8 @@ def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
     left = (best.fit.data - best.fit.count) / max(nominal.data - nominal.count, 1.0)
     if left < NEARLY_ALL and best.effects and curve.data > FAR_OFF * curve.count:
         return False
-    if left < ITS_FORM and any(one.approximate and one.site == recovery.effect.site for one in best.effects):
+    forms = [one for one in best.effects if one.approximate]
+    if left < WHATEVER_FORM and forms or left < ITS_FORM and any(one.site == recovery.effect.site for one in forms):
         return False
     more = (best.fit.objective - recovery.fit.objective) / variance
     knots = KNOTS - sum(len(effect.parameters) for effect in best.effects)

@@ -14,8 +14,8 @@ from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
-TRANSITION_PRESSURE = 1e4
-"""Pa; below about this difference the flow turns laminar, as at the valve's ports."""
+TRANSITION_PRESSURE = 1e3
+"""Pa; below about this difference the flow turns laminar (assumed)."""
 
 EFFECT = Effect(
     site="chamber",
