@@ -47,7 +47,7 @@ def test_the_workers_of_a_dask_scheduler_do_the_same(
     scheduler = subprocess.Popen([*dask, "scheduler", *common, "--host", "127.0.0.1", "--port", "0"], **quiet)
     worker = subprocess.Popen([*dask, "worker", *common, "--nworkers", "1", "--nthreads", "1"], **quiet)
     try:
-        while not file.is_file():
+        while not (file.is_file() and file.read_text()):  # it is made before it is written
             assert scheduler.poll() is None
         address = json.loads(file.read_text())["address"]
         words = ["--each", str(as_modelled), "--out", str(tmp_path / "out"), "--dask", address]

@@ -125,7 +125,7 @@ def test_a_recording_is_made_described_and_played(graph: Graph, tmp_path: Path) 
     end = time.monotonic() + 0.5
     graph.spin_until(lambda: time.monotonic() > end)
     recorder.interrupt()
-    recorder.result()
+    assert recorder.result()[0] == 0
     information = _run(None, "bag", "info", str(bag))[1]
     assert f"Topic: /x | Type: std_msgs/msg/Float64 | Count: {len(sent)} | Serialization Format: cdr" in information
     received: list[float] = []
@@ -144,7 +144,7 @@ def test_what_is_recorded_and_played_can_be_chosen_by_pattern(graph: Graph, tmp_
     assert graph.spin_until(lambda: all(publishers[i].get_subscription_count() == 1 for i in (0, 2)), 15.0)
     assert not graph.spin_until(lambda: any(publishers[i].get_subscription_count() for i in (1, 3)), 1.0)
     recorder.interrupt()
-    recorder.result()
+    assert recorder.result()[0] == 0
     timer.cancel()
     heard: set[str] = set()
     for name in names:

@@ -106,6 +106,60 @@ print("garbage collector runs:", "gc" in threads())
     brief.end()
 
 
+INTERRUPTED = """
+import signal, rclpy
+from std_msgs.msg import Float64
+class Interruption(Exception): pass
+def interrupt(*_):
+    raise Interruption
+rclpy.init()
+node = rclpy.create_node("interrupted")
+publisher = node.create_publisher(Float64, "numbers", 1000)
+subscription = node.create_subscription(Float64, "numbers", print, 1000)
+signal.signal(signal.SIGALRM, interrupt)
+interruptions = taken = 0
+while interruptions < 2000:
+    for _ in range(100):
+        publisher.publish(Float64(data=1.0))
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 3e-4)
+        while True:
+            taken += subscription.take_message() is not None
+    except Interruption:
+        interruptions += 1
+print("took many" if taken > 10000 else f"took only {taken}")
+rclpy.shutdown()
+"""
+
+
+@only_layer  # an exception at any moment is more than ROS 2's own promises to bear
+def test_a_signal_while_samples_are_taken_crashes_nothing(program: Start) -> None:
+    interrupted = program(INTERRUPTED)
+    interrupted.wait_for("took many")
+    assert interrupted.end() == 0
+
+
+HELD_OFF = """
+import signal, rclpy
+from rclpy_dds.wire.interruptions import held_off
+rclpy.init()
+try:
+    with held_off():
+        signal.raise_signal(signal.SIGINT)
+        print("in the block", end=", ")
+    print("not interrupted")
+except KeyboardInterrupt:
+    print("interrupted after it" if not rclpy.ok() else "still running")
+"""
+
+
+@only_layer
+def test_a_signal_while_the_graph_is_read_comes_after_it(program: Start) -> None:
+    reading = program(HELD_OFF)
+    reading.wait_for("in the block, interrupted after it")
+    assert reading.end() == 0
+
+
 @only_layer
 def test_an_idle_node_needs_no_processor(program: Start) -> None:
     source = """

@@ -1,5 +1,7 @@
 """An effect that acts for a while is named with when it acts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made import recorded
@@ -33,3 +35,14 @@ def test_friction_that_acts_for_a_while_is_named_with_its_span() -> None:
         assert fit.rmse_after < 1.1 * fit.noise
     # one of the windows that judge the model lies where the friction acts
     assert result.held_out["position"].rmse_before > 1.5 * result.held_out["position"].rmse_after
+
+
+def test_a_recording_that_ends_while_nodes_go_down_lacks_no_physics() -> None:
+    whole = recorded({})
+    command = whole.channels["voltage_command"]
+    gone = command.time > 9.85  # commands that were recorded but that the rig no longer followed
+    values = np.where(gone, command.values + 0.05, command.values)
+    channels = {**whole.channels, "voltage_command": replace(command, values=values)}
+    result = diagnose(replace(whole, channels=channels), nominal_values())
+    assert result.verdict in {"consistent", "parameters"}
+    assert any(remark.startswith("the last 1 s were set aside") for remark in result.remarks)

@@ -11,7 +11,7 @@ import numpy as np
 from eha_core.diagnosis.fit import Fit, fit, fit_in_stages, with_noise
 from eha_core.diagnosis.freedom import nominal_freedom
 from eha_core.diagnosis.noise import residual_noise
-from eha_core.diagnosis.observation import RESOLVED, Observation
+from eha_core.diagnosis.observation import RESOLVED, SHORTEST, Observation, without_end
 from eha_core.diagnosis.problem import Problem, whole
 from eha_core.diagnosis.shooting import Shooting, cut
 from eha_core.parameters import NOMINAL
@@ -21,6 +21,12 @@ NOTICEABLE = 4.0
 
 RELEVANT = 0.01
 """... and by this share of itself (or, where the nominal value is zero, of the scale on which it is free)."""
+
+NOWHERE_ELSE = 0.8
+AT_ALL = 50.0
+"""Where this share of what the nominal equations leave unexplained, and so much chi^2, sits in the last window, that is
+taken for the recording's end: nodes go down one after the other there, and what is still recorded no longer acts. Nor
+could a law for it be judged on anything that it was not fitted to."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +51,33 @@ def calibrate(observation: Observation, nominal: Mapping[str, float], step_size:
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     as_given = fit(problem, nominal, (), fitted.states, iterations=5)
     return Calibration(shooting, problem, as_given, fitted)
+
+
+def calibrate_but_for_its_end(
+    observation: Observation, nominal: Mapping[str, float], step_size: float
+) -> tuple[Observation, Calibration]:
+    """Calibrate, and once more without the last window where only that departs from the model."""
+    calibration = calibrate(observation, nominal, step_size)
+    share, shooting = _share_of_last_window(calibration), calibration.shooting
+    last = float(shooting.edges[-1] - shooting.edges[-2]) * shooting.step_size
+    if share < NOWHERE_ELSE or observation.duration < SHORTEST + last:
+        return observation, calibration
+    why = f"{share:.0%} of what the nominal equations leave unexplained sits there, as where nodes go down"
+    rest = without_end(observation, last, why)
+    return rest, calibrate(rest, nominal, step_size)
+
+
+def _share_of_last_window(calibration: Calibration) -> float:
+    """Share of what the fit leaves beyond noise that sits in the last window; 0 where that is next to nothing."""
+    shooting = calibration.shooting
+    if shooting.windows < 3:
+        return 0.0
+    before = at_the_end = 0.0
+    for one, residual in zip(shooting.samplings, calibration.fitted.residuals, strict=True):
+        square, last = residual**2, one.window == shooting.windows - 1
+        before += max(0.0, float(np.sum(square[~last] - 1.0)))
+        at_the_end += float(np.sum(square[last] - min(1.0, float(square[~last].mean()))))
+    return at_the_end / (before + at_the_end) if at_the_end > AT_ALL else 0.0
 
 
 def corrected_noise(shooting: Shooting, result: Fit) -> list[float]:

@@ -145,6 +145,23 @@ def reaching(observation: Observation, nominal: Mapping[str, float]) -> tuple[Ob
     return replace(observation, remarks=(*observation.remarks, remark)), enlarged
 
 
+def without_end(observation: Observation, moment: float, why: str) -> Observation:
+    """The recording but for its last `moment` [s], and a remark that says why."""
+    duration = observation.duration - moment
+    remark = f"the last {moment:g} s were set aside: {why}"
+    return replace(
+        observation,
+        inputs=tuple((time[time < duration], values[time < duration]) for time, values in observation.inputs),
+        measured=tuple(
+            replace(one, time=one.time[one.time < duration], values=one.values[one.time < duration])
+            for one in observation.measured
+        ),
+        leakage=tuple(change for change in observation.leakage if change[0] < duration),
+        duration=duration,
+        remarks=(*observation.remarks, remark),
+    )
+
+
 def _choose_drive(
     where: str, channels: Mapping[str, Channel]
 ) -> tuple[str, tuple[tuple[Array, Array], ...], list[str]]:

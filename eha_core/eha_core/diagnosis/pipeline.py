@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.balance import balances, least
-from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.calibrate import calibrate_but_for_its_end
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.facts import gather
@@ -34,7 +34,7 @@ def examine(recording: Recording, nominal: Mapping[str, float], progress: Progre
     progress("reading and aligning")
     observation, nominal = reaching(observe(recording), nominal)
     progress("calibrating the nominal equations")
-    calibration = calibrate(observation, nominal, SEARCH_STEP)
+    observation, calibration = calibrate_but_for_its_end(observation, nominal, SEARCH_STEP)
     facts = gather(observation, calibration.shooting, calibration.fitted)
     models = (calibration.fitted, calibration.nominal)
     alternatives = tuple(balances(observation, calibration.shooting, model) for model in models)

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
-from cyclonedds._clayer import ddspy_take, ddspy_topic_create, ddspy_write
+from cyclonedds._clayer import ddspy_topic_create, ddspy_write
 from cyclonedds.core import DDSException
-from cyclonedds.internal import DDS, SampleInfo, dds_c_t
+from cyclonedds.internal import DDS, dds_c_t
 from cyclonedds.qos import Qos, _CQos
 
 from rclpy_dds.wire.domain import open_domain
@@ -54,6 +54,8 @@ _set_guard = _function("dds_set_guardcondition", _entity, ctypes.c_bool)
 _attach = _function("dds_waitset_attach", _entity, _entity, ctypes.c_ssize_t)
 _detach = _function("dds_waitset_detach", _entity, _entity)
 _wait = _function("dds_waitset_wait", _entity, ctypes.POINTER(ctypes.c_ssize_t), ctypes.c_size_t, ctypes.c_int64)
+_take = _function("dds_take_mask", _entity, _pointer, _pointer, ctypes.c_size_t, ctypes.c_uint32, ctypes.c_uint32)
+_free = _function("dds_free", _pointer)
 _delete = _function("dds_delete", _entity)
 _get_guid = _function("dds_get_guid", _entity, ctypes.POINTER(dds_c_t.guid))
 _set_status_mask = _function("dds_set_status_mask", _entity, ctypes.c_uint32)
@@ -194,10 +196,29 @@ def write(writer: int, data: bytes) -> None:
         checked(result, "cannot publish")
 
 
-def take(reader: int, count: int = 1) -> list[tuple[bytes, SampleInfo]]:
-    """Take up to `count` samples as (bytes, info); an empty list when there are none or the reader is gone."""
-    taken = ddspy_take(reader, DATA_STATES, count)
-    return [] if type(taken) is int else taken
+class _Bytes(ctypes.Structure):
+    """Where cyclonedds's types put a taken sample: memory that the taker frees."""
+
+    _fields_ = (("start", _pointer), ("size", ctypes.c_size_t))
+
+
+def take(reader: int) -> tuple[bytes, Any] | None:
+    """Take the next sample as (bytes, dds_c_t.sample_info); None when there is none or the reader is gone.
+
+    cyclonedds's own way in C calls back into Python for each sample and crashes when a signal's handler raises there.
+    """
+    sample, info = _Bytes(), dds_c_t.sample_info()
+    if _take(reader, ctypes.byref(_pointer(ctypes.addressof(sample))), ctypes.byref(info), 1, 1, DATA_STATES) <= 0:
+        return None
+    data = ctypes.string_at(sample.start, sample.size)
+    _free(sample.start)
+    return data, info
+
+
+def take_all(reader: int) -> Iterator[tuple[bytes, Any]]:
+    """Take samples until there is none left."""
+    while taken := take(reader):
+        yield taken
 
 
 def wait_for_acks(entity: int, nanoseconds: int) -> bool:

@@ -18,6 +18,7 @@ from rclpy_dds.interfaces.message import message_class
 from rclpy_dds.wire import entities
 from rclpy_dds.wire.discovered import discovered_qos
 from rclpy_dds.wire.hashes import type_hash
+from rclpy_dds.wire.interruptions import held_off
 from rclpy_dds.wire.types import topic_type
 
 _INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"
@@ -162,7 +163,7 @@ class Graph:
     def _infos(self) -> list[tuple[Any, str]]:
         with self._lock:
             # Whose entry has come was discovered before it, so who is not there after this is gone already.
-            newest = {i.publication_handle: data for data, i in entities.take(self._reader, 10000) if i.valid_data}
+            newest = {i.publication_handle: data for data, i in entities.take_all(self._reader) if i.valid_data}
             self._take_participants()
             for data in newest.values():
                 try:
@@ -198,6 +199,7 @@ class Graph:
             return list(known.values())
 
 
+@held_off()
 def _take(function: Any, reader: int, construct: Any) -> list[Any]:
     found: list[Any] = []
     while True:

@@ -14,6 +14,7 @@ from cyclonedds.qos import Policy
 from rclpy_dds.interfaces.codec import HEADER, MalformedSample, decoder, encoder
 from rclpy_dds.wire.discovered import discovered_qos
 from rclpy_dds.wire.entities import matched_handles
+from rclpy_dds.wire.interruptions import held_off
 
 _counter = itertools.count(1)
 _LAYOUT = struct.Struct("<Qq")
@@ -55,6 +56,7 @@ def new_endpoint_id(participant_gid: bytes) -> str:
     return f"{identity[0]:2x}." + ".".join(f"{byte:x}" for byte in identity[1:])
 
 
+@held_off()
 def matched_ids(entity: int, key: str, *, writer: bool) -> set[str]:
     """Return the ids under `key` ("serviceid", "clientid") of the endpoints a writer or reader is matched with."""
     data = ddspy_get_matched_subscription_data if writer else ddspy_get_matched_publication_data
@@ -64,6 +66,7 @@ def matched_ids(entity: int, key: str, *, writer: bool) -> set[str]:
     return {_user_data(endpoint, key) for endpoint in endpoints if endpoint is not None}
 
 
+@held_off()
 def reply_can_arrive(reader: int, writer: int, request_writer: int) -> bool:
     """Tell whether a service's reply writer has found the reply reader of the client that sent a request.
 

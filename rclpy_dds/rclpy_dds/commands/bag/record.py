@@ -46,6 +46,7 @@ def main(args: argparse.Namespace) -> str | None:
     except OSError as error:
         return f"Cannot write to '{folder}': {error.strerror}"
     problem: OSError | None = None
+    recorder: _Recorder | None = None  # Ctrl-C may come before there is one
     try:
         with command_node(args.node_name) as node:
             recorder = _Recorder(node, args, {name if name.startswith("/") else f"/{name}" for name in names}, writer)
@@ -61,7 +62,8 @@ def main(args: argparse.Namespace) -> str | None:
             writer.close()
         except OSError as error:
             problem = error
-    problem = recorder.problem or problem
+    if recorder is not None:
+        problem = recorder.problem or problem
     if problem is not None:
         return f"Cannot write to '{folder}': {problem.strerror}; {writer.count} messages were recorded"
     print(f"Recorded {writer.count} messages to '{folder}'")

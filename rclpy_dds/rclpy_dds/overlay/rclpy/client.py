@@ -130,10 +130,10 @@ class Client(Endpoint):
 
     def _take(self) -> tuple[Future, Any] | None:
         taken = entities.take(self._entity)
-        if not taken or self._destroyed or not taken[0][1].valid_data:
+        if not taken or self._destroyed or not taken[1].valid_data:
             return None
         try:
-            reply, request_id = service.decode(taken[0][0], f"{self.srv_type.__ros_name__}_Response")
+            reply, request_id = service.decode(taken[0], f"{self.srv_type.__ros_name__}_Response")
         except MalformedSample as error:
             self._logger.error(f"dropped a malformed reply of '{self.srv_name}': {error}")
             return None

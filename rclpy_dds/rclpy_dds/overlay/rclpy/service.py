@@ -56,9 +56,9 @@ class Service(Endpoint):
 
     def _take(self) -> tuple[Any, Any, int] | None:
         taken = entities.take(self._entity)
-        if not taken or self._destroyed or not taken[0][1].valid_data:
+        if not taken or self._destroyed or not taken[1].valid_data:
             return None
-        data, info = taken[0]
+        data, info = taken
         try:
             request, request_id = service.decode(data, f"{self.srv_type.__ros_name__}_Request")
         except MalformedSample as error:
@@ -69,12 +69,12 @@ class Service(Endpoint):
     def service_take_request(self, request_type: Any = None) -> tuple[Any, Any]:
         """Take one request and its info at once, without an executor; (None, None) when there is none."""
         taken = entities.take(self._entity)
-        if not taken or not taken[0][1].valid_data:
+        if not taken or not taken[1].valid_data:
             return None, None
-        request, request_id = service.decode(taken[0][0], f"{self.srv_type.__ros_name__}_Request")
-        stamp = taken[0][1].source_timestamp
+        data, info = taken
+        request, request_id = service.decode(data, f"{self.srv_type.__ros_name__}_Request")
         return request, SimpleNamespace(
-            request_id=request_id, source_timestamp=stamp, received_timestamp=time.time_ns()
+            request_id=request_id, source_timestamp=info.source_timestamp, received_timestamp=time.time_ns()
         )
 
     def _handle(self, taken: tuple[Any, Any, int]) -> Any:

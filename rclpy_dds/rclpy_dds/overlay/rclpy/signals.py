@@ -11,6 +11,7 @@ from typing import Any
 
 from rclpy.context import open_contexts
 from rclpy.exceptions import InvalidHandle
+from rclpy_dds.wire.interruptions import waits
 
 
 class SignalHandlerOptions(IntEnum):
@@ -69,6 +70,8 @@ class _Handlers:
         return True
 
     def _on_signal(self, number: int, frame: Any) -> None:
+        if waits(number):
+            return
         _end_contexts()
         previous = self.previous.get(number)
         if callable(previous):

@@ -88,7 +88,7 @@ class Subscription(Endpoint):
         taken = entities.take(self._entity)
         if not taken or self._destroyed:
             return None
-        data, info = taken[0]
+        data, info = taken
         if not info.valid_data:
             return None
         if self.raw:
