@@ -142,6 +142,7 @@ def test_a_signal_while_samples_are_taken_crashes_nothing(program: Start) -> Non
 HELD_OFF = """
 import signal, rclpy
 from rclpy_dds.wire.interruptions import held_off
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs are born deaf to it
 rclpy.init()
 try:
     with held_off():
