@@ -122,8 +122,8 @@ def _worth_two(
     members = [one for one in singles if set(one[0]) <= set(effects)]
 
     def earned(first: tuple[tuple[Effect, ...], Fit]) -> bool:
-        kept, alone = first
-        gain = alone.objective - result.objective
-        return gain > max(earning(kept), CONVINCING * (alone.data - alone.count))
+        kept, simpler = first
+        gain = simpler.objective - result.objective
+        return gain > max(earning(kept), CONVINCING * (simpler.data - simpler.count))
 
     return all(earned(min(some, key=lambda one: one[1].objective)) for some in (members, singles))
