@@ -56,6 +56,15 @@ def test_overlap_is_named_from_voltage_and_position_alone():
     assert result.effects[0].parameters["half_width"].value == pytest.approx(2e-4, rel=0.05)
 
 
+def test_overlap_of_worn_lands_is_named_with_their_rounding():
+    result = diagnosed({"valve_deadband.half_width": 2e-4, "valve_deadband.rounding": 6e-5})
+    assert result.verdict == "missing_physics"
+    assert [effect.id for effect in result.effects] == ["valve_deadband"]
+    found = result.effects[0].parameters
+    assert found["half_width"].value == pytest.approx(2e-4, rel=0.01)
+    assert found["rounding"].value == pytest.approx(6e-5, rel=0.1)
+
+
 def test_a_delay_is_not_taken_for_a_slow_valve():
     result = diagnosed({"command_delay.delay": 6e-3, "moving_mass": 10.0})
     assert [effect.id for effect in result.effects] == ["command_delay"]

@@ -16,6 +16,7 @@ class Laws:
 
     offset: float = 0.0
     overlap: float = 0.0
+    rounding: float = 0.0
     asymmetry: float = 0.0
     null_conductance: float = 0.0
     null_width: float = 1.0
@@ -51,10 +52,15 @@ def compliance(gauge: float, air: float) -> float:
     return (1.0 - share) / 1.4e9 + share / (1.4 * absolute)
 
 
+def _past_edge(overlap: float, rounding: float) -> float:
+    within = np.clip(overlap, -rounding, rounding) + rounding
+    return float(max(overlap - rounding, 0.0) + (within * within / (4.0 * rounding) if rounding else 0.0))
+
+
 def flows(spool: float, a: float, b: float, supply: float, back: float, laws: Laws) -> tuple[float, float]:
     """Into port A and out of port B."""
     opening = spool + laws.offset
-    opening = np.sign(opening) * max(abs(opening) - laws.overlap, 0.0)
+    opening = _past_edge(opening - laws.overlap, laws.rounding) - _past_edge(-opening - laws.overlap, laws.rounding)
     if opening >= 0.0:
         into_a, out_of_b = 2.38e-5 * opening * root(supply - a), 2.38e-5 * opening * root(b - back)
     else:

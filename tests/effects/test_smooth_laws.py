@@ -14,6 +14,7 @@ PIECES = 0.08 * np.sin(2.0 * np.pi * 4.0 * (np.arange(150) + 0.5) * PIECE)
 CASES = {
     "valve_null_offset": ({"offset": 3e-5}, Laws(offset=3e-5)),
     "valve_deadband": ({"half_width": 1e-4}, Laws(overlap=1e-4)),
+    "valve_deadband, worn": ({"half_width": 1e-4, "rounding": 6e-5}, Laws(overlap=1e-4, rounding=6e-5)),
     "flow_gain_asymmetry": ({"ratio": 0.2}, Laws(asymmetry=0.2)),
     "valve_null_leakage": ({"conductance": 3e-11, "width": 3e-4}, Laws(null_conductance=3e-11, null_width=3e-4)),
     "supply_pressure_droop": ({"resistance": 5e10, "time_constant": 0.05}, Laws(droop=5e10, line_time=0.05)),
@@ -38,7 +39,7 @@ CASES = {
         Laws(damping_lost=0.5, leak_gained=50.0, warming=0.2),
     ),
 }  # fmt: skip
-"""The effect's parameters here, and the same sizes in the reference."""
+"""The effect's parameters here, and the same sizes in the reference; after a comma, a form of the effect."""
 
 WRONG = {"presliding_friction": 2e-3, "turbulent_leakage": 0.06}
 """Share of the effect that may be wrong, where it is not 1e-3.
@@ -52,9 +53,10 @@ def nominal() -> np.ndarray:
     return solve(PIECES, PIECE, Laws())
 
 
-@pytest.mark.parametrize("effect", CASES)
-def test_actuator_with_the_effect_moves_as_the_reference(effect: str, nominal: np.ndarray) -> None:
-    parameters, laws = CASES[effect]
+@pytest.mark.parametrize("case", CASES)
+def test_actuator_with_the_effect_moves_as_the_reference(case: str, nominal: np.ndarray) -> None:
+    parameters, laws = CASES[case]
+    effect = case.split(",")[0]
     expected = solve(PIECES, PIECE, laws)
     plant = Plant({f"{effect}.{name}": value for name, value in parameters.items()}, 5e-5)
     found = plant.run(np.repeat(PIECES, 40), every=40)

@@ -22,7 +22,7 @@ OF_EXPLAINED = {False: 1e-6, True: 6e-4}
 """... and these shares of the sample count and of what the first explains: what is left by another step of integration,
 and (True) by a law that is right but for its form, its smoothing, or the timing of a break-away ..."""
 
-CONVINCING = 0.5
+CONVINCING = 0.4
 """... and explain this share of what the first leaves over beside noise."""
 
 MOST = 4

@@ -186,22 +186,33 @@ def cross(problem: Problem, found: Found) -> Found:
     if len(found) < 2:
         return found
     order = sorted(range(len(found)), key=lambda place: found[place][1].objective)
-    best = found[order[0]][1]
+    leading, best = found[order[0]]
     crossed = list(found)
     for place in order[1 : CROSSED + 1]:
         effects, result = found[place]
         shared = {one.name: best.values[one.name] for one in result.free if one.name in SHARED_NAMES}
-        again = fit(
-            problem,
-            {**result.values, **shared},
-            result.free,
-            best.states,
-            iterations=15,
-            give_up_above=best.objective + OUT_OF_REACH,
-        )
-        if again.objective < result.objective:
-            crossed[place] = (effects, again)
+        kindred = _of_the_same_kind(effects, leading, best.values)
+        for own in (kindred, {}) if kindred else ({},):
+            values, worse = {**result.values, **shared, **own}, best.objective + OUT_OF_REACH
+            again = fit(problem, values, result.free, best.states, iterations=15, give_up_above=worse)
+            if again.objective < crossed[place][1].objective:
+                crossed[place] = (effects, again)
     return crossed
+
+
+def _of_the_same_kind(
+    effects: Sequence[Effect], others: Sequence[Effect], values: Mapping[str, float]
+) -> dict[str, float]:
+    """What the other effects' laws call by the same name as laws of the same kind among these: force, static_force."""
+    return {
+        own: values[theirs]
+        for effect in effects
+        for other in others
+        if effect.kind == other.kind and effect is not other
+        for own in effect.parameter_names()
+        for theirs in other.parameter_names()
+        if own.rsplit(".", 1)[1] == theirs.rsplit(".", 1)[1]
+    }
 
 
 def _other_instants(problem: Problem, exact: Problem, result: Fit) -> Fit:

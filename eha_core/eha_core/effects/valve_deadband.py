@@ -2,10 +2,13 @@
 
 Signature: the piston rests while the command moves about null, and follows a little late after each change of
 direction; with a controller in the loop, a slow limit cycle about the target.
-Equation: opening = x_v - d for x_v > d, 0 for |x_v| <= d, x_v + d for x_v < -d, with d the half width.
+Equation: opening = e(x_v - d) - e(-x_v - d) with d the half width; past an edge e(y) = y, before it 0, and within the
+rounding r of it e(y) = (y + r)^2 / (4 r).
 Sign: positive half width is overlap; it narrows the opening on both sides alike.
-Validity: overlap small against the spool's travel; lands without rounding.
-Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 5 (overlapped spool valves).
+Validity: overlap small against the spool's travel. Worn edges are a parabola that joins both sides smoothly; what leaks
+from the supply to the return where both ports stand open is valve_null_leakage.
+Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 5 (overlapped spool valves; rounded edges and the
+flow gain about null); the parabola is assumed.
 """
 
 from eha_core.compiled import inlined
@@ -16,7 +19,7 @@ EFFECT = Effect(
     site="orifice",
     approximate=True,
     statement="the valve's lands overlap: within {half_width:.3g} A of null no oil flows",
-    equation="opening = sign(x_v) max(|x_v| - half_width, 0)",
+    equation="opening = sign(x_v) max(|x_v| - half_width, 0), edges rounded within +-rounding",
     parameters=(
         Parameter(
             "half_width",
@@ -32,18 +35,36 @@ EFFECT = Effect(
             relative_to="spool",
             starts=(0.05, 0.2),
         ),
+        Parameter(
+            "rounding",
+            "x_r",
+            "A",
+            0.0,
+            0.0,
+            0.02,
+            "how far about its edge a worn land opens gradually, in spool position",
+            ASSUMED,
+            typical=5e-5,
+            relative_to="spool",
+            starts=(0.02,),
+        ),
     ),
     order=1,
 )
 
 
 @inlined
-def contribution(opening, gain, conductance, spool_position, half_width):
+def past_edge(overlap, rounding):
+    """How far a land stands open whose edge the spool has passed by `overlap`."""
+    if overlap >= rounding:
+        return overlap
+    if overlap <= -rounding:
+        return 0.0
+    return (overlap + rounding) * (overlap + rounding) / (4.0 * rounding)
+
+
+@inlined
+def contribution(opening, gain, conductance, spool_position, half_width, rounding):
     """Shut the ports inside the overlap and shift the opening outside of it."""
-    if opening > half_width:
-        opening -= half_width
-    elif opening < -half_width:
-        opening += half_width
-    else:
-        opening = 0.0
+    opening = past_edge(opening - half_width, rounding) - past_edge(-opening - half_width, rounding)
     return opening, gain, conductance
