@@ -208,7 +208,7 @@ def _of_the_same_kind(
         own: values[theirs]
         for effect in effects
         for other in others
-        if effect.kind == other.kind and effect is not other
+        if effect.kind and effect.kind == other.kind and effect is not other
         for own in effect.parameter_names()
         for theirs in other.parameter_names()
         if own.rsplit(".", 1)[1] == theirs.rsplit(".", 1)[1]
