@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from eha_core.diagnosis.experiment import DURATION, propose
+from eha_core.diagnosis.experiment import propose
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.freedom import nominal_freedom
 from eha_core.parameters import nominal_values
@@ -25,14 +25,15 @@ def explanation(changes, free=()):
     return Fit(free, q, values, np.zeros((1, 4)), 0.0, 0.0, 1, (), np.eye(n), True, 0)
 
 
-def voltage_of(reference):
+def voltage_of(experiment):
+    reference = experiment.reference
     prefix = reference["signal"] + "."
     parameters = {name.removeprefix(prefix): value for name, value in reference.items() if name.startswith(prefix)}
-    return make_signal(reference["signal"], parameters).value(np.arange(round(DURATION / 2e-4)) * 2e-4)
+    return make_signal(reference["signal"], parameters).value(np.arange(round(experiment.duration / 2e-4)) * 2e-4)
 
 
-def driven(changes, reference):
-    return Plant({**nominal_values(), **changes}, 2e-4).run(voltage_of(reference), round(SAMPLE / 2e-4))
+def driven(changes, experiment):
+    return Plant({**nominal_values(), **changes}, 2e-4).run(voltage_of(experiment), round(SAMPLE / 2e-4))
 
 
 def deviations(experiment):
@@ -47,8 +48,9 @@ def test_the_outcome_differs_by_what_is_promised():
     experiment = propose(rivals, NOISE, 0.1, LIMIT)
     assert experiment.separates == ("constant_load", "flow_gain_asymmetry")
     assert experiment.reference["mode"] == "voltage"
-    one, two = (driven(changes, experiment.reference).measured_position for changes in (LOAD, ASYMMETRY))
-    apart = (two - two.mean() - one + one.mean()) / NOISE["position"]
+    one, two = (driven(changes, experiment).measured_position for changes in (LOAD, ASYMMETRY))
+    apart = (two - one).reshape(-1, 1000) / NOISE["position"]  # as a fit, which starts again every second
+    apart -= apart.mean(axis=1, keepdims=True)
     assert np.sqrt(np.sum(apart**2)) == pytest.approx(deviations(experiment), rel=0.01)
     assert "should tell them apart" in experiment.statement
 
@@ -62,7 +64,7 @@ def test_what_the_nominal_parameters_could_imitate_does_not_count():
 
 def test_pressures_are_asked_for_where_no_voltage_tells():
     free = nominal_freedom(nominal_values(), "voltage", 0.02)
-    load, area = {"constant_load.force": 5.0}, {"unequal_piston_area.ratio": 0.9993}
+    load, area = {"constant_load.force": 1.0}, {"unequal_piston_area.ratio": 0.99986}
     rivals = [(("constant_load",), explanation(load, free)), (("unequal_piston_area",), explanation(area))]
     experiment = propose(rivals, NOISE, 0.1, LIMIT)
     assert experiment.record == ("pressure_a", "pressure_b")
@@ -70,12 +72,30 @@ def test_pressures_are_asked_for_where_no_voltage_tells():
     assert propose(rivals, {**NOISE, "pressure_a": 1e4, "pressure_b": 1e4}, 0.1, LIMIT).record == ()
 
 
+def biased(pressure):
+    """Two explanations whose outcomes differ by a constant pressure [Pa] alone."""
+    return [((), explanation({})), (("pressure_sensor_bias",), explanation({"pressure_sensor_bias.bias_a": pressure}))]
+
+
+def test_a_mean_pressure_tells():
+    experiment = propose(biased(1500.0), {**NOISE, "pressure_a": 1e4, "pressure_b": 1e4}, 0.1, LIMIT)
+    assert experiment.duration == 10.0
+    assert deviations(experiment) == round(0.15 * np.sqrt(10.0 * 1000.0))
+
+
+def test_a_faint_difference_takes_longer():
+    experiment = propose(biased(700.0), {**NOISE, "pressure_a": 1e4, "pressure_b": 1e4}, 0.1, LIMIT)
+    assert experiment.duration == 40.0
+    assert deviations(experiment) == round(0.07 * np.sqrt(40.0 * 1000.0))
+    assert "for 40 s" in experiment.statement
+
+
 def test_the_rig_can_bear_the_test():
     rig = {"actuator_displacement": 0.004, "supply_pressure": 7e6}
     rivals = [(("constant_load",), explanation(LOAD | rig)), (("flow_gain_asymmetry",), explanation(ASYMMETRY | rig))]
     experiment = propose(rivals, NOISE, 0.5, LIMIT)
     assert abs(experiment.reference[f"{experiment.reference['signal']}.amplitude"]) <= LIMIT
-    rows = driven(LOAD | rig, experiment.reference)
+    rows = driven(LOAD | rig, experiment)
     assert np.max(np.abs(rows.position)) < 0.85 * 0.004
     for pressure in (rows.pressure_a, rows.pressure_b):
         assert pressure.min() > -101325.0

@@ -8,13 +8,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.fit import Fit, fit, fit_in_stages, with_noise
+from eha_core.diagnosis.fit import WORTH, Fit, fit, fit_in_stages, with_noise
 from eha_core.diagnosis.freedom import nominal_freedom
 from eha_core.diagnosis.noise import residual_noise
 from eha_core.diagnosis.observation import RESOLVED, SHORTEST, Observation, without_end
 from eha_core.diagnosis.problem import Problem, whole
 from eha_core.diagnosis.shooting import Shooting, cut
 from eha_core.parameters import NOMINAL
+
+STEPS = (2e-4, 1e-4, 5e-5)
+"""s; the steps at which hypotheses may be compared. The oil's frequency is right to fourth order at the first; large
+flows or a fast valve can need the others."""
+
+UNNOTICED = 20.0
+"""Chi^2 by which the response may change as its step is halved: less than any effect must gain to be named. Of a model
+that is far off, the share WORTH of what it leaves may be more."""
 
 NOTICEABLE = 4.0
 """A parameter has changed when it left its nominal value by this many standard deviations ..."""
@@ -53,18 +61,41 @@ def calibrate(observation: Observation, nominal: Mapping[str, float], step_size:
     return Calibration(shooting, problem, as_given, fitted)
 
 
+def calibrate_finely_enough(observation: Observation, nominal: Mapping[str, float]) -> Calibration:
+    """Calibrate at the longest of STEPS that is short enough."""
+    for step_size in STEPS:
+        calibration = calibrate(observation, nominal, step_size)
+        left = calibration.fitted.objective - calibration.fitted.count
+        if step_error(observation, calibration) < max(UNNOTICED, WORTH * left):
+            break
+    return calibration
+
+
+def step_error(observation: Observation, calibration: Calibration) -> float:
+    """Chi^2 between the calibrated plant's response and the same at half the step, at the samples that both have."""
+    coarse, fitted = calibration.shooting, calibration.fitted
+    fine = cut(observation, fitted.values, 0.5 * coarse.step_size)
+    responses = [one.sample(one.simulate(fitted.values, fitted.states)[0]) for one in (coarse, fine)]
+    total = 0.0
+    for one, other, first, second in zip(coarse.samplings, fine.samplings, *responses, strict=True):
+        stamps, others = np.round(1e9 * coarse.times(one)), np.round(1e9 * fine.times(other))
+        _, here, there = np.intersect1d(stamps, others, return_indices=True)
+        total += float(np.sum(((first[here] - second[there]) / one.noise) ** 2))
+    return total
+
+
 def calibrate_but_for_its_end(
-    observation: Observation, nominal: Mapping[str, float], step_size: float
+    observation: Observation, nominal: Mapping[str, float]
 ) -> tuple[Observation, Calibration]:
     """Calibrate, and once more without the last window where only that departs from the model."""
-    calibration = calibrate(observation, nominal, step_size)
+    calibration = calibrate_finely_enough(observation, nominal)
     share, shooting = _share_of_last_window(calibration), calibration.shooting
     last = float(shooting.edges[-1] - shooting.edges[-2]) * shooting.step_size
     if share < NOWHERE_ELSE or observation.duration < SHORTEST + last:
         return observation, calibration
     why = f"{share:.0%} of what the nominal equations leave unexplained sits there, as where nodes go down"
     rest = without_end(observation, last, why)
-    return rest, calibrate(rest, nominal, step_size)
+    return rest, calibrate(rest, nominal, shooting.step_size)
 
 
 def _share_of_last_window(calibration: Calibration) -> float:

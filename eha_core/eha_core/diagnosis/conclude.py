@@ -16,6 +16,7 @@ from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.locate import DESCRIBED, stated
 from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.outlook import RATE
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.result import (
     Alternative,
@@ -32,7 +33,7 @@ from eha_core.diagnosis.result import (
 from eha_core.diagnosis.shooting import Shooting, cut
 from eha_core.diagnosis.tournament import Entry
 from eha_core.diagnosis.validate import channel_rmse, instants_of, judge, split
-from eha_core.diagnosis.verdict import Decision, whiteness
+from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import effects as every_effect
 from eha_core.parameters import catalogue, nominal_values
 from eha_core.recording import Recording
@@ -80,7 +81,7 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
 
 def polish(evidence: Evidence, winner: Entry) -> Fit:
     """The winner fitted once more at the final step."""
-    shooting = cut(evidence.observation, evidence.nominal, FINAL_STEP)
+    shooting = cut(evidence.observation, evidence.nominal, min(FINAL_STEP, evidence.calibration.shooting.step_size))
     # under the winner the residual is noise at last, so its roughness is measured best there
     shooting = with_noise(shooting, corrected_noise(evidence.calibration.shooting, winner.fit))
     problem = Problem(shooting, np.arange(shooting.windows))
@@ -218,10 +219,13 @@ def _changed_values(final: Fit) -> dict[str, float]:
 
 def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
     shooting, values = evidence.calibration.shooting, decision.winner.fit.values
-    noises = {name: one.noise for name, one in zip(shooting.names, shooting.samplings, strict=True)}
+    noises = {
+        name: one.noise * float(np.sqrt(RATE * evidence.observation.duration / len(one.values)))
+        for name, one in zip(shooting.names, shooting.samplings, strict=True)
+    }
     limit = values["saturation_current"] * values["coil_resistance"]
     used = float(np.std(shooting.inputs[0])) if evidence.observation.drive == "voltage" else 0.0
-    rivals = [(decision.winner.ids, decision.winner.fit), *((entry.ids, entry.fit) for entry, _ in decision.rivals)]
+    rivals = [(entry.ids, entry.fit) for entry in contenders(decision.winner, evidence.tournament)]
     return propose(rivals, noises, used or 0.1 * limit, limit)
 
 

@@ -35,7 +35,9 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             "alternatives": _rows(diagnosis.alternatives, ("effects", "evidence_gap")),
             "unknown": _row(diagnosis.unknown, ("site", "function_of", "expression", "r_squared", "samples")),
             "fit": {"training": _fits(diagnosis.training), "held_out": _fits(diagnosis.held_out)},
-            "next_experiment": _row(diagnosis.next_experiment, ("statement", "separates", "reference", "record")),
+            "next_experiment": _row(
+                diagnosis.next_experiment, ("statement", "separates", "reference", "record", "duration")
+            ),
             "rivals": [{"effects": effects, "score": score} for effects, score in diagnosis.rivals],
             "whiteness": diagnosis.whiteness,
         }

@@ -16,9 +16,10 @@ from eha_core.diagnosis.verdict import decide
 
 
 def join(evidences: Sequence[Evidence]) -> Evidence:
-    """The evidence of the recording that tells most, with every score the sum over all recordings.
+    """The evidence of the recording that tells most, with every gain the sum over all recordings.
 
-    Each recording keeps its own nominal parameters; a hypothesis that one of them did not refit is refitted there.
+    Each recording keeps its own nominal parameters; a hypothesis that one of them did not refit is refitted there. It
+    is one law of one rig, and pays for its parameters once.
     """
     if len(evidences) == 1:
         return evidences[0]
@@ -29,7 +30,7 @@ def join(evidences: Sequence[Evidence]) -> Evidence:
                 wanted.setdefault(entry.ids, entry)
     completed = [_completed(evidence, wanted) for evidence in evidences]
     lead = int(np.argmax([max([0.0, *(entry.score for entry in one.entries)]) for one in completed]))
-    totals = {ids: sum(_score(one, ids) for one in completed) for ids in wanted}
+    totals = {ids: joint_score(completed, ids) for ids in wanted}
     entries = sorted(
         (replace(entry, score=totals[entry.ids]) for entry in completed[lead].entries if entry.ids in totals),
         key=lambda entry: -entry.score,
@@ -39,15 +40,16 @@ def join(evidences: Sequence[Evidence]) -> Evidence:
     recovery = chosen.recovery
     if recovery is not None and len(entries):
         # a curve's score is of one recording; hold the sum against as much of it
-        recovery = replace(
-            recovery, score=recovery.score * totals[entries[0].ids] / max(_score(completed[lead], entries[0].ids), 1.0)
-        )
+        share = entries[0].score / max(joint_score(completed[lead : lead + 1], entries[0].ids), 1.0)
+        recovery = replace(recovery, score=recovery.score * share)
     decision = decide(chosen.calibration, chosen.nominal, tournament, recovery)
     return replace(chosen, tournament=tournament, decision=decision)
 
 
-def _score(tournament: Tournament, ids: tuple[str, ...]) -> float:
-    return next((entry.score for entry in tournament.entries if entry.ids == ids), 0.0)
+def joint_score(tournaments: Sequence[Tournament], ids: tuple[str, ...]) -> float:
+    """A hypothesis' gain over all recordings less the dearest of the costs of its parameters."""
+    entries = [entry for one in tournaments for entry in one.entries if entry.ids == ids]
+    return sum(entry.score + entry.cost for entry in entries) - max(entry.cost for entry in entries)
 
 
 def _completed(evidence: Evidence, wanted: Mapping[tuple[str, ...], Entry]) -> Tournament:

@@ -23,9 +23,6 @@ from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
 from eha_core.recording import Recording
 
-SEARCH_STEP = 2e-4
-"""s; the step at which hypotheses are compared. The oil's frequency is right to fourth order in it."""
-
 Progress = Callable[[str], None]
 
 
@@ -34,7 +31,7 @@ def examine(recording: Recording, nominal: Mapping[str, float], progress: Progre
     progress("reading and aligning")
     observation, nominal = reaching(observe(recording), nominal)
     progress("calibrating the nominal equations")
-    observation, calibration = calibrate_but_for_its_end(observation, nominal, SEARCH_STEP)
+    observation, calibration = calibrate_but_for_its_end(observation, nominal)
     facts = gather(observation, calibration.shooting, calibration.fitted)
     models = (calibration.fitted, calibration.nominal)
     alternatives = tuple(balances(observation, calibration.shooting, model) for model in models)

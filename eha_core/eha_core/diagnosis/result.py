@@ -94,12 +94,14 @@ class Experiment:
     """A test for the rig whose outcome would tell the rivals apart, as parameters of the reference generator.
 
     `record`: channels that have to be recorded beside those of the recording, where no voltage alone would tell.
+    `duration` [s]: how long the test has to last.
     """
 
     statement: str
     separates: tuple[str, ...]
     reference: Mapping[str, object]
     record: tuple[str, ...] = ()
+    duration: float = 10.0
 
 
 @dataclass(frozen=True)

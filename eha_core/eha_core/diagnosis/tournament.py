@@ -49,11 +49,13 @@ small gains mean little: a parameter must then pay for itself by up to this shar
 
 @dataclass(frozen=True)
 class Entry:
-    """A hypothesis (no effect: the nominal model) with its fit. `score` is against the nominal model, in chi^2."""
+    """A hypothesis (no effect: the nominal model) with its fit. `score` is against the nominal model, in chi^2, its
+    `cost` for parameters paid."""
 
     effects: tuple[Effect, ...]
     fit: Fit
     score: float
+    cost: float = 0.0
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -122,9 +124,9 @@ def rank(problem: Problem, nominal: Fit, found: Sequence[tuple[tuple[Effect, ...
     variance = max(1.0, best.data / best.count)
     entries = []
     for effects, result in found:
-        count = len(result.free) - len(nominal.free)
+        cost = (len(result.free) - len(nominal.free)) * parameter_cost(problem.count(), variance)
         gain = (nominal.objective - result.objective) / variance
-        entries.append(Entry(effects, result, gain - count * parameter_cost(problem.count(), variance)))
+        entries.append(Entry(effects, result, gain - cost, cost))
     return tuple(sorted(entries, key=lambda entry: -entry.score))
 
 

@@ -22,6 +22,10 @@ HELD_OUT = 5.0
 """A named effect must lower chi^2 on held-out windows by this."""
 
 
+CONTENDING = 2.0 * TIE
+"""What falls behind the winner by less may still be the truth, when a rival leads by chance."""
+
+
 @dataclass(frozen=True)
 class Decision:
     """The verdict, its winner (the nominal entry where nothing is named) and the rivals it was not told apart from."""
@@ -128,9 +132,15 @@ def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
     return recovery.score > ENOUGH and more > UNKNOWN_MARGIN + knots * parameter_cost(recovery.fit.count, variance)
 
 
-def _is_rival(winner: Entry, entry: Entry) -> bool:
+def contenders(winner: Entry, tournament: Tournament) -> tuple[Entry, ...]:
+    """The winner and whatever comes within CONTENDING of it: what a further test has to tell apart."""
+    near = (entry for entry in tournament.entries if not bounded(entry) and _is_rival(winner, entry, CONTENDING))
+    return winner, *near
+
+
+def _is_rival(winner: Entry, entry: Entry, within: float = TIE) -> bool:
     """Another explanation as good as the winner's: not one that merely adds to it."""
-    return winner.score - entry.score < TIE and not set(winner.ids) <= set(entry.ids)
+    return winner.score - entry.score < within and not set(winner.ids) <= set(entry.ids)
 
 
 def _without_physics(calibration: Calibration, nominal: Mapping[str, float], tournament: Tournament) -> Decision:

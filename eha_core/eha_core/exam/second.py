@@ -15,7 +15,8 @@ from eha_core.exam.truth import simulate_truth
 from eha_core.signals import make_signal
 
 DURATION = 10.0
-"""s; a prescribed test is run for that long unless it says its own `duration`."""
+LONGEST = 60.0
+"""s; a prescribed test is run for the first unless it says its own `duration`, and for no more than the second."""
 
 
 def prescribed_voltage(reference: Mapping[str, Any], time: Array) -> Array:
@@ -38,10 +39,13 @@ def second_recording(case: Case, prescribed: Mapping[str, Any]) -> Arrays:
     if unknown:
         raise EhaError(f"the prescribed test wants {', '.join(unknown)} recorded, which this rig has no sensor for")
     channels = tuple(name for name in Case.channels if name in (*case.channels, *more))
-    again = replace(case, seed=case.seed + 1, duration=DURATION, windows={}, channels=channels)
-    time = np.arange(round(DURATION * case.rate) + 1) / case.rate
+    duration = float(prescribed.get("duration", DURATION))
+    if not 0.0 < duration <= LONGEST:
+        raise EhaError(f"the prescribed test lasts {duration:g} s, and the exam runs at most {LONGEST:g} s")
+    again = replace(case, seed=case.seed + 1, duration=duration, windows={}, channels=channels)
+    time = np.arange(round(duration * case.rate) + 1) / case.rate
     voltage = prescribed_voltage(prescribed["reference"], time)
-    truth = simulate_truth(case.plant, case.effects, voltage, DURATION, case.rate)
+    truth = simulate_truth(case.plant, case.effects, voltage, duration, case.rate)
     generator = np.random.default_rng([case.seed, 4])
     noise = case.noise * POSITION_NOISE * generator.standard_normal(len(time))
     return measure(again, truth | {"position_noise": noise})

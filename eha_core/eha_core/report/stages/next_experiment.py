@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from eha_core.diagnosis.experiment import DURATION
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.report.picture import Group, Line, Panel, Picture
@@ -33,15 +32,15 @@ def stage(diagnosis: Diagnosis) -> Stage:
             sentence(experiment.statement),
             "Give these parameters to the reference node, record, and diagnose both recordings together.",
         ),
-        (_picture(reference),),
+        (_picture(reference, experiment.duration),),
         code=code,
     )
 
 
-def _picture(reference: Mapping[str, object]) -> Picture:
+def _picture(reference: Mapping[str, object], duration: float) -> Picture:
     name = str(reference["signal"])
     parameters = {key.removeprefix(f"{name}."): value for key, value in reference.items() if key.startswith(f"{name}.")}
-    time: Array = np.linspace(0.0, DURATION, 20_001, dtype=np.float64)
+    time: Array = np.linspace(0.0, duration, 20_001, dtype=np.float64)
     voltage: Array = np.asarray(make_signal(name, parameters).value(time), dtype=np.float64)
     scale = scale_for("V", float(np.abs(voltage).max()))
     x, y = thinned(time, voltage / scale.factor)

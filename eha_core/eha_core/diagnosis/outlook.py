@@ -1,0 +1,149 @@
+"""What a test would tell: by how much the outcomes that rival explanations expect of it differ."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import permutations
+
+import numpy as np
+
+from eha_core.diagnosis.fit import SETTLED, Fit
+from eha_core.diagnosis.freedom import Free
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.refine import NOMINAL_NAMES
+from eha_core.plant import COLUMNS, Plant
+
+STEP = 2e-4
+ROWS_EVERY = 5
+RATE = 1.0 / (STEP * ROWS_EVERY)
+"""1/s; of the samples that are compared."""
+
+STROKE_SHARE = 0.85
+"""Of the stroke, that a test may use."""
+
+PRESSURE_SHARE = 1.2
+"""Of the supply pressure, that a chamber may reach in it; and none may fall to a vacuum."""
+
+MOVES = 6
+"""How often, at most, a rival's parameters are moved to imitate another's outcome; what is left is linear in them."""
+
+NUDGE = 1e-3
+"""Of a parameter's coordinate, to see what it changes."""
+
+
+def separation(voltage: Array, rivals: Sequence[Fit], noises: Mapping[str, float]) -> float | None:
+    """Least chi^2 between any two rivals' outcomes of a test, when their parameters have imitated what they can.
+
+    The voltage [V] is one value a STEP, for whole seconds; `noises` are the channels' [their unit] at RATE samples a
+    second. None where the rig would not bear the test, whichever of the rivals it is.
+    """
+    expected = [_bearable_rows(rival.values, voltage) for rival in rivals]
+    outcomes = [_scaled(rows, noises) for rows in expected if rows is not None]
+    if len(outcomes) < len(rivals):
+        return None
+    first = rivals[0]
+    nominal = [one for one in first.free if one.name in NOMINAL_NAMES]
+    shared = _slopes(first, nominal, outcomes[0], voltage, noises)
+    near, every = [], []
+    for rival, outcome in zip(rivals, outcomes, strict=True):
+        own = [one for one in rival.free if one.name not in NOMINAL_NAMES]
+        slopes = _Slopes((*nominal, *own), np.hstack([shared, _slopes(rival, own, outcome, voltage, noises)]))
+        every.append(slopes)
+        near.append(outcome if rival is first else _imitating(outcomes[0], rival, slopes, outcome, voltage, noises))
+    pairs = permutations(range(len(rivals)), 2)
+    return min(every[one].left_of(near[other] - near[one]) for one, other in pairs)
+
+
+@dataclass(frozen=True)
+class _Slopes:
+    """How an outcome moves with the coordinates of `free`: (samples, parameters)."""
+
+    free: tuple[Free, ...]
+    columns: Array
+
+    @cached_property
+    def priors(self) -> Array:
+        """Inverse standard deviations of the coordinates."""
+        return np.array([1.0 / one.trust for one in self.free])
+
+    def towards(self, difference: Array, q: Array, damping: float = 0.0) -> Array:
+        """The damped move from q that takes an outcome to one that differs by so much, as far as the priors let it."""
+        normal = self.columns.T @ self.columns + np.diag(self.priors**2)
+        scale = 1.0 / np.sqrt(np.diag(normal))
+        right = self.columns.T @ difference - self.priors**2 * q
+        damped = normal * np.outer(scale, scale) + damping * np.eye(len(scale))
+        return np.asarray(scale * np.linalg.solve(damped, scale * right))
+
+    def misfit(self, difference: Array, q: Array) -> float:
+        """Chi^2 of a difference, and of coordinates that stand at q."""
+        return float(difference @ difference + np.sum((self.priors * q) ** 2))
+
+    def left_of(self, difference: Array) -> float:
+        """Chi^2 that is left of a small difference when these parameters have imitated what they can of it."""
+        move = self.towards(difference, np.zeros(len(self.free)))
+        return self.misfit(difference - self.columns @ move, move)
+
+
+def _imitating(
+    target: Array, rival: Fit, slopes: _Slopes, outcome: Array, voltage: Array, noises: Mapping[str, float]
+) -> Array:
+    """A rival's outcome when its parameters have moved towards another's."""
+    q = np.array([one.coordinate(rival.values[one.name]) for one in slopes.free])
+    misfit, damping = slopes.misfit(target - outcome, q), 1e-4
+    for _ in range(MOVES if slopes.free else 0):
+        moved = q + slopes.towards(target - outcome, q, damping)
+        values = {one.name: one.value(float(at)) for one, at in zip(slopes.free, moved, strict=True)}
+        moved = np.array([one.coordinate(values[one.name]) for one in slopes.free])
+        rows = _rows({**rival.values, **values}, voltage)
+        reached = outcome if rows is None else _scaled(rows, noises)
+        left = np.inf if rows is None else slopes.misfit(target - reached, moved)
+        if left >= misfit:
+            damping *= 100.0
+            continue
+        gain, q, outcome, misfit = misfit - left, moved, reached, left
+        if gain < SETTLED:
+            break
+        damping *= 0.01
+    return outcome
+
+
+def _slopes(rival: Fit, free: Sequence[Free], outcome: Array, voltage: Array, noises: Mapping[str, float]) -> Array:
+    """How a rival's outcome moves with the coordinate of each of these parameters: (samples, parameters)."""
+    slopes = np.zeros((len(outcome), len(free)))
+    for column, one in enumerate(free):
+        at = one.coordinate(rival.values[one.name])
+        moved = one.value(at + NUDGE)
+        rows = _rows({**rival.values, one.name: moved}, voltage)
+        if rows is not None and one.coordinate(moved) != at:
+            slopes[:, column] = (_scaled(rows, noises) - outcome) / (one.coordinate(moved) - at)
+    return slopes
+
+
+def _rows(values: Mapping[str, float], voltage: Array) -> Array | None:
+    rows = Plant(values, STEP).run(voltage, ROWS_EVERY).values
+    return rows if np.all(np.isfinite(rows)) else None
+
+
+def _bearable_rows(values: Mapping[str, float], voltage: Array) -> Array | None:
+    """A response that stays inside the stroke, and its pressures between a vacuum and what the rig bears; or None."""
+    rows = _rows(values, voltage)
+    if rows is None:
+        return None
+    position = rows[:, COLUMNS.index("position")]
+    pressures = rows[:, [COLUMNS.index("pressure_a"), COLUMNS.index("pressure_b")]]
+    inside = bool(np.max(np.abs(position)) < STROKE_SHARE * values["actuator_displacement"])
+    most = PRESSURE_SHARE * values["supply_pressure"]
+    bearable = inside and np.min(pressures) > -values["atmospheric_pressure"] and np.max(pressures) < most
+    return rows if bearable else None
+
+
+def _scaled(rows: Array, noises: Mapping[str, float]) -> Array:
+    """The measured channels over their noise, one after the other; of the position, without its mean in each second:
+    a fit starts again there, so that little is learnt from where a drift has led."""
+    pieces = {name: rows[:, COLUMNS.index(f"measured_{name}")] / noise for name, noise in noises.items()}
+    if "position" in pieces:
+        seconds = pieces["position"].reshape(-1, round(RATE))
+        pieces["position"] = (seconds - seconds.mean(axis=1, keepdims=True)).ravel()
+    return np.concatenate(list(pieces.values()))
