@@ -9,7 +9,7 @@ import pytest
 
 from eha_core.errors import EhaError
 from eha_core.exam.files import read_answer
-from eha_core.exam.sitting import Exam, open_answers, sit
+from eha_core.exam.sitting import Exam, open_answers, run_tool, sit
 from eha_core.exam.summary import summarise
 from eha_core.exam.tables import as_html, as_json, as_markdown
 from eha_core.recording import read_recording
@@ -123,3 +123,8 @@ def test_a_folder_with_another_exam_is_refused(exam: Exam, tools: dict[str, str]
 def test_a_tool_that_does_not_exist_is_said_in_one_line(exam: Exam) -> None:
     with pytest.raises(EhaError, match="cannot be started"):
         sit(exam, {"ghost": f"{sys.executable}-none {{recording}} {{answer}}"}, Workers(), quiet)
+
+
+def test_a_tool_is_held_to_one_core() -> None:
+    source = "import json, os, sys; json.dump(os.environ['OMP_NUM_THREADS'], open(sys.argv[1], 'w'))"
+    assert run_tool([sys.executable, "-c", source, "{answer}"]).diagnosis == "1"

@@ -111,7 +111,8 @@ def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, 
     told = "should tell" if best.separation > TELLING else "may tell" if best.separation > PERHAPS else "hardly tells"
     statement = (
         f"{' or '.join(' and '.join(ids) for ids in names)}: a {best.trial.signal} of voltage ({how})"
-        f" for {best.duration:g} s{beside} {told} them apart (expected: {np.sqrt(best.separation):.0f} deviations of noise)"
+        f" for {best.duration:g} s{beside} {told} them apart"
+        f" (expected: {np.sqrt(best.separation):.0f} deviations of noise)"
     )
     separates = tuple(dict.fromkeys(name for ids in names for name in ids))
     return Experiment(statement, separates, best.trial.reference(), record, best.duration)

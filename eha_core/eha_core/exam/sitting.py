@@ -35,6 +35,9 @@ SECOND = "second"
 LONGEST = 600.0
 """s; a tool that takes longer for one recording has failed on it."""
 
+ONE_CORE = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+"""Holds a tool's numerical libraries to one core: `--jobs` says how many tools work at once, and times are compared."""
+
 
 @dataclass(frozen=True)
 class Exam:
@@ -171,7 +174,15 @@ def run_tool(command: Sequence[str]) -> Answer:
 
 def _run(words: Sequence[str], folder: str) -> tuple[int, str]:
     try:
-        ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=LONGEST, check=False)
+        ended = subprocess.run(
+            words,
+            cwd=folder,
+            env={**os.environ, **ONE_CORE},
+            capture_output=True,
+            text=True,
+            timeout=LONGEST,
+            check=False,
+        )
     except subprocess.TimeoutExpired:
         return -1, f"took longer than {LONGEST:g} s"
     except OSError as error:
