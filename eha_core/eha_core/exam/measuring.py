@@ -16,7 +16,7 @@ from eha_core.exam.truth import PositionController, simulate_truth
 STROKE_USED = 0.92
 LOWEST_PRESSURE = -0.5e5
 """Pa. A test that takes the piston further than that share of its stroke, or draws a vacuum, is one nobody records."""
-GENTLER = ((1.0, 1.0), (3.0, 1.0), (3.0, 0.6), (6.0, 0.4), (12.0, 0.25))
+GENTLER = ((1.0, 1.0), (3.0, 1.0), (3.0, 0.6), (6.0, 0.4), (12.0, 0.25), (12.0, 0.03))
 """Centring loop [rad/s] and share of the speed with which such a test is run again."""
 
 
