@@ -39,21 +39,64 @@ def separation(voltage: Array, rivals: Sequence[Fit], noises: Mapping[str, float
     The voltage [V] is one value a STEP, for whole seconds; `noises` are the channels' [their unit] at RATE samples a
     second. None where the rig would not bear the test, whichever of the rivals it is.
     """
-    expected = [_bearable_rows(rival.values, voltage) for rival in rivals]
-    outcomes = [_scaled(rows, noises) for rows in expected if rows is not None]
+    test = _Test(voltage, noises)
+    outcomes = [test.outcome(rival.values) for rival in rivals if test.is_bearable(rival.values)]
     if len(outcomes) < len(rivals):
         return None
     first = rivals[0]
-    nominal = [one for one in first.free if one.name in NOMINAL_NAMES]
-    shared = _slopes(first, nominal, outcomes[0], voltage, noises)
+    nominal = tuple(one for one in first.free if one.name in NOMINAL_NAMES)
+    shared = test.slopes(first, nominal, outcomes[0])
     near, every = [], []
     for rival, outcome in zip(rivals, outcomes, strict=True):
-        own = [one for one in rival.free if one.name not in NOMINAL_NAMES]
-        slopes = _Slopes((*nominal, *own), np.hstack([shared, _slopes(rival, own, outcome, voltage, noises)]))
+        own = tuple(one for one in rival.free if one.name not in NOMINAL_NAMES)
+        slopes = _Slopes(nominal + own, np.hstack([shared, test.slopes(rival, own, outcome)]))
         every.append(slopes)
-        near.append(outcome if rival is first else _imitating(outcomes[0], rival, slopes, outcome, voltage, noises))
+        near.append(outcome if rival is first else _imitating(outcomes[0], test, rival, slopes, outcome))
     pairs = permutations(range(len(rivals)), 2)
     return min(every[one].left_of(near[other] - near[one]) for one, other in pairs)
+
+
+@dataclass(frozen=True)
+class _Test:
+    """A voltage [V], one value a STEP, and the noise of the channels that record what it does."""
+
+    voltage: Array
+    noises: Mapping[str, float]
+
+    def outcome(self, values: Mapping[str, float]) -> Array:
+        """The measured channels over their noise, one after the other; of the position, without its mean in each
+        second: a fit starts again there, so that little is learnt from where a drift has led."""
+        rows = self._rows(values)
+        pieces = {name: rows[:, COLUMNS.index(f"measured_{name}")] / noise for name, noise in self.noises.items()}
+        if "position" in pieces:
+            seconds = pieces["position"].reshape(-1, round(RATE))
+            pieces["position"] = (seconds - seconds.mean(axis=1, keepdims=True)).ravel()
+        return np.concatenate(list(pieces.values()))
+
+    def is_bearable(self, values: Mapping[str, float]) -> bool:
+        """Whether the piston stays inside the stroke, and its pressures between a vacuum and what the rig bears."""
+        rows = self._rows(values)
+        if not np.all(np.isfinite(rows)):
+            return False
+        position = rows[:, COLUMNS.index("position")]
+        pressures = rows[:, [COLUMNS.index("pressure_a"), COLUMNS.index("pressure_b")]]
+        inside = bool(np.max(np.abs(position)) < STROKE_SHARE * values["actuator_displacement"])
+        most = PRESSURE_SHARE * values["supply_pressure"]
+        return inside and bool(np.min(pressures) > -values["atmospheric_pressure"] and np.max(pressures) < most)
+
+    def slopes(self, rival: Fit, free: Sequence[Free], outcome: Array) -> Array:
+        """How a rival's outcome moves with the coordinate of each of these parameters: (samples, parameters)."""
+        slopes = np.zeros((len(outcome), len(free)))
+        for column, one in enumerate(free):
+            at = one.coordinate(rival.values[one.name])
+            moved = one.value(at + NUDGE)
+            reached = self.outcome({**rival.values, one.name: moved})
+            if one.coordinate(moved) != at and np.all(np.isfinite(reached)):
+                slopes[:, column] = (reached - outcome) / (one.coordinate(moved) - at)
+        return slopes
+
+    def _rows(self, values: Mapping[str, float]) -> Array:
+        return Plant(values, STEP).run(self.voltage, ROWS_EVERY).values
 
 
 @dataclass(frozen=True)
@@ -86,9 +129,7 @@ class _Slopes:
         return self.misfit(difference - self.columns @ move, move)
 
 
-def _imitating(
-    target: Array, rival: Fit, slopes: _Slopes, outcome: Array, voltage: Array, noises: Mapping[str, float]
-) -> Array:
+def _imitating(target: Array, test: _Test, rival: Fit, slopes: _Slopes, outcome: Array) -> Array:
     """A rival's outcome when its parameters have moved towards another's."""
     q = np.array([one.coordinate(rival.values[one.name]) for one in slopes.free])
     misfit, damping = slopes.misfit(target - outcome, q), 1e-4
@@ -96,10 +137,9 @@ def _imitating(
         moved = q + slopes.towards(target - outcome, q, damping)
         values = {one.name: one.value(float(at)) for one, at in zip(slopes.free, moved, strict=True)}
         moved = np.array([one.coordinate(values[one.name]) for one in slopes.free])
-        rows = _rows({**rival.values, **values}, voltage)
-        reached = outcome if rows is None else _scaled(rows, noises)
-        left = np.inf if rows is None else slopes.misfit(target - reached, moved)
-        if left >= misfit:
+        reached = test.outcome({**rival.values, **values})
+        left = slopes.misfit(target - reached, moved)
+        if not left < misfit:  # a response that ran away leaves no number
             damping *= 100.0
             continue
         gain, q, outcome, misfit = misfit - left, moved, reached, left
@@ -107,43 +147,3 @@ def _imitating(
             break
         damping *= 0.01
     return outcome
-
-
-def _slopes(rival: Fit, free: Sequence[Free], outcome: Array, voltage: Array, noises: Mapping[str, float]) -> Array:
-    """How a rival's outcome moves with the coordinate of each of these parameters: (samples, parameters)."""
-    slopes = np.zeros((len(outcome), len(free)))
-    for column, one in enumerate(free):
-        at = one.coordinate(rival.values[one.name])
-        moved = one.value(at + NUDGE)
-        rows = _rows({**rival.values, one.name: moved}, voltage)
-        if rows is not None and one.coordinate(moved) != at:
-            slopes[:, column] = (_scaled(rows, noises) - outcome) / (one.coordinate(moved) - at)
-    return slopes
-
-
-def _rows(values: Mapping[str, float], voltage: Array) -> Array | None:
-    rows = Plant(values, STEP).run(voltage, ROWS_EVERY).values
-    return rows if np.all(np.isfinite(rows)) else None
-
-
-def _bearable_rows(values: Mapping[str, float], voltage: Array) -> Array | None:
-    """A response that stays inside the stroke, and its pressures between a vacuum and what the rig bears; or None."""
-    rows = _rows(values, voltage)
-    if rows is None:
-        return None
-    position = rows[:, COLUMNS.index("position")]
-    pressures = rows[:, [COLUMNS.index("pressure_a"), COLUMNS.index("pressure_b")]]
-    inside = bool(np.max(np.abs(position)) < STROKE_SHARE * values["actuator_displacement"])
-    most = PRESSURE_SHARE * values["supply_pressure"]
-    bearable = inside and np.min(pressures) > -values["atmospheric_pressure"] and np.max(pressures) < most
-    return rows if bearable else None
-
-
-def _scaled(rows: Array, noises: Mapping[str, float]) -> Array:
-    """The measured channels over their noise, one after the other; of the position, without its mean in each second:
-    a fit starts again there, so that little is learnt from where a drift has led."""
-    pieces = {name: rows[:, COLUMNS.index(f"measured_{name}")] / noise for name, noise in noises.items()}
-    if "position" in pieces:
-        seconds = pieces["position"].reshape(-1, round(RATE))
-        pieces["position"] = (seconds - seconds.mean(axis=1, keepdims=True)).ravel()
-    return np.concatenate(list(pieces.values()))
