@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log
 
 import numpy as np
@@ -14,6 +14,8 @@ from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.passing import passing_effects
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.refine import (
+    FAR_OFF,
+    Attempt,
     Found,
     Progress,
     attempts,
@@ -94,7 +96,9 @@ def compete(
     best = min([calibrated.objective, *(result.objective for _, result in passing)])
     for attempt in attempts(problem, calibrated, beginnings, promises, REFINED, ENOUGH):
         effect = attempt.promise.start.effect
-        enough = max(ADEQUATE * problem.count(), problem.count() + OVER * (calibrated.objective - problem.count()))
+        nearly_all = problem.count() + OVER * (calibrated.objective - problem.count())
+        # a share of what a hopeless calibration leaves is still far from noise
+        enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_OFF * problem.count()))
         if best < enough and attempt.promise.gain < HARDLY * (calibrated.objective - best):
             continue
         progress(f"refitting with {effect.id}")
@@ -105,6 +109,37 @@ def compete(
     nominal = back_fit(problem, calibrated, [result for _, result in found])
     entries = rank(problem, nominal, found)
     return Tournament(Entry((), nominal, 0.0), entries, promises, scatter(nominal, entries))
+
+
+def from_every_start(
+    problem: Problem,
+    tournament: Tournament,
+    candidates: Sequence[Effect],
+    facts: Facts,
+    progress: Progress = lambda _: None,
+) -> Tournament:
+    """The tournament, and where all that was tried stays far off, with every start of every effect tried afresh.
+
+    What a start promises is linear in what it changes, and says little where a large effect has led the calibration
+    astray.
+    """
+    best = min([tournament.nominal.fit, *(entry.fit for entry in tournament.entries)], key=lambda one: one.objective)
+    if best.data < FAR_OFF * best.count:
+        return tournament
+    found: Found = [(entry.effects, entry.fit) for entry in tournament.entries]
+    lowest = best.objective
+    for effect in candidates:
+        progress(f"refitting with {effect.id} from every start")
+        for start in starts(effect, facts):
+            result = try_effect(problem, Attempt(tournament.nominal.fit, Promise(start, 0.0, 1.0), afresh=True), lowest)
+            keep_better(found, (effect,), result)
+            lowest = min(lowest, result.objective)
+    if lowest > best.objective - ENOUGH:
+        return tournament
+    found = cross(problem, settle(problem, found, progress))
+    nominal = back_fit(problem, tournament.nominal.fit, [result for _, result in found])
+    entries = rank(problem, nominal, found)
+    return replace(tournament, nominal=Entry((), nominal, 0.0), entries=entries, scatter=scatter(nominal, entries))
 
 
 def scatter(nominal: Fit, entries: Sequence[Entry]) -> float:

@@ -1,0 +1,44 @@
+"""Where all that was tried stays far off, every start is tried afresh."""
+
+from dataclasses import replace
+
+import pytest
+from made import recorded
+
+from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.facts import gather
+from eha_core.diagnosis.observation import observe
+from eha_core.diagnosis.refine import FAR_OFF
+from eha_core.diagnosis.tournament import Entry, Tournament, from_every_start
+from eha_core.effects import effects
+from eha_core.parameters import nominal_values
+
+LAWS = {effect.id: effect for effect in effects()}
+ABLE = (LAWS["constant_load"], LAWS["leakage_onset"])
+PLANTED = {"leakage_onset.time": 4.87, "leakage_onset.internal_leakage": 3e-10}
+
+
+@pytest.fixture(scope="module")
+def calibration():
+    return calibrate(observe(recorded(PLANTED, duration=8.0)), nominal_values(), 2e-4)
+
+
+@pytest.fixture(scope="module")
+def facts(calibration):
+    return gather(observe(recorded(PLANTED, duration=8.0)), calibration.shooting, calibration.fitted)
+
+
+def test_the_effect_that_was_passed_over_is_found(calibration, facts):
+    assert calibration.fitted.data > FAR_OFF * calibration.fitted.count
+    nothing_tried = Tournament(Entry((), calibration.fitted, 0.0), (), (), 1.0)
+    found = from_every_start(calibration.problem, nothing_tried, ABLE, facts)
+    winner = found.entries[0]
+    assert winner.ids == ("leakage_onset",)
+    assert winner.fit.data < 1.05 * winner.fit.count
+    assert winner.fit.values["leakage_onset.time"] == pytest.approx(4.87, abs=0.01)
+
+
+def test_what_leaves_little_is_left_alone(calibration, facts):
+    near = replace(calibration.fitted, data=0.9 * FAR_OFF * calibration.fitted.count)
+    tournament = Tournament(Entry((), near, 0.0), (), (), 1.0)
+    assert from_every_start(calibration.problem, tournament, ABLE, facts) is tournament
