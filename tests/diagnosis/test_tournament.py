@@ -7,8 +7,10 @@ from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
+from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.refine import FAR_OFF
+from eha_core.diagnosis.screen import screen
 from eha_core.diagnosis.tournament import Entry, Tournament, from_every_start
 from eha_core.effects import effects
 from eha_core.parameters import nominal_values
@@ -24,21 +26,23 @@ def calibration():
 
 
 @pytest.fixture(scope="module")
-def facts(calibration):
-    return gather(observe(recorded(PLANTED, duration=8.0)), calibration.shooting, calibration.fitted)
+def promises(calibration):
+    facts = gather(observe(recorded(PLANTED, duration=8.0)), calibration.shooting, calibration.fitted)
+    beginnings = [start for effect in ABLE for start in starts(effect, facts)]
+    return screen(calibration.problem, calibration.fitted, beginnings)
 
 
-def test_the_effect_that_was_passed_over_is_found(calibration, facts):
+def test_the_effect_that_was_passed_over_is_found(calibration, promises):
     assert calibration.fitted.data > FAR_OFF * calibration.fitted.count
-    nothing_tried = Tournament(Entry((), calibration.fitted, 0.0), (), (), 1.0)
-    found = from_every_start(calibration.problem, nothing_tried, ABLE, facts)
+    nothing_tried = Tournament(Entry((), calibration.fitted, 0.0), (), promises, 1.0)
+    found = from_every_start(calibration.problem, nothing_tried)
     winner = found.entries[0]
     assert winner.ids == ("leakage_onset",)
     assert winner.fit.data < 1.05 * winner.fit.count
     assert winner.fit.values["leakage_onset.time"] == pytest.approx(4.87, abs=0.01)
 
 
-def test_what_leaves_little_is_left_alone(calibration, facts):
+def test_what_leaves_little_is_left_alone(calibration, promises):
     near = replace(calibration.fitted, data=0.9 * FAR_OFF * calibration.fitted.count)
-    tournament = Tournament(Entry((), near, 0.0), (), (), 1.0)
-    assert from_every_start(calibration.problem, tournament, ABLE, facts) is tournament
+    tournament = Tournament(Entry((), near, 0.0), (), promises, 1.0)
+    assert from_every_start(calibration.problem, tournament) is tournament

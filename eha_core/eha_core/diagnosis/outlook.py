@@ -40,9 +40,10 @@ def separation(voltage: Array, rivals: Sequence[Fit], noises: Mapping[str, float
     second. None where the rig would not bear the test, whichever of the rivals it is.
     """
     test = _Test(voltage, noises)
-    outcomes = [test.outcome(rival.values) for rival in rivals if test.is_bearable(rival.values)]
-    if len(outcomes) < len(rivals):
+    responses = [test.respond(rival.values) for rival in rivals]
+    if not all(_is_bearable(rows, rival.values) for rows, rival in zip(responses, rivals, strict=True)):
         return None
+    outcomes = [test.measured(rows) for rows in responses]
     first = rivals[0]
     nominal = tuple(one for one in first.free if one.name in NOMINAL_NAMES)
     shared = test.slopes(first, nominal, outcomes[0])
@@ -63,26 +64,22 @@ class _Test:
     voltage: Array
     noises: Mapping[str, float]
 
-    def outcome(self, values: Mapping[str, float]) -> Array:
+    def respond(self, values: Mapping[str, float]) -> Array:
+        """The plant's rows, all its columns."""
+        return Plant(values, STEP).run(self.voltage, ROWS_EVERY).values
+
+    def measured(self, rows: Array) -> Array:
         """The measured channels over their noise, one after the other; of the position, without its mean in each
         second: a fit starts again there, so that little is learnt from where a drift has led."""
-        rows = self._rows(values)
         pieces = {name: rows[:, COLUMNS.index(f"measured_{name}")] / noise for name, noise in self.noises.items()}
         if "position" in pieces:
             seconds = pieces["position"].reshape(-1, round(RATE))
             pieces["position"] = (seconds - seconds.mean(axis=1, keepdims=True)).ravel()
         return np.concatenate(list(pieces.values()))
 
-    def is_bearable(self, values: Mapping[str, float]) -> bool:
-        """Whether the piston stays inside the stroke, and its pressures between a vacuum and what the rig bears."""
-        rows = self._rows(values)
-        if not np.all(np.isfinite(rows)):
-            return False
-        position = rows[:, COLUMNS.index("position")]
-        pressures = rows[:, [COLUMNS.index("pressure_a"), COLUMNS.index("pressure_b")]]
-        inside = bool(np.max(np.abs(position)) < STROKE_SHARE * values["actuator_displacement"])
-        most = PRESSURE_SHARE * values["supply_pressure"]
-        return inside and bool(np.min(pressures) > -values["atmospheric_pressure"] and np.max(pressures) < most)
+    def outcome(self, values: Mapping[str, float]) -> Array:
+        """What is measured of the plant with these parameters."""
+        return self.measured(self.respond(values))
 
     def slopes(self, rival: Fit, free: Sequence[Free], outcome: Array) -> Array:
         """How a rival's outcome moves with the coordinate of each of these parameters: (samples, parameters)."""
@@ -95,8 +92,16 @@ class _Test:
                 slopes[:, column] = (reached - outcome) / (one.coordinate(moved) - at)
         return slopes
 
-    def _rows(self, values: Mapping[str, float]) -> Array:
-        return Plant(values, STEP).run(self.voltage, ROWS_EVERY).values
+
+def _is_bearable(rows: Array, values: Mapping[str, float]) -> bool:
+    """Whether the piston stays inside the stroke, and its pressures between a vacuum and what the rig bears."""
+    if not np.all(np.isfinite(rows)):
+        return False
+    position = rows[:, COLUMNS.index("position")]
+    pressures = rows[:, [COLUMNS.index("pressure_a"), COLUMNS.index("pressure_b")]]
+    inside = bool(np.max(np.abs(position)) < STROKE_SHARE * values["actuator_displacement"])
+    most = PRESSURE_SHARE * values["supply_pressure"]
+    return inside and bool(np.min(pressures) > -values["atmospheric_pressure"] and np.max(pressures) < most)
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ def examine(recording: Recording, nominal: Mapping[str, float], progress: Progre
     able = candidates(observation)
     tournament = compete(calibration.problem, calibration.fitted, able, facts, progress)
     tournament = second_effects(calibration.problem, tournament, able, facts, progress)
-    restarted = from_every_start(calibration.problem, tournament, able, facts, progress)
+    restarted = from_every_start(calibration.problem, tournament, progress)
     if restarted is not tournament:
         tournament = second_effects(calibration.problem, restarted, able, facts, progress)
     recovery = recover(calibration.problem, tournament, facts, progress)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import log
 
 import numpy as np
@@ -94,52 +94,47 @@ def compete(
     passing = passing_effects(problem, calibrated, beginnings, screened, ENOUGH, progress)
     found: Found = []
     best = min([calibrated.objective, *(result.objective for _, result in passing)])
+    nearly_all = problem.count() + OVER * (calibrated.objective - problem.count())
+    # a share of what a hopeless calibration leaves is still far from noise
+    enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_OFF * problem.count()))
     for attempt in attempts(problem, calibrated, beginnings, promises, REFINED, ENOUGH):
         effect = attempt.promise.start.effect
-        nearly_all = problem.count() + OVER * (calibrated.objective - problem.count())
-        # a share of what a hopeless calibration leaves is still far from noise
-        enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_OFF * problem.count()))
         if best < enough and attempt.promise.gain < HARDLY * (calibrated.objective - best):
             continue
         progress(f"refitting with {effect.id}")
         result = try_effect(problem, attempt, best)
         keep_better(found, (effect,), result)
         best = min(best, result.objective)
-    found = [*passing, *cross(problem, settle(problem, found, progress))]
-    nominal = back_fit(problem, calibrated, [result for _, result in found])
-    entries = rank(problem, nominal, found)
-    return Tournament(Entry((), nominal, 0.0), entries, promises, scatter(nominal, entries))
+    return _ranked(problem, calibrated, [*passing, *cross(problem, settle(problem, found, progress))], promises)
 
 
-def from_every_start(
-    problem: Problem,
-    tournament: Tournament,
-    candidates: Sequence[Effect],
-    facts: Facts,
-    progress: Progress = lambda _: None,
-) -> Tournament:
-    """The tournament, and where all that was tried stays far off, with every start of every effect tried afresh.
+def from_every_start(problem: Problem, tournament: Tournament, progress: Progress = lambda _: None) -> Tournament:
+    """The tournament, and where all that was tried stays far off, with every start that was screened tried afresh.
 
     What a start promises is linear in what it changes, and says little where a large effect has led the calibration
     astray.
     """
-    best = min([tournament.nominal.fit, *(entry.fit for entry in tournament.entries)], key=lambda one: one.objective)
+    nominal = tournament.nominal.fit
+    best = min([nominal, *(entry.fit for entry in tournament.entries)], key=lambda one: one.objective)
     if best.data < FAR_OFF * best.count:
         return tournament
     found: Found = [(entry.effects, entry.fit) for entry in tournament.entries]
     lowest = best.objective
-    for effect in candidates:
+    for promise in tournament.promises:
+        effect = promise.start.effect
         progress(f"refitting with {effect.id} from every start")
-        for start in starts(effect, facts):
-            result = try_effect(problem, Attempt(tournament.nominal.fit, Promise(start, 0.0, 1.0), afresh=True), lowest)
-            keep_better(found, (effect,), result)
-            lowest = min(lowest, result.objective)
+        result = try_effect(problem, Attempt(nominal, promise, afresh=True), lowest)
+        keep_better(found, (effect,), result)
+        lowest = min(lowest, result.objective)
     if lowest > best.objective - ENOUGH:
         return tournament
-    found = cross(problem, settle(problem, found, progress))
-    nominal = back_fit(problem, tournament.nominal.fit, [result for _, result in found])
+    return _ranked(problem, nominal, cross(problem, settle(problem, found, progress)), tournament.promises)
+
+
+def _ranked(problem: Problem, calibrated: Fit, found: Found, promises: tuple[Promise, ...]) -> Tournament:
+    nominal = back_fit(problem, calibrated, [result for _, result in found])
     entries = rank(problem, nominal, found)
-    return replace(tournament, nominal=Entry((), nominal, 0.0), entries=entries, scatter=scatter(nominal, entries))
+    return Tournament(Entry((), nominal, 0.0), entries, promises, scatter(nominal, entries))
 
 
 def scatter(nominal: Fit, entries: Sequence[Entry]) -> float:
