@@ -13,22 +13,10 @@ import sys
 from collections.abc import Sequence
 from types import ModuleType
 
+from rclpy_dds.interfaces.folders import interface_folders
+
 OVERLAY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "overlay")
-SHARE = os.path.dirname(os.path.abspath(__file__))
 _STORE_SUFFIXES = ("_msgs", "_interfaces", "_srvs", "rmw_dds_common")
-
-
-def prefixes() -> list[str]:
-    """Return the installation prefixes searched for packages: AMENT_PREFIX_PATH, then this interpreter's own."""
-    found = [path for path in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if path]
-    found.append(sys.prefix)
-    return list(dict.fromkeys(found))
-
-
-def interface_folders(package: str) -> list[str]:
-    """Return the share folders of `package` that hold .msg or .srv files, the nearest first."""
-    folders = (os.path.join(prefix, "share", package) for prefix in (*prefixes(), SHARE))
-    return [f for f in folders if os.path.isdir(os.path.join(f, "msg")) or os.path.isdir(os.path.join(f, "srv"))]
 
 
 class Finder(importlib.abc.MetaPathFinder):

@@ -23,7 +23,7 @@ from rclpy.qos import (
 )
 from rclpy.task import Future
 
-from rclpy_dds.commands.main import CommandError
+from rclpy_dds.errors import CommandError
 
 HIDDEN_NODE_PREFIX = "_"
 _POLL = 0.02

@@ -7,7 +7,7 @@ import os
 
 from ament_index_python.packages import get_package_share_directory
 
-from rclpy_dds.commands.main import CommandError
+from rclpy_dds.errors import CommandError
 from rclpy_dds.launching.description import LaunchError, declared_arguments, read
 from rclpy_dds.launching.processes import run
 

@@ -11,15 +11,12 @@ from types import ModuleType
 from typing import Any
 
 from rclpy_dds import commands
+from rclpy_dds.errors import CommandError
 
 _NOT_OFFERED = {
     "action": "actions", "component": "components", "lifecycle": "lifecycle nodes", "daemon": "the daemon",
     "doctor": "doctor", "multicast": "multicast tests", "pkg": "package tools", "security": "security", "wtf": "doctor",
 }  # fmt: skip
-
-
-class CommandError(Exception):
-    """What a verb could not do; the message is the one line the user sees."""
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -10,7 +10,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.node import Node
 
 from rclpy_dds.commands.common import add_spin_time, call, full_node_names, wait_until
-from rclpy_dds.commands.main import CommandError
+from rclpy_dds.errors import CommandError
 
 TYPE_NAMES = {
     getattr(ParameterType, f"PARAMETER_{name.upper().replace(' ', '_')}"): name

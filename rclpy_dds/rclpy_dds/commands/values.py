@@ -10,7 +10,7 @@ import numpy
 import yaml
 
 from rclpy_dds import ros_yaml
-from rclpy_dds.commands.main import CommandError
+from rclpy_dds.errors import CommandError
 from rclpy_dds.interfaces.message import Message, interface_class, message_class
 
 DEFAULT_TRUNCATE_LENGTH = 128

@@ -11,8 +11,8 @@ from typing import Any
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
-from rclpy_dds.finder import SHARE, interface_folders, prefixes
 from rclpy_dds.interfaces.definition import Constant, Definition, Field, FieldType, parse_message, parse_service
+from rclpy_dds.interfaces.folders import SHARE, interface_folders, prefixes
 
 # The type store keeps no defaults; these are the only fields of its packages that have one.
 _DEFAULTS = {("geometry_msgs/msg/Quaternion", "w"): 1.0}

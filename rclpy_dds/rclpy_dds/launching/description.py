@@ -13,8 +13,8 @@ import yaml
 from ament_index_python.packages import get_package_prefix, get_package_share_directory
 
 from rclpy_dds import ros_yaml
-from rclpy_dds.commands.main import CommandError
-from rclpy_dds.commands.run import find_executable
+from rclpy_dds.errors import CommandError
+from rclpy_dds.executables import find_executable
 
 _KNOWN = (
     "arg",

@@ -15,7 +15,7 @@ from rosgraph_msgs.msg import Clock
 
 from rclpy_dds.commands.bag import pattern
 from rclpy_dds.commands.common import command_node
-from rclpy_dds.commands.main import CommandError
+from rclpy_dds.errors import CommandError
 from rclpy_dds.interfaces import store
 from rclpy_dds.interfaces.message import message_class
 from rclpy_dds.recordings.reading import messages, summarise

@@ -7,8 +7,8 @@ import re
 import sys
 
 from rclpy_dds.commands.common import command_node, discover, full_node_names
-from rclpy_dds.commands.main import CommandError
 from rclpy_dds.commands.param_common import TYPE_NAMES, add_node_arguments, describe, find_node, list_names
+from rclpy_dds.errors import CommandError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -9,8 +9,8 @@ from typing import Any
 from rclpy.task import Future
 
 from rclpy_dds.commands.common import add_qos, add_spin_time, chosen_qos, command_node, offered_qos, spin, topic_type
-from rclpy_dds.commands.main import CommandError
 from rclpy_dds.commands.values import DEFAULT_TRUNCATE_LENGTH, load_class, to_csv, to_yaml
+from rclpy_dds.errors import CommandError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from rclpy_dds.finder import prefixes
+from rclpy_dds.interfaces.folders import prefixes
 
 
 class PackageNotFoundError(KeyError):

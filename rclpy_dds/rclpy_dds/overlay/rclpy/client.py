@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
+from rclpy.dds_qos import to_dds
 from rclpy.endpoint import Endpoint
 from rclpy.exceptions import InvalidHandle, RCLError
 from rclpy.qos import QoSProfile
@@ -16,7 +17,6 @@ from rclpy.task import Future
 from rclpy_dds.interfaces.codec import MalformedSample
 from rclpy_dds.wire import entities, names, service
 from rclpy_dds.wire.hashes import type_hash
-from rclpy_dds.wire.qos import to_dds
 
 _POLL = 0.02
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from cyclonedds.qos import Policy
 
+from rclpy.dds_qos import from_dds
 from rclpy.exceptions import NodeNameNonExistentError
 from rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from rclpy.type_hash import TypeHash
@@ -17,7 +18,6 @@ from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
 from rclpy_dds.wire import names
 from rclpy_dds.wire.graph import Endpoint
-from rclpy_dds.wire.qos import from_dds
 
 NamesAndTypes = list[tuple[str, list[str]]]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from rclpy.dds_qos import to_dds
 from rclpy.duration import Duration
 from rclpy.endpoint import Endpoint
 from rclpy.exceptions import InvalidHandle, RCLError
@@ -11,7 +12,6 @@ from rclpy.qos import QoSProfile
 from rclpy_dds.interfaces.codec import encoder
 from rclpy_dds.wire import entities, names
 from rclpy_dds.wire.hashes import type_hash
-from rclpy_dds.wire.qos import to_dds
 
 
 class Publisher(Endpoint):

@@ -8,13 +8,13 @@ from types import CoroutineType, SimpleNamespace
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
+from rclpy.dds_qos import to_dds
 from rclpy.endpoint import Endpoint
 from rclpy.exceptions import RCLError
 from rclpy.qos import QoSProfile
 from rclpy_dds.interfaces.codec import MalformedSample
 from rclpy_dds.wire import entities, names, service
 from rclpy_dds.wire.hashes import type_hash
-from rclpy_dds.wire.qos import to_dds
 
 # Replies are volatile: a reply sent before discovery has matched the client's reader is lost. Once per client the
 # server waits for that (s); a client that has gone ends the wait, so only a very busy machine uses it up.

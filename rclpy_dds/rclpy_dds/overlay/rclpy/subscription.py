@@ -9,12 +9,12 @@ from enum import Enum
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
+from rclpy.dds_qos import to_dds
 from rclpy.endpoint import Endpoint
 from rclpy.qos import QoSProfile
 from rclpy_dds.interfaces.codec import MalformedSample, decoder
 from rclpy_dds.wire import entities, names
 from rclpy_dds.wire.hashes import type_hash
-from rclpy_dds.wire.qos import to_dds
 
 
 class Subscription(Endpoint):

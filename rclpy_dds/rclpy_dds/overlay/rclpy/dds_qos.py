@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cyclonedds.qos import Policy, Qos
+
 from rclpy.duration import Duration, Infinite
 from rclpy.qos import (
     _BEST_AVAILABLE_NANOSECONDS,
@@ -14,7 +15,6 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-
 from rclpy_dds.wire.entities import INFINITY
 
 
