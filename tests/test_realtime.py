@@ -77,6 +77,27 @@ def test_a_backlog_beyond_the_limit_is_lost_and_said_so(hand: Hand) -> None:
     assert pace.due() == 1
 
 
+def test_time_that_is_late_or_lost_is_told_once_and_punctual_time_is_not(hand: Hand) -> None:
+    pace = pacer(hand, catch_up_limit=0.1)
+    for _ in range(100):
+        hand.move(2.0)
+        pace.due()
+    assert pace.report().troubles() == []
+    for tick in range(100):  # six ticks in a hundred come 3 ms late, on top of what the last one left over
+        hand.move(5.0 if tick % 17 == 0 else 2.0)
+        pace.due()
+    late = pace.report()
+    assert late.overrun_share == pytest.approx(0.06)
+    assert late.troubles()[0] == "6 % of the ticks came more than a period late"
+    assert late.troubles()[1].startswith("one tick in a hundred was 4 ms late or more, with a period of 2 ms")
+    hand.move(1002.0)
+    pace.due()
+    assert "0.9 s of time lost" in pace.report().troubles()[0]
+    hand.move(2.0)
+    pace.due()
+    assert pace.report().troubles() == []
+
+
 def test_a_timer_that_ticks_a_little_early_sets_the_phase_once(hand: Hand) -> None:
     pace = pacer(hand)
     hand.move(1.8)
@@ -241,3 +262,28 @@ def test_a_second_command_for_one_step_is_counted(hand: Hand) -> None:
     gate.command_arrived()
     gate.command_arrived()
     assert gate.surplus == 1
+
+
+def test_a_command_that_does_not_come_is_waited_for_as_long_as_patience_lasts(hand: Hand) -> None:
+    gate = LockstepGate(patience=0.1, clock=lambda: hand.now / NANOSECONDS)
+    assert not gate.give_up(commanders=1)  # nobody was asked yet
+    gate.tick_wanted(1, 1)
+    hand.move(300)
+    assert gate.tick_wanted(1, 1)
+    hand.move(90)
+    assert not gate.give_up(1)
+    hand.move(20)
+    assert not gate.give_up(0)  # nobody is there to be waited for
+    assert gate.give_up(1)
+    assert not gate.give_up(1)
+    gate.command_arrived()
+    hand.move(500)
+    assert not gate.give_up(1)
+    assert gate.take()
+    gate.pause()
+    hand.move(500)
+    assert not gate.give_up(1)
+    gate.resume()
+    assert not gate.give_up(1)
+    hand.move(110)
+    assert gate.give_up(1) and gate.uncommanded == 2

@@ -7,16 +7,15 @@ Electro-Hydraulic Actuator System with the Presence of Actuator Internal Leakage
 from __future__ import annotations
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
-import yaml
-
 from eha_core.effects import effects
-from eha_core.errors import ParameterError
+from eha_core.errors import ParameterError, remedy
+from eha_core.node_parameters import from_node, to_node
 from eha_core.parameter import Parameter
+from eha_core.yaml_file import load_yaml
 
 
 def _row(
@@ -89,9 +88,8 @@ def changed(values: Mapping[str, float], changes: Mapping[str, object]) -> dict[
     for name, value in changes.items():
         row = catalogue().get(name)
         if row is None:
-            near = get_close_matches(name, catalogue(), n=1)
-            remedy = f"did you mean {near[0]}?" if near else "`eha effects --parameters` lists the names"
-            raise ParameterError(f"there is no parameter named {name}; {remedy}")
+            what_to_do = remedy(name, catalogue(), "`eha effects --parameters` lists the names")
+            raise ParameterError(f"there is no parameter named {name}; {what_to_do}")
         result[name] = row.check(value, name)
     if result["supply_pressure"] <= result["return_pressure"]:
         raise ParameterError(
@@ -105,9 +103,9 @@ NODE_KEYS = ("/**", "/**/eha_sim", "eha_sim", "/eha_sim")
 """Under these keys a ROS parameters file speaks to the simulator; the more particular ones overrule the others."""
 
 NODE_ONLY = frozenset(
-    {"use_sim_time", "step_size", "publish_rate", "time_mode", "real_time_factor", "command_timeout", "command_limit",
-     "catch_up_limit", "initial_position", "start_paused", "frame_id", "diagnostics_rate", "qos_overrides",
-     "start_type_description_service"}
+    {"use_sim_time", "step_size", "publish_rate", "clock_rate", "time_mode", "real_time_factor", "lockstep_patience",
+     "command_timeout", "command_limit", "catch_up_limit", "initial_position", "start_paused", "frame_id",
+     "diagnostics_rate", "qos_overrides", "start_type_description_service"}
 )
 """Parameters of the simulator node that are none of the plant's; a parameters file may carry them."""
 
@@ -118,19 +116,14 @@ def load_parameters(path: str | Path) -> dict[str, float]:
     Nested keys are joined by dots. Sections of other nodes and the node's own settings are passed over. Returns only
     the names that the file gives. Raises ParameterError naming the file when it cannot be read or a value does not fit.
     """
-    try:
-        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ParameterError(f"{path}: cannot read the parameters file: {getattr(error, 'strerror', error)}") from error
-    except yaml.YAMLError as error:
-        raise ParameterError(f"{path}: this is not YAML: {' '.join(str(error).split())}") from error
+    document = load_yaml(path, ParameterError, str(path))
     if not isinstance(document, dict):
         raise ParameterError(f"{path}: expected `eha_sim: {{ros__parameters: {{...}}}}` at the top")
     found: dict[str, object] = {}
     for key in NODE_KEYS:
         section = document.get(key)
         if isinstance(section, dict) and isinstance(section.get("ros__parameters"), dict):
-            found.update(_flatten(section["ros__parameters"]))
+            found.update(from_node(_flatten(section["ros__parameters"])))
     if not found:
         raise ParameterError(f"{path}: no parameters for eha_sim; expected `eha_sim: {{ros__parameters: {{...}}}}`")
     plant = {name: value for name, value in found.items() if name.split(".")[0] not in NODE_ONLY}
@@ -163,13 +156,18 @@ def _number(value: object) -> object:
 
 
 def dump_parameters(values: Mapping[str, float], heading: str = "") -> str:
-    """The given parameters as the text of a ROS 2 parameters file for the simulator, `heading` as its comment."""
+    """The given parameters as the text of a ROS 2 parameters file for the simulator in any namespace, `heading` as its
+    comment."""
     lines = [f"# {line}" for line in heading.splitlines()]
-    lines += ["eha_sim:", "  ros__parameters:"]
-    for name, value in values.items():
-        text = repr(float(value))
-        mantissa, _, exponent = text.partition("e")
-        if exponent and "." not in mantissa:
-            text = f"{mantissa}.0e{exponent}"
+    lines += ["/**/eha_sim:", "  ros__parameters:"]
+    for name, value in to_node(values).items():
+        text = f"[{', '.join(map(_text, value))}]" if isinstance(value, list) else _text(value)
         lines.append(f"    {name}: {text}")
     return "\n".join(lines) + "\n"
+
+
+def _text(value: float) -> str:
+    """A number with its point: without it, YAML 1.1 takes 1e-10 for text."""
+    text = repr(float(value))
+    mantissa, _, exponent = text.partition("e")
+    return f"{mantissa}.0e{exponent}" if exponent and "." not in mantissa else text

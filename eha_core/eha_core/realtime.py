@@ -16,13 +16,18 @@ import numpy as np
 NANOSECONDS = 1_000_000_000
 
 
+OVERRUN_SHARE = 0.05
+"""Share of late ticks from which a controller sees another rig than the one simulated: assumed, one in twenty."""
+
+
 @dataclass(frozen=True)
 class Health:
     """How well real time was kept since the previous report (lateness) and since the start (counts).
 
     Lateness is how long after its due time a period was taken [s]; `overruns` counts calls that found more than one
     period owed; `lost_time` is simulated time given up because the backlog passed the catch-up limit [s];
-    `real_time_factor` is simulated over wall-clock time since the previous report.
+    `real_time_factor` is simulated over wall-clock time since the previous report, and so are `overrun_share`, the
+    share of calls that were overruns, and `newly_lost_time`. `wall_period` is the wall-clock time of one period [s].
     """
 
     periods: int
@@ -32,6 +37,23 @@ class Health:
     lateness_mean: float
     lateness_p99: float
     lateness_max: float
+    overrun_share: float
+    newly_lost_time: float
+    wall_period: float
+
+    def troubles(self) -> list[str]:
+        """Why the simulated time since the previous report is not a rig's: one line each, none when all is well."""
+        troubles = []
+        if self.newly_lost_time > 0.0:
+            troubles.append(f"{self.newly_lost_time:.3g} s of time lost: the machine is too busy")
+        if self.overrun_share > OVERRUN_SHARE:
+            troubles.append(f"{100 * self.overrun_share:.0f} % of the ticks came more than a period late")
+        if self.lateness_p99 > self.wall_period:
+            troubles.append(
+                f"one tick in a hundred was {1e3 * self.lateness_p99:.2g} ms late or more, with a period of"
+                f" {1e3 * self.wall_period:.2g} ms"
+            )
+        return troubles
 
 
 class Pacer:
@@ -63,7 +85,7 @@ class Pacer:
         self._overruns = 0
         self._lost_ns = 0.0
         self._lateness_ns: list[float] = []
-        self._reported = (clock(), 0)
+        self._reported = (clock(), 0, 0, 0.0)
         self.restart()
 
     @property
@@ -113,12 +135,14 @@ class Pacer:
 
     def report(self) -> Health:
         """Return the health since the previous report and start a new one."""
-        now, periods_before = self._clock(), self._periods
-        wall = (now - self._reported[0]) / NANOSECONDS
-        simulated = (self._periods - self._reported[1]) * self._period
+        now = self._clock()
+        reported_at, periods, overruns, lost_ns = self._reported
+        self._reported = (now, self._periods, self._overruns, self._lost_ns)
+        wall = (now - reported_at) / NANOSECONDS
+        simulated = (self._periods - periods) * self._period
+        calls = len(self._lateness_ns)
         lateness = np.asarray(self._lateness_ns or [0.0]) / NANOSECONDS
         self._lateness_ns = []
-        self._reported = (now, periods_before)
         return Health(
             periods=self._periods,
             overruns=self._overruns,
@@ -127,6 +151,9 @@ class Pacer:
             lateness_mean=float(lateness.mean()),
             lateness_p99=float(np.quantile(lateness, 0.99)),
             lateness_max=float(lateness.max()),
+            overrun_share=(self._overruns - overruns) / calls if calls else 0.0,
+            newly_lost_time=(self._lost_ns - lost_ns) / NANOSECONDS,
+            wall_period=self._period / self._factor,
         )
 
 
@@ -188,17 +215,24 @@ class LockstepGate:
     Messages are lost to peers that have not found each other yet, so a tick is (re)published once the set of peers has
     been still for `settle` seconds after a change, until a command shows that somebody hears it. A new commander starts
     this again; a recorder that joins while a controller is thinking does not.
+
+    A controller that is itself driven by the simulated clock may need time to pass before its first command. With a
+    `patience` [s], a period whose command does not come within it after its tick may be taken all the same;
+    `uncommanded` counts those.
     """
 
-    def __init__(self, settle: float = 0.2, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, settle: float = 0.2, patience: float = 0.0, clock: Callable[[], float] = time.monotonic) -> None:
         self._settle = settle
+        self._patience = patience
         self._clock = clock
+        self._ticked_at: float | None = None
         self._peers: tuple[int, int] = (0, 0)
         self._changed_at: float | None = None
         self._heard = False
         self._pending = False
         self._allowance: int | None = None
         self.surplus = 0
+        self.uncommanded = 0
 
     @property
     def allowance(self) -> int:
@@ -222,10 +256,16 @@ class LockstepGate:
     def resume(self) -> None:
         """Let periods pass as commands come."""
         self._allowance = None
+        self._be_patient_again()
 
     def allow(self, periods: int) -> None:
         """Let so many periods pass as commands come, then pause."""
         self._allowance = periods
+        self._be_patient_again()
+
+    def _be_patient_again(self) -> None:
+        if self._ticked_at is not None:
+            self._ticked_at = self._clock()
 
     def command_arrived(self) -> None:
         """Note the command of this step; a second one before the step is taken replaces it and is counted."""
@@ -238,9 +278,24 @@ class LockstepGate:
         if not self._pending or self._allowance == 0:
             return False
         self._pending = False
+        self._use_period()
+        return True
+
+    def give_up(self, commanders: int) -> bool:
+        """Return whether the period may pass without its command, which the matched commanders have kept for too
+        long."""
+        if self.paused or self._pending or not self._patience or not commanders or self._ticked_at is None:
+            return False
+        if self._clock() - self._ticked_at < self._patience:
+            return False
+        self._use_period()
+        self.uncommanded += 1
+        return True
+
+    def _use_period(self) -> None:
         if self._allowance is not None:
             self._allowance -= 1
-        return True
+        self._ticked_at = self._clock()
 
     def tick_wanted(self, commanders: int, listeners: int) -> bool:
         """Return whether the tick should be published (again), given the numbers of matched peers now."""
@@ -255,4 +310,5 @@ class LockstepGate:
         if self.paused or now - self._changed_at < self._settle:
             return False
         self._changed_at = None
+        self._ticked_at = now
         return True

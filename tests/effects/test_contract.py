@@ -12,11 +12,13 @@ import pytest
 
 from eha_core.effects import effect as effect_of
 from eha_core.effects import effects
-from eha_core.effects.declaration import MEMORY_STARTS, SITES, Effect
+from eha_core.effects.declaration import MEMORY_STARTS, Effect
+from eha_core.effects.sites import SITES
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant, hooks, step
-from eha_core.plant.composite import QUANTITIES, compiled_step
-from eha_core.plant.simulator import COLUMNS, LONGEST_DELAY, pack
+from eha_core.plant.composite import compiled_step
+from eha_core.plant.simulator import LONGEST_DELAY, pack
+from eha_core.plant.state import COLUMNS
 
 CATALOGUE = [
     "command_delay", "spool_hysteresis", "valve_deadband", "valve_null_offset", "flow_gain_asymmetry",
@@ -110,7 +112,7 @@ def test_contribution_has_the_head_of_its_site(effect: Effect) -> None:
 
 
 def test_quantities_are_those_that_each_hook_returns() -> None:
-    for site, count in QUANTITIES.items():
+    for site, (_, count) in SITES.items():
         hook = getattr(hooks, site).py_func
         head = list(inspect.signature(hook).parameters)
         arguments = [object() for _ in head]
@@ -174,5 +176,5 @@ def test_any_legal_size_under_any_command_stays_finite(effect: Effect, seed: int
 
 def test_one_file_is_all_that_an_effect_takes() -> None:
     package = Path(inspect.getfile(Effect)).parent
-    files = {path.stem for path in package.glob("*.py")} - {"__init__", "declaration"}
+    files = {path.stem for path in package.glob("*.py")} - {"__init__", "declaration", "sites"}
     assert files == {effect.id for effect in effects()}

@@ -11,7 +11,8 @@ from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 
-from eha_core.effects.declaration import SITES, Effect
+from eha_core.effects.declaration import Effect
+from eha_core.effects.sites import SITES
 
 __all__ = ["SITES", "Effect", "effect", "effects"]
 
@@ -20,11 +21,12 @@ __all__ = ["SITES", "Effect", "effect", "effects"]
 def effects() -> tuple[Effect, ...]:
     """All effects, by site, rank and id."""
     found = []
+    ranks = {site: rank for rank, site in enumerate(SITES)}
     for entry in iter_modules(__path__):
         declared = getattr(import_module(f"{__name__}.{entry.name}"), "EFFECT", None)
         if declared is not None:
             found.append(replace(declared, id=entry.name))
-    return tuple(sorted(found, key=lambda effect: (SITES.index(effect.site), effect.order, effect.id)))
+    return tuple(sorted(found, key=lambda effect: (ranks[effect.site], effect.order, effect.id)))
 
 
 def effect(identifier: str) -> Effect:

@@ -7,9 +7,6 @@ from dataclasses import dataclass
 
 from eha_core.parameter import Parameter
 
-SITES = ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule")
-"""Where in the actuator an effect sits, in the order in which the signal passes: see `eha_core.plant.hooks`."""
-
 MEMORY_STARTS = ("zero", "current", "position", "velocity")
 """What a memory slot of an effect can hold when the effect begins to act."""
 
@@ -20,7 +17,8 @@ ASSUMED = "assumed: an order of magnitude for a bench actuator"
 class Effect:
     """One physical effect that the nominal equations leave out.
 
-    `statement` completes the sentence "the recording shows that ..." and may quote parameters by name, in SI units.
+    `site` is one of `sites.SITES`. `statement` completes the sentence "the recording shows that ..." and may quote
+    parameters by name, in SI units.
     `memory` names what each of the effect's state slots starts from (one of MEMORY_STARTS). `order` ranks effects of
     one site where their sequence matters physically; equal ranks go by id. `needs` lists measured columns without which
     no recording can show the effect. Effects of one `kind` are forms of one law: never two of them are named together.

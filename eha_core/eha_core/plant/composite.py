@@ -16,20 +16,19 @@ import tempfile
 from functools import cache
 from pathlib import Path
 from types import ModuleType
+from typing import NamedTuple
 
 import numba
 
-from eha_core.effects import effects
-from eha_core.parameters import NOMINAL
-from eha_core.plant import hooks
-
-QUANTITIES = {
-    "command": 1, "schedule": 2, "spool": 1, "orifice": 3, "supply": 2, "chamber": 9, "force": 4, "sensor": 4,
-}
-"""How many leading arguments of each hook it also returns."""
+from eha_core.effects import SITES, effects
+from eha_core.parameters import NOMINAL, catalogue
+from eha_core.plant import hooks, lane_hooks
+from eha_core.plant.lane_rows import LANES, PARAMETERS
 
 SOURCES = (
-    "compiled.py", "curve.py", "parameters.py", "plant/step.py", "plant/hooks.py", "plant/composite.py", "effects/*.py",
+    "compiled.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
+    "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
+    "plant/composite.py", "effects/*.py",
 )
 
 
@@ -39,10 +38,10 @@ def write_hooks() -> str:
     lines += ["from eha_core.compiled import inlined", ""]
     lines += [f"from eha_core.effects.{effect.id} import contribution as {effect.id}" for effect in effects()]
     place, slot = len(NOMINAL), 0
-    calls: dict[str, list[str]] = {site: [] for site in QUANTITIES}
+    calls: dict[str, list[str]] = {site: [] for site in SITES}
     for index, effect in enumerate(effects()):
         head = list(inspect.signature(getattr(hooks, effect.site)).parameters)
-        kept = head[: QUANTITIES[effect.site]]
+        kept = head[: SITES[effect.site].quantities]
         arguments = [name if name != "memory" else f"memory, {slot}" for name in head[:-2]]
         arguments += [f"parameters[{place + offset}]" for offset in range(len(effect.parameters))]
         calls[effect.site].append(f"    if active[{index}]:")
@@ -52,7 +51,69 @@ def write_hooks() -> str:
     for site, body in calls.items():
         head = list(inspect.signature(getattr(hooks, site)).parameters)
         lines += ["", "", "@inlined", f"def {site}({', '.join(head)}):", *body]
-        lines += [f"    return {', '.join(head[: QUANTITIES[site]])}"]
+        lines += [f"    return {', '.join(head[: SITES[site].quantities])}"]
+    return "\n".join(lines) + "\n"
+
+
+SEEN = ("position", "velocity", "pressure_a", "pressure_b")
+
+
+def lane_row(site: str, name: str, slot: int) -> str:
+    """The row of a block, or what all lanes share, that an effect's argument of that name stands for."""
+    if name == "memory":
+        return f"block, MEMORY + {slot} * LANES + lane"
+    if name in ("history", "newest", "step_size", "time"):
+        return name
+    if site == "sensor" and name in SEEN:
+        name = f"seen_{name}"
+    name = {("spool", "target"): "new_target", ("force", "damping"): "total_damping",
+            ("orifice", "spool_position"): "oil_spool"}.get((site, name), name)  # fmt: skip
+    return f"block[{name.upper()} + lane]"
+
+
+class Layout(NamedTuple):
+    """Where a block's rows begin that the catalogue decides: the effects' memory, which of them act; and its end."""
+
+    memory: int
+    acts: int
+    end: int
+
+
+@cache
+def layout() -> Layout:
+    """The block of the lock-step with every effect of the catalogue."""
+    memory = PARAMETERS + len(catalogue()) * LANES
+    acts = memory + sum(len(effect.memory) for effect in effects()) * LANES
+    return Layout(memory, acts, acts + len(effects()) * LANES)
+
+
+def write_lane_hooks() -> str:
+    """The source of the lock-step's hooks: each site calls its effects in order, in those lanes in which they act."""
+    lines = ['"""Generated from the catalogue of effects, and written anew when a source changes: do not edit."""', ""]
+    lines += ["from eha_core.compiled import called", "from eha_core.plant.lane_rows import *", ""]
+    lines += [f"from eha_core.effects.{effect.id} import contribution as {effect.id}" for effect in effects()]
+    lines += ["", f"MEMORY, ACTS = {layout().memory}, {layout().acts}"]
+    place, slot = len(NOMINAL), 0
+    calls: dict[str, list[str]] = {site: [] for site in SITES}
+    masks = dict.fromkeys(SITES, 0)
+    for index, effect in enumerate(effects()):
+        head = list(inspect.signature(getattr(hooks, effect.site)).parameters)[:-2]
+        arguments = [lane_row(effect.site, name, slot) for name in head]
+        kept = arguments[: SITES[effect.site].quantities]
+        arguments += [f"block[PARAMETERS + {place + k} * LANES + lane]" for k in range(len(effect.parameters))]
+        calls[effect.site] += [
+            f"    if active & {1 << index}:",
+            "        for lane in range(lanes):",
+            f"            if block[ACTS + {index} * LANES + lane] > 0.0:",
+            f"                {', '.join(kept)} = {effect.id}({', '.join(arguments)})",
+        ]
+        masks[effect.site] |= 1 << index
+        place += len(effect.parameters)
+        slot += len(effect.memory)
+    lines += [f"{site.upper()}_EFFECTS = {mask}" for site, mask in masks.items()]
+    for site, body in calls.items():
+        head = list(inspect.signature(getattr(lane_hooks, site)).parameters)
+        lines += ["", "", "@called", f"def {site}({', '.join(head)}):", *(body or ["    pass"])]
     return "\n".join(lines) + "\n"
 
 
@@ -78,7 +139,9 @@ def _write_package(folder: Path) -> None:
     draft = Path(tempfile.mkdtemp(dir=folder.parent))
     (draft / "__init__.py").write_text("", encoding="utf-8")
     (draft / "hooks.py").write_text(write_hooks(), encoding="utf-8")
-    (draft / "step.py").write_text((Path(__file__).parent / "step.py").read_text(encoding="utf-8"), encoding="utf-8")
+    (draft / "lane_hooks.py").write_text(write_lane_hooks(), encoding="utf-8")
+    for name in ("step.py", "lanes.py"):
+        (draft / name).write_text((Path(__file__).parent / name).read_text(encoding="utf-8"), encoding="utf-8")
     try:
         draft.rename(folder)
     except OSError:
@@ -87,8 +150,8 @@ def _write_package(folder: Path) -> None:
 
 
 @cache
-def compiled_step() -> ModuleType:
-    """The step with every effect of the catalogue plugged in: a module with the functions of `eha_core.plant.step`."""
+def _package() -> str:
+    """The generated package's name, under which it is imported."""
     name = f"eha_composite_{_fingerprint()}"
     folder = _cache_root() / name
     try:
@@ -104,4 +167,16 @@ def compiled_step() -> ModuleType:
     package = importlib.util.module_from_spec(specification)
     sys.modules[name] = package
     specification.loader.exec_module(package)
-    return importlib.import_module(f"{name}.step")
+    return name
+
+
+@cache
+def compiled_step() -> ModuleType:
+    """The step with every effect of the catalogue plugged in: a module with the functions of `eha_core.plant.step`."""
+    return importlib.import_module(f"{_package()}.step")
+
+
+@cache
+def compiled_lanes() -> ModuleType:
+    """The lock-step with every effect of the catalogue plugged in: the functions of `eha_core.plant.lanes`."""
+    return importlib.import_module(f"{_package()}.lanes")

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import expm1, isfinite
 from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,44 +17,11 @@ from eha_core.errors import ParameterError
 from eha_core.parameters import changed, nominal_values
 from eha_core.plant.composite import compiled_step
 from eha_core.plant.spells import span, spells
+from eha_core.plant.state import AT, COLUMNS, PISTON, Places, Row
 
 Array = NDArray[np.float64]
 
 
-class State(NamedTuple):
-    """One row of what the plant knows. SI units; pressures above the return line's reference.
-
-    Flows: into port A, out of port B, from chamber A to B through the piston's seal, out of each chamber to the
-    outside. `friction_force` is F_f of equation (10): all on the piston beside pressure, viscous damping and spring,
-    the reaction of the stroke's ends included. `internal_leakage` is the coefficient K_Lin in force. `measured_*` is
-    what sensors say.
-    """
-
-    voltage: float
-    current: float
-    spool_position: float
-    spool_velocity: float
-    position: float
-    velocity: float
-    pressure_a: float
-    pressure_b: float
-    flow_a: float
-    flow_b: float
-    internal_leakage_flow: float
-    external_leakage_flow_a: float
-    external_leakage_flow_b: float
-    supply_pressure: float
-    return_pressure: float
-    hydraulic_force: float
-    friction_force: float
-    internal_leakage: float
-    measured_position: float
-    measured_velocity: float
-    measured_pressure_a: float
-    measured_pressure_b: float
-
-
-COLUMNS = State._fields
 LONGEST_DELAY = 0.25
 """s; how far back the plant remembers its command. The command delay's upper bound."""
 
@@ -115,6 +81,18 @@ def pack(values: Mapping[str, float], step_size: float) -> Packed:
     return vector, active, valve
 
 
+def check_step_size(step_size: float) -> None:
+    """Raise ParameterError for a step [s] that the plant is not made for."""
+    if not (isfinite(step_size) and 1e-6 <= step_size <= 1e-3):
+        raise ParameterError(f"step_size = {step_size:g} s is out of range; give 1e-6 to 1e-3 s")
+
+
+def check_voltages(voltages: Array) -> None:
+    """Raise ParameterError for a command [V] that is not finite."""
+    if not np.all(np.isfinite(voltages)):
+        raise ParameterError("the voltage command is not finite; give volts")
+
+
 class Plant:
     """The electro-hydraulic servo actuator of equations (1) to (10) with the catalogue's effects.
 
@@ -126,8 +104,7 @@ class Plant:
     def __init__(
         self, parameters: Mapping[str, float] | None = None, step_size: float = 1e-4, initial_position: float = 0.0
     ) -> None:
-        if not (isfinite(step_size) and 1e-6 <= step_size <= 1e-3):
-            raise ParameterError(f"step_size = {step_size:g} s is out of range; give 1e-6 to 1e-3 s")
+        check_step_size(step_size)
         self.step_size = step_size
         self._advance = compiled_step().advance
         self._values = changed(nominal_values(), parameters or {})
@@ -151,7 +128,7 @@ class Plant:
         self._span = span(values, self.step_size)
         self._start_memory([now and not then for now, then in zip(self._active, before, strict=True)])
         stroke = values["actuator_displacement"]
-        self._state[7] = min(max(self._state[7], -stroke), stroke)
+        self._state[AT.position] = min(max(self._state[AT.position], -stroke), stroke)
 
     def reset(self, initial_position: float | None = None) -> None:
         """Back to rest at the initial position, both chambers midway between supply and return, and to time zero."""
@@ -162,30 +139,28 @@ class Plant:
                     f"initial_position = {initial_position:g} m is outside the stroke of +-{stroke:g} m"
                 )
             self._initial_position = initial_position
-        values = self._values
-        half = 0.5 * (values["supply_pressure"] + values["return_pressure"])
-        self._state = np.array(
-            [0.0, 0.0, values["supply_pressure"], values["return_pressure"], 0.0, 0.0, 0.0, self._initial_position, 0.0,
-             half, half]
-        )
+        supply, back = self._values["supply_pressure"], self._values["return_pressure"]
+        half = 0.5 * (supply + back)
+        self._state = np.zeros(len(Places._fields))
+        self._state[AT.supply_pressure], self._state[AT.return_pressure] = supply, back
+        self._state[PISTON] = self._initial_position, 0.0, half, half
         self._history = np.zeros(int(LONGEST_DELAY / self.step_size) + 3)
         self._memory = np.zeros(max(1, sum(len(effect.memory) for effect in effects())))
         self._start_memory([True] * len(effects()))
         self.step_count = 0
-        self._row[0] = 0.0
-        self._row[0, 6:8] = half
-        self._row[0, [4, 18]] = self._initial_position
-        self._row[0, [13, 14]] = self._state[2:4]
-        self._row[0, 17] = values["internal_leakage"]
-        self._row[0, 20:22] = half
+        self._row[0] = Row(*[0.0] * len(COLUMNS))._replace(
+            position=self._initial_position, pressure_a=half, pressure_b=half, supply_pressure=supply,
+            return_pressure=back, internal_leakage=self._values["internal_leakage"],
+            measured_position=self._initial_position, measured_pressure_a=half, measured_pressure_b=half,
+        )  # fmt: skip
 
     def place(self, position: float, velocity: float, pressure_a: float, pressure_b: float) -> None:
         """Put piston and chambers into a measured state [SI]; time, valve, and the effects' own states go on."""
         stroke = self._values["actuator_displacement"]
-        self._state[7:11] = min(max(position, -stroke), stroke), velocity, pressure_a, pressure_b
+        self._state[PISTON] = min(max(position, -stroke), stroke), velocity, pressure_a, pressure_b
 
     def _start_memory(self, chosen: Sequence[bool]) -> None:
-        starts = {"zero": 0.0, "current": self._state[4], "position": self._state[7], "velocity": self._state[8]}
+        starts = {"zero": 0.0} | {name: self._state[getattr(AT, name)] for name in ("current", "position", "velocity")}
         slot = 0
         for effect, take in zip(effects(), chosen, strict=True):
             for start in effect.memory:
@@ -199,9 +174,9 @@ class Plant:
         return self.step_count * self.step_size
 
     @property
-    def state(self) -> State:
-        """The state after the last step."""
-        return State(*self._row[0].tolist())
+    def state(self) -> Row:
+        """The row after the last step."""
+        return Row(*self._row[0].tolist())
 
     def advance(self, voltage: float, steps: int) -> None:
         """Hold `voltage` [V] for that many steps."""
@@ -220,9 +195,8 @@ class Plant:
         return Trajectory(counts * self.step_size, rows)
 
     def _run(self, voltages: Array, every: int, rows: Array) -> None:
-        if not np.all(np.isfinite(voltages)):
-            raise ParameterError("the voltage command is not finite; give volts")
-        self._state[0] = self.time
+        check_voltages(voltages)
+        self._state[AT.time] = self.time
         for spell in spells(self.step_count, len(voltages), every, self._span):
             if spell.acting and self.step_count + spell.steps.start == self._span[0] > 0:
                 self._start_memory([True] * len(effects()))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -21,18 +21,31 @@ def span(values: Mapping[str, float], step_size: float) -> tuple[int, int]:
     return round(values["effects_from"] / step_size), round(values["effects_until"] / step_size)
 
 
-def spells(first: int, count: int, every: int, acting: tuple[int, int]) -> Iterator[Spell]:
-    """Cut `count` steps, the first of them step `first` of the record, where the effects begin and cease to act.
+class Piece(NamedTuple):
+    """Steps in a row: which, how many make a row, and which rows they fill."""
+
+    steps: slice
+    every: int
+    rows: slice
+
+
+def pieces(first: int, count: int, every: int, instants: Iterable[int]) -> Iterator[Piece]:
+    """Cut `count` steps, the first of them step `first` of the record, at these steps of the record.
 
     Steps and rows are counted from the first. Every `every`-th step fills a row, wherever the cuts lie.
     """
-    cuts = sorted({0, count, *(instant - first for instant in acting if 0 < instant - first < count)})
+    cuts = sorted({0, count, *(instant - first for instant in instants if 0 < instant - first < count)})
     for begin, end in pairwise(cuts):
-        acts = acting[0] <= first + begin < acting[1]
         whole = min(-(-begin // every) * every, end)
-        if begin < whole:  # the row that the last spell began
+        if begin < whole:  # the row that the last piece began
             fills = whole % every == 0
             row = whole // every
-            yield Spell(slice(begin, whole), whole - begin + (not fills), slice(row - fills, row), acts)
+            yield Piece(slice(begin, whole), whole - begin + (not fills), slice(row - fills, row))
         if whole < end:
-            yield Spell(slice(whole, end), every, slice(whole // every, end // every), acts)
+            yield Piece(slice(whole, end), every, slice(whole // every, end // every))
+
+
+def spells(first: int, count: int, every: int, acting: tuple[int, int]) -> Iterator[Spell]:
+    """Cut steps, as `pieces` does, where the effects begin and cease to act."""
+    for piece in pieces(first, count, every, acting):
+        yield Spell(*piece, acting[0] <= first + piece.steps.start < acting[1])

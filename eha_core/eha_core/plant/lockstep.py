@@ -1,0 +1,115 @@
+"""Plants with parameters of their own that advance together under one command, in lock-step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.effects import effects
+from eha_core.plant.composite import compiled_lanes, layout
+from eha_core.plant.lane_rows import (
+    CURRENT,
+    LANES,
+    PARAMETERS,
+    POSITION,
+    PRESSURE_B,
+    PROPAGATOR,
+    REGISTER,
+    STATED_LEAKAGE,
+    TIME,
+    VELOCITY,
+)
+from eha_core.plant.simulator import LONGEST_DELAY, Array, pack
+from eha_core.plant.spells import pieces, span
+
+
+class LockStep:
+    """Up to LANES parameter sets (every parameter of each), stepped together; each gives what `Plant` gives for it.
+
+    It starts at rest: coil and spool settled under the voltage `before`, the effects' memory as that implies, pistons
+    wherever `place` puts them. A lane more costs next to nothing until a register is full.
+
+    Attributes:
+        lanes: how many lanes are computed: as many as there are sets, rounded up to whole registers.
+    """
+
+    def __init__(self, sets: Sequence[Mapping[str, float]], step_size: float, before: float = 0.0) -> None:
+        assert 0 < len(sets) <= LANES, "a block takes no more"
+        self.lanes = -(-len(sets) // REGISTER) * REGISTER
+        self.step_size = step_size
+        filled = [*sets, *[sets[-1]] * (self.lanes - len(sets))]
+        packed = [pack(values, step_size) for values in filled]
+        self._acting = [span(values, step_size) for values in filled]
+        self._active = np.array([active for _, active, _ in packed])
+        self._leakage = np.array([values["internal_leakage"] for values in filled])
+        self._memory = [(effect.site, kind) for effect in effects() for kind in effect.memory]
+        trailing = [slot for slot, one in enumerate(self._memory) if one == ("sensor", "position")]
+        self._trailing = layout().memory // LANES + np.array(trailing, dtype=np.int64)
+        self._block = np.zeros(layout().end)
+        self._rows = self._block.reshape(-1, LANES)[:, : self.lanes]
+        self._fill(PARAMETERS, np.array([vector for vector, _, _ in packed]).T)
+        self._fill(PROPAGATOR, np.array([valve for _, _, valve in packed]).T)
+        current = np.array(
+            [np.clip(before / v["coil_resistance"], -v["saturation_current"], v["saturation_current"]) for v in filled]
+        )
+        supply, back = (np.array([v[name] for v in filled]) for name in ("supply_pressure", "return_pressure"))
+        self._fill(TIME, np.stack([0.0 * current, current, supply, back, current, current]))
+        self._history = np.full(int(LONGEST_DELAY / step_size) + 3, before)
+        self._history[-1] = 0
+        self._kernel = compiled_lanes()
+
+    def _fill(self, place: int, rows: Array) -> None:
+        self._rows[place // LANES : place // LANES + len(rows)] = rows
+
+    def place(self, states: Array) -> None:
+        """Put the pistons into states (sets, 4): position, velocity, pressure A, pressure B. All else goes on."""
+        spare = self.lanes - len(states)
+        self._fill(POSITION, np.concatenate([states, np.repeat(states[-1:], spare, axis=0)]).T)
+
+    def states(self) -> Array:
+        """Position, velocity, pressure A and pressure B (lanes, 4) as they stand."""
+        return self._rows[POSITION // LANES : PRESSURE_B // LANES + 1].T.copy()
+
+    def add_leakage(self, change: float) -> None:
+        """From now on the internal leakage coefficient is `change` above that of the parameters."""
+        self._fill(STATED_LEAKAGE, self._leakage[None] + change)
+
+    def start_memory(self, lanes: NDArray[np.bool_] | None = None) -> None:
+        """The effects' own states as they are where the effects begin to act: in all lanes, or in these."""
+        chosen = np.ones(self.lanes, dtype=np.bool_) if lanes is None else lanes
+        starts = {"zero": None, "current": CURRENT, "position": POSITION, "velocity": VELOCITY}
+        for slot, (_, kind) in enumerate(self._memory):
+            start = starts[kind]
+            row = self._rows[layout().memory // LANES + slot]
+            row[chosen] = 0.0 if start is None else self._rows[start // LANES, chosen]
+
+    def start_sensors(self, position: float) -> None:
+        """Sensors that trail the piston begin anew from this position."""
+        self._rows[self._trailing] = position
+
+    def advance(self, first: int, inputs: Array, every: int, out: Array) -> None:
+        """Take a step for each column of `inputs`, the first of them step `first` of the record.
+
+        inputs: (1, steps) voltages, or (2, steps) chamber pressures that drive the pistons alone. out: (steps / every,
+        columns, lanes), columns either four (what the sensors say) or, under a voltage, all of COLUMNS.
+        """
+        self._rows[TIME // LANES] = first * self.step_size
+        for piece in pieces(first, inputs.shape[1], every, {instant for pair in self._acting for instant in pair}):
+            begin = first + piece.steps.start
+            starting = np.array([begin == start > 0 for start, _ in self._acting])
+            if starting.any():
+                self.start_memory(starting)
+            acts = self._active.T & np.array([start <= begin < stop for start, stop in self._acting])
+            self._fill(layout().acts, acts.astype(np.float64))
+            active = sum(1 << index for index in np.flatnonzero(acts.any(axis=1)).tolist())
+            given, rows = inputs[:, piece.steps], out[piece.rows]
+            if len(inputs) == 1:
+                self._kernel.advance(
+                    self._block, self.lanes, self._history, active, given[0], self.step_size, piece.every, rows
+                )
+            else:
+                self._kernel.advance_driven(
+                    self._block, self.lanes, active, given[0], given[1], self.step_size, piece.every, rows
+                )

@@ -1,0 +1,139 @@
+"""Plants in lock-step are the plants that each of them is alone, to the last bit."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eha_core.effects import Effect, effects
+from eha_core.parameters import changed, nominal_values
+from eha_core.plant import COLUMNS, Plant
+from eha_core.plant.composite import compiled_step, write_lane_hooks
+from eha_core.plant.lane_rows import LANES
+from eha_core.plant.lockstep import LockStep
+from eha_core.plant.simulator import pack
+from eha_core.plant.state import PISTON
+
+STEP = 2e-4
+STEPS = 1500
+EVERY = [pytest.param(effect, id=effect.id) for effect in effects()]
+
+
+def command(amplitude: float) -> np.ndarray:
+    """Two sines, and jumps that wake what delays and sticks."""
+    time = STEP * np.arange(STEPS)
+    wave = np.sin(2 * np.pi * 5 * time) + 0.5 * np.sin(2 * np.pi * 23 * time)
+    return amplitude * (wave + 0.3 * np.sign(np.sin(2 * np.pi * 11 * time)))
+
+
+def together(sets: list[dict[str, float]], voltages: np.ndarray, every: int, columns: int) -> np.ndarray:
+    """The sets' rows (sets, rows, columns), in lock-step from rest."""
+    complete = [changed(nominal_values(), one) for one in sets]
+    lanes = LockStep(complete, STEP)
+    rows = np.full((len(voltages) // every, columns, lanes.lanes), np.nan)
+    middle = [0.5 * (one["supply_pressure"] + one["return_pressure"]) for one in complete]
+    lanes.place(np.array([[0.0, 0.0, pressure, pressure] for pressure in middle]))
+    lanes.start_memory()
+    lanes.advance(0, voltages[None], every, rows)
+    return rows.transpose(2, 0, 1)[: len(sets)]
+
+
+def alone(sets: list[dict[str, float]], voltages: np.ndarray, every: int) -> np.ndarray:
+    """The sets' rows (sets, rows, COLUMNS), each by a plant of its own."""
+    return np.array([Plant(one, STEP).run(voltages, every).values for one in sets])
+
+
+def sizes(effect: Effect) -> list[dict[str, float]]:
+    """The effect at its typical size and at others; a curve, which has none, rising over what it sees."""
+    names = effect.parameter_names()
+    if effect.named:
+        typical = {name: row.typical for name, row in zip(names, effect.parameters, strict=True)}
+    else:
+        size = {"force": 20.0, "chamber": 1e-7, "orifice": 1e-6}[effect.site]
+        typical = {name: size * (k - 12) for k, name in enumerate(name for name in names if ".knot_" in name)}
+        typical |= {f"{effect.id}.lower": -0.02, f"{effect.id}.upper": 0.02}
+    return [{name: factor * value for name, value in typical.items()} for factor in (1.0, 0.6, 1.3)]
+
+
+@pytest.mark.parametrize("effect", EVERY)
+def test_an_effect_acts_in_its_lanes_and_in_no_other(effect: Effect) -> None:
+    sets = [{}, *sizes(effect), {"moving_mass": 30.0, "coulomb_friction.force": 250.0}]
+    voltages = command(0.15)
+    expected = alone(sets, voltages, 3)
+    assert together(sets, voltages, 3, len(COLUMNS)).tobytes() == expected.tobytes()
+    seen = np.ascontiguousarray(expected[:, :, -4:])
+    assert together(sets, voltages, 3, 4).tobytes() == seen.tobytes()
+
+
+@pytest.mark.parametrize("count", [1, 4, 5, LANES])
+def test_any_number_of_sets(count: int) -> None:
+    generator = np.random.default_rng(count)
+    names = ("moving_mass", "bulk_modulus", "valve_gain", "valve_damping_ratio", "supply_pressure", "coil_resistance")
+    nominal = nominal_values()
+    sets = [{name: nominal[name] * generator.uniform(0.7, 1.4) for name in names} for _ in range(count)]
+    voltages = command(8.0)  # saturates the coil and runs the piston into both ends
+    expected = alone(sets, voltages, 1)
+    assert np.max(expected[:, :, COLUMNS.index("position")]) == 0.1
+    assert together(sets, voltages, 1, len(COLUMNS)).tobytes() == expected.tobytes()
+
+
+def test_every_lane_has_a_span_of_its_own() -> None:
+    friction = {"coulomb_friction.force": 300.0, "position_sensor_lag.time_constant": 0.02}
+    spans = [(0.0, 1e9), (0.0503, 0.1201), (0.1, 0.2), (0.1201, 1e9)]
+    sets = [{**friction, "effects_from": start, "effects_until": stop} for start, stop in spans]
+    voltages = command(0.15)
+    assert together(sets, voltages, 7, len(COLUMNS)).tobytes() == alone(sets, voltages, 7).tobytes()
+
+
+def test_pistons_driven_by_pressures() -> None:
+    sets = [{}, {"coulomb_friction.force": 200.0, "moving_mass": 20.0}, {"unequal_piston_area.ratio": 0.8},
+            {"thermal_drift.damping_ratio": 0.5, "position_sensor_backlash.half_width": 1e-4}]  # fmt: skip
+    complete = [changed(nominal_values(), one) for one in sets]
+    pressures = np.array([1e7 + 4e7 * command(0.02), 1e7 - 4e7 * command(0.02)])
+    start = [0.01, 0.0, 0.0, 0.0]
+    lanes = LockStep(complete, STEP)
+    rows = np.empty((STEPS // 2, 4, lanes.lanes))
+    lanes.place(np.array([start] * len(sets)))
+    lanes.start_memory()
+    lanes.advance(0, pressures, 2, rows)
+    memory_starts = [kind for effect in effects() for kind in effect.memory]
+    for lane, values in enumerate(complete):
+        vector, active, _ = pack(values, STEP)
+        state = np.array([0.0, 0.0, 2.1e7, 0.0, 0.0, 0.0, 0.0, *start])
+        memory = np.array([0.01 if kind == "position" else 0.0 for kind in memory_starts])
+        expected = np.empty((STEPS // 2, 4))
+        compiled_step().advance_driven(state, memory, vector, active, pressures[0], pressures[1], STEP, 2, expected)
+        assert np.ascontiguousarray(rows[:, :, lane]).tobytes() == expected.tobytes()
+        assert lanes.states()[lane].tobytes() == state[PISTON].tobytes()
+
+
+def test_lane_hooks_call_every_effect_once() -> None:
+    text = write_lane_hooks()
+    for effect in effects():
+        assert text.count(f"= {effect.id}(") == 1
+
+
+INTERPRETED = """
+import numpy as np
+from tests.plant.test_lanes import command, together
+sets = [{"constant_load.force": 300.0, "coulomb_friction.force": 300.0}, {}, {"spool_hysteresis.half_width": 1e-4}]
+print(together(sets, command(0.15)[:200], 50, 22).tobytes().hex())
+"""
+
+
+@pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") == "1", reason="there is no compiler to compare with")
+def test_the_interpreter_finds_the_same_numbers() -> None:
+    printed = [
+        subprocess.run(
+            [sys.executable, "-c", INTERPRETED], env=os.environ | {"NUMBA_DISABLE_JIT": switch}, text=True,
+            capture_output=True, timeout=100, check=True, cwd=Path(__file__).parents[2],
+        ).stdout
+        for switch in ("0", "1")
+    ]  # fmt: skip
+    compiled, interpreted = (np.frombuffer(bytes.fromhex(text.strip())) for text in printed)
+    assert interpreted == pytest.approx(compiled, rel=1e-12, abs=1e-15)
