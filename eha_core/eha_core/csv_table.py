@@ -11,11 +11,17 @@ from numpy.typing import NDArray
 from eha_core.errors import RecordingError
 
 _DELIMITERS = ",;\t"
+MOST_COLUMNS = 1000
+"""No logger of a rig writes more; a table grows with columns times rows, whatever the file's size."""
+LARGEST = 2**30
+"""Bytes of a file that is read at once: half a day of ten channels at 500 Hz."""
 
 
 def read_csv_columns(path: Path) -> tuple[list[str], dict[str, NDArray[np.float64]]]:
     """The header and every column; cells that hold no number are NaN. Raises RecordingError for what is no table."""
     try:
+        if path.stat().st_size > LARGEST:
+            raise RecordingError(f"{path}: is larger than {LARGEST / 1e9:.1f} GB; cut it, or convert it to MCAP")
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise RecordingError(f"{path}: cannot be read ({error.strerror})") from error
@@ -29,6 +35,8 @@ def read_csv_columns(path: Path) -> tuple[list[str], dict[str, NDArray[np.float6
         header, *rows = ([cell.strip() for cell in row] for row in csv.reader(lines, delimiter=delimiter))
     except csv.Error as error:
         raise RecordingError(f"{path}: not CSV ({error})") from None
+    if len(header) > MOST_COLUMNS:
+        raise RecordingError(f"{path}: its header has {len(header)} columns; keep the few that matter")
     if len(set(header)) != len(header):
         raise RecordingError(f"{path}: two columns of the header ({', '.join(header)}) share one name; rename one")
     if all(_is_number(cell) for cell in header):

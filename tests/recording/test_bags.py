@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +20,7 @@ MADE = {words[words.index("--out") + 1]: words for words in COMMANDS}
 
 def test_every_recording_has_its_command_and_stays_small() -> None:
     recordings = {path.name for path in BAGS.glob("*.mcap")}
-    assert recordings == {*MADE, "rig_cut_short.mcap"}
+    assert recordings == {*MADE, "rig_five_effects.mcap", "rig_cut_short.mcap"}
     assert all((BAGS / name).stat().st_size < 1_500_000 for name in recordings)
 
 
@@ -33,6 +35,15 @@ def test_the_command_makes_the_recording_again(tmp_path: Path, name: str) -> Non
         again = made.channels[channel.name].values
         np.testing.assert_allclose(again, channel.values, rtol=1e-6, atol=1e-6 * np.ptp(channel.values))
     assert made.leakage_changes == kept.leakage_changes
+
+
+def test_the_rig_with_five_effects_is_made_again_by_its_script(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, BAGS / "make_rig_five_effects.py"], cwd=tmp_path, check=True, capture_output=True)
+    made, kept = (read_recording(folder / "rig_five_effects.mcap") for folder in (tmp_path, BAGS))
+    assert set(kept.channels) == {"voltage_command", "position", "pressure_a", "pressure_b"}
+    for channel in kept.channels.values():
+        again = made.channels[channel.name].values
+        np.testing.assert_allclose(again, channel.values, rtol=1e-6, atol=1e-6 * np.ptp(channel.values))
 
 
 def test_rigs_conceal_what_is_in_them() -> None:

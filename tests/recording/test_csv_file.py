@@ -81,3 +81,38 @@ def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
     path.write_bytes(b"\xff\xfe\x00\x80")
     with pytest.raises(RecordingError, match="not a text file"):
         read_recording(path)
+
+
+def test_times_in_ns_and_as_epoch_are_read_to_the_sample(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    count = 50
+    for start, step, remark in ((0, 2_000_000, True), (1_726_000_000_000_000_000, 2_000_000, True)):
+        rows = "".join(f"{start + k * step},{k * 1e-4}\n" for k in range(count))
+        path.write_text(f"time,position\n{rows}")
+        recording = read_recording(path)
+        np.testing.assert_allclose(recording.channels["position"].time, 2e-3 * np.arange(count), atol=5e-7)
+        assert any("taken as ns" in one for one in recording.remarks) == remark
+    path.write_text("time,position\n" + "".join(f"{1726000000.25 + k * 2e-3:.6f},{k * 1e-4}\n" for k in range(count)))
+    recording = read_recording(path)
+    np.testing.assert_allclose(recording.channels["position"].time, 2e-3 * np.arange(count), atol=5e-7)
+    assert recording.remarks == ()
+
+
+def test_times_in_ms_are_refused_with_the_line_that_reads_them(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("time,position\n" + "".join(f"{2 * k},{k * 1e-4}\n" for k in range(50)))
+    with pytest.raises(RecordingError, match=r"`channels: \{time: \{scale: 1\.0e-3\}\}` for ms") as caught:
+        read_recording(path)
+    topics = tmp_path / "topics.yaml"
+    topics.write_text(str(caught.value).split("`")[1])
+    assert read_recording(path, topics).duration == pytest.approx(0.098)
+    path.write_text("time,position\n" + "".join(f"{k * 1e17:.17g},{k * 1e-4}\n" for k in range(200)))
+    with pytest.raises(RecordingError, match="beyond any calendar"):
+        read_recording(path)
+
+
+def test_a_table_of_too_many_columns_is_refused_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text(",".join(f"c{k}" for k in range(200_000)) + "\n" + "1\n" * 200_000)
+    with pytest.raises(RecordingError, match="its header has 200000 columns"):
+        read_recording(path)

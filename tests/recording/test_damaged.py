@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
+import lz4.frame
 import numpy as np
 import pytest
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.reader import make_reader
+from mcap.records import Chunk, DataEnd, Footer, Header
 from mcap.writer import Writer as McapWriter
 from recordings import SECOND, START, write_piston
 from rosbags.rosbag2 import StoragePlugin, Writer
@@ -102,6 +108,74 @@ def test_a_hole_in_the_middle_is_jumped_over(tmp_path: Path, sound: bytes) -> No
     assert f"of {len(sound)} could not be read" in recording.damaged
     assert recording.duration > 7.9
     assert 500 < len(recording.channels["position"].time) < 800
+
+
+def zeroed(content: bytes, first: int, last: int) -> bytes:
+    return content[:first] + bytes(last - first) + content[last:]
+
+
+def test_what_the_summary_promises_and_is_not_there_is_counted(tmp_path: Path, sound: bytes) -> None:
+    """A chunk overwritten by another leaves a sound structure; only the summary's count tells of it."""
+    with (tmp_path / "sound.mcap").open("wb") as file:
+        file.write(sound)
+    with (tmp_path / "sound.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    first = summary.chunk_indexes[5]
+    empty = bytes([0x80]) + (first.chunk_length - 9).to_bytes(8, "little")  # a record of a private kind, to be skipped
+    content = bytearray(sound)
+    content[first.chunk_start_offset : first.chunk_start_offset + 9] = empty
+    recording = read_bytes(tmp_path, bytes(content))
+    assert recording is not None and recording.damaged is not None
+    assert "80 of 3200 messages are missing" in recording.damaged
+
+
+def test_a_zeroed_end_of_an_unfinished_file_is_told(tmp_path: Path) -> None:
+    """A disk that lost power leaves zeros where the last flush went."""
+    path = tmp_path / "run.mcap"
+    writer = RecordingWriter(path, flush_period=1e9)
+    for part in range(4):
+        write_piston(writer, count=20, start=START + part * SECOND)
+        writer.flush()
+    writer.abandon()
+    content = path.read_bytes()
+    recording = read_bytes(tmp_path, zeroed(content, len(content) - 600, len(content)))
+    assert recording is not None and recording.damaged is not None
+    assert f"of {len(content)} could not be read" in recording.damaged
+
+
+def chunk_of(path: Path, content: bytes, size: int, compression: str = "zstd") -> Path:
+    """An MCAP whose one chunk claims to unpack to `size` bytes."""
+    builder: Any = RecordBuilder()
+    Header(profile="ros2", library="").write(builder)
+    Chunk(compression, content, 0, 0, 0, size).write(builder)
+    DataEnd(0).write(builder)
+    Footer(0, 0, 0).write(builder)
+    path.write_bytes(b"\x89MCAP0\r\n" + builder.end() + b"\x89MCAP0\r\n")
+    return path
+
+
+@pytest.mark.parametrize("pack", ["zstd", "lz4"])
+def test_a_small_file_cannot_take_the_memory(tmp_path: Path, pack: str) -> None:
+    size = 2**26
+    zeros = bytes(size)
+    content = zstandard.compress(zeros) if pack == "zstd" else lz4.frame.compress(zeros)
+    path = chunk_of(tmp_path / "bomb.mcap", content, size, pack)
+    tracemalloc.start()
+    with pytest.raises(RecordingError, match="unpacks to more than"):
+        read_recording(path)
+    assert tracemalloc.get_traced_memory()[1] < 8e6
+    tracemalloc.stop()
+
+
+@pytest.mark.parametrize("pack", ["zstd", "lz4"])
+def test_a_chunk_that_hides_its_size_is_left_out(tmp_path: Path, pack: str) -> None:
+    zeros = bytes(2**27)
+    content = zstandard.compress(zeros) if pack == "zstd" else lz4.frame.compress(zeros)
+    del zeros
+    path = chunk_of(tmp_path / "bomb.mcap", content, 1000, pack)
+    with pytest.raises(RecordingError, match="damaged chunks left out: 1"):
+        read_recording(path)
 
 
 def test_random_bytes_after_the_magic_are_refused(tmp_path: Path) -> None:

@@ -229,7 +229,7 @@ def test_the_simulators_truth_is_not_read_as_a_measurement(tmp_path: Path) -> No
         ("channels: {position: {field: 'position['}}", r"field 'position\[' is no path"),
         ("channels: {current: {scale: 2.0}}", "names no topic for channel current; add `topic:`"),
         ("channels: [position]", "needs `channels:`"),
-        ("channels: {position", r"is no YAML \(line 1\)"),
+        ("channels: {position", r"this is not YAML \(line 1: "),
         ("channels: {position: /joint_states}", "channel position: needs keys such as"),
     ],
 )
@@ -288,3 +288,29 @@ def test_outliers_that_no_rig_shows_are_left_out_and_counted(tmp_path: Path) -> 
     recording = read_recording(path)
     assert len(recording.channels["position"].values) == 299
     assert "position (/joint_states): 1 samples beyond 50 m were left out" in recording.remarks
+
+
+@pytest.mark.parametrize("leap", [-40, -2 * 3600, 26 * 3600])
+def test_a_clock_that_leaps_leaves_all_channels_on_one_side(tmp_path: Path, leap: int) -> None:
+    """The topics' stamps leap at slightly different messages, in the middle: each has as many on either side."""
+    path = tmp_path / "run.mcap"
+    topics = ("joint_states", "chamber_a/pressure", "chamber_b/pressure")
+    with RecordingWriter(path, flush_period=1e9) as writer:
+        for k in range(2000):
+            logged = START + k * SECOND // 100
+            for number, topic in enumerate(topics):
+                stamp = logged + (leap * SECOND if k >= 1000 + number - 1 else 0)
+                values = (
+                    {"name": ["piston"], "position": [k * 1e-6], "velocity": [0.0], "effort": [0.0]}
+                    if number == 0
+                    else {"fluid_pressure": 1e6 + k}
+                )
+                kind = "sensor_msgs/msg/JointState" if number == 0 else "sensor_msgs/msg/FluidPressure"
+                writer.write_fields(f"/{topic}", kind, {"header": header(stamp), **values}, logged)
+    recording = read_recording(path)
+    assert recording.duration < 10.1
+    assert any("the clock of the stamps leapt" in remark for remark in recording.remarks)
+    position, pressure = recording.channels["position"], recording.channels["pressure_a"]
+    assert len(position.time) > 990
+    at_position = np.interp(position.time, pressure.time, pressure.values + 101325.0 - 1e6)
+    np.testing.assert_allclose(at_position, position.values * 1e6, atol=1.1)

@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from eha_core.recording.samples import Samples, put_in_order
+from eha_core.recording.samples import Samples, on_one_span, put_in_order
 
 
 def ordered(stamps: list[int], values: list[float] | None = None) -> tuple[list[int], tuple[str, ...]]:
@@ -56,3 +56,27 @@ def test_nothing_is_kept_of_nothing() -> None:
 def test_order_is_left_alone() -> None:
     stamps = list(range(0, 1000, 7))
     assert ordered(stamps) == (stamps, ())
+
+
+def series(start: int, count: int) -> Samples:
+    return Samples(np.arange(start, start + count, dtype=np.int64), np.arange(count, dtype=float))
+
+
+def test_channels_that_kept_other_sides_of_a_leap_are_put_on_one_span() -> None:
+    """Of ten samples each on two sides, position kept the later ones and one more, pressure the earlier ones."""
+    both = Samples(np.array([*range(10), *range(1000, 1010)]), np.arange(20.0))
+    ordered_channels = {"position": series(1000, 11), "pressure_a": series(0, 10), "force": series(5000, 3)}
+    recorded = {"position": series(1000, 11), "pressure_a": both, "force": series(5000, 3)}
+    kept, remarks = on_one_span(ordered_channels, recorded, ())
+    assert kept["pressure_a"].stamps.tolist() == list(range(1000, 1010))
+    assert kept["pressure_a"].values.tolist() == list(range(10, 20))
+    assert kept.keys() == {"position", "pressure_a"}
+    assert remarks == (
+        "pressure_a: 10 samples of another time than position's were left out",
+        "force was recorded at another time than position and was left out",
+    )
+
+
+def test_a_command_that_was_given_once_before_is_kept_and_overlapping_channels_are_left_alone() -> None:
+    channels = {"voltage_command": series(0, 1), "position": series(500, 100), "pressure_a": series(550, 400)}
+    assert on_one_span(channels, channels, ("voltage_command",)) == (channels, ())

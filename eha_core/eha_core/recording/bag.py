@@ -5,14 +5,21 @@ from __future__ import annotations
 import re
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
-import yaml
+import apsw
 from rosbags.rosbag2 import Reader
 from rosbags.rosbag2.errors import ReaderError
 
 from eha_core.errors import RecordingError
 from eha_core.recording.mcap_file import read_mcap
 from eha_core.recording.raw import RawRecording, RawTopic, TopicFilter
+from eha_core.recording.unpacking import Ceiling
+from eha_core.yaml_file import load_yaml
+
+_READ_ONLY = apsw.SQLITE_OPEN_READONLY | apsw.SQLITE_OPEN_URI
+_COMPUTED = re.compile(r"generated\s+always|\bas\s*\(|\bvirtual\s+table\b", re.IGNORECASE)
+_ROW = 32  # bytes of a row beside its message
 
 
 def read_bag(path: Path, wanted: TopicFilter) -> RawRecording:
@@ -34,13 +41,17 @@ def _files_of(folder: Path) -> list[Path]:
     """The files of a rosbag2 folder in order: those metadata.yaml lists; without it, those that differ by number."""
     description = folder / "metadata.yaml"
     if description.is_file():
+        content: Any = load_yaml(description, RecordingError, str(description))
         try:
-            content: Any = yaml.safe_load(description.read_text(encoding="utf-8"))
-            return [folder / str(name) for name in content["rosbag2_bagfile_information"]["relative_file_paths"]]
-        except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError):
+            listed = [str(name) for name in content["rosbag2_bagfile_information"]["relative_file_paths"]]
+        except (KeyError, TypeError):
             raise RecordingError(
-                f"{description}: does not parse; remove it to read the folder's .mcap files by their names"
+                f"{description}: lists no files; remove it to read the folder's .mcap files by their names"
             ) from None
+        outside = next((name for name in listed if Path(name).is_absolute() or ".." in Path(name).parts), None)
+        if outside is not None:
+            raise RecordingError(f"{description}: lists {outside}, which is not in its folder; name the file itself")
+        return [folder / name for name in listed]
     files = sorted((file for ending in ("*.mcap", "*.db3") for file in folder.glob(ending)), key=_numbered)
     if len({re.sub(r"_\d+$", "", file.stem) for file in files}) > 1:
         names = ", ".join(file.name for file in files)
@@ -79,6 +90,8 @@ def _read_files(folder: Path, files: list[Path], wanted: TopicFilter) -> RawReco
 def _read_sqlite(path: Path, wanted: TopicFilter) -> RawRecording:
     recording = RawRecording()
     try:
+        ceiling = Ceiling(str(path), path.stat().st_size)
+        _refuse_programs(path)
         with Reader(path) as reader:
             for connection in reader.connections:
                 definition = connection.msgdef
@@ -88,10 +101,24 @@ def _read_sqlite(path: Path, wanted: TopicFilter) -> RawRecording:
                 )
             connections = [connection for connection in reader.connections if wanted(connection.topic)]
             for connection, log_time, data in reader.messages(connections) if connections else ():
+                ceiling.take(len(data) + _ROW)
                 recording.topics[connection.topic].log_times.append(log_time)
-                recording.topics[connection.topic].payloads.append(data)
+                recording.topics[connection.topic].payloads.append(bytes(data))
     except FileNotFoundError:
         raise RecordingError(f"{path}: there is no such file") from None
-    except ReaderError as error:
-        raise RecordingError(f"{path}: cannot be read as a rosbag2 file ({error})") from error
+    except (ReaderError, apsw.Error, OSError, ValueError, TypeError, LookupError, AttributeError) as error:
+        if not any(topic.payloads for topic in recording.topics.values()):
+            raise RecordingError(f"{path}: cannot be read as a rosbag2 file ({error})") from error
+        recording.damage.append(f"reading stopped at a damaged place ({error})")
     return recording
+
+
+def _refuse_programs(path: Path) -> None:
+    """Raise RecordingError for a database that computes what it gives, without end perhaps, in place of holding it."""
+    connection = apsw.Connection(f"file:{quote(str(path))}?immutable=1", flags=_READ_ONLY)
+    try:
+        for name, kind, definition in connection.execute("SELECT name, type, sql FROM sqlite_master"):
+            if kind in ("view", "trigger") or _COMPUTED.search(str(definition)):
+                raise RecordingError(f"{path}: its {kind} {name} computes values, which no recording does")
+    finally:
+        connection.close()

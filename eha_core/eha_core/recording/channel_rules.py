@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from eha_core.errors import RecordingError
 from eha_core.recording.recording import CHANNEL_KINDS
+from eha_core.yaml_file import load_yaml
 
 ABSOLUTE, GAUGE = "absolute", "gauge"
 
@@ -71,14 +71,7 @@ def load_topics_file(path: str | Path) -> TopicsFile:
     Raises:
         RecordingError: the file is missing, is no YAML, or names an unknown channel or key.
     """
-    try:
-        content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RecordingError(f"topics file {path}: cannot be read ({error.strerror})") from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f" (line {mark.line + 1})" if mark else ""
-        raise RecordingError(f"topics file {path}: is no YAML{line}") from error
+    content = load_yaml(path, RecordingError, f"topics file {path}")
     if not isinstance(content, dict) or not isinstance(content.get("channels"), dict):
         raise RecordingError(f"topics file {path}: needs `channels:` with one entry for each channel")
     _refuse_unknown(path, "key", content, ("channels", "namespace"))
@@ -110,8 +103,10 @@ def _rule(path: str | Path, channel: str, entry: Any) -> ChannelRule | None:
         if name in values:
             try:
                 values[name] = float(values[name])
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
                 raise RecordingError(f"{where}: {name} {values[name]!r} is no number") from None
+            if not isfinite(values[name]) or (name == "scale" and values[name] == 0.0):
+                raise RecordingError(f"{where}: {name} {values[name]:g} makes no numbers of what was recorded")
     if values.get("reference") not in (None, ABSOLUTE, GAUGE):
         raise RecordingError(f"{where}: reference {values['reference']!r}; say {ABSOLUTE} or {GAUGE}")
     for name in ("topic", "field", "column"):

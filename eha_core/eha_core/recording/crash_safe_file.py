@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from pathlib import Path
 from typing import Any
@@ -42,7 +43,12 @@ class CrashSafeFile:
         return self._flushed + len(self._pending)
 
     def flush(self) -> None:
-        """Put everything held on disk. Raises OSError (a full disk); the file then holds what was flushed before."""
+        """Put everything held on disk.
+
+        Raises OSError (a full disk, a file that was removed); the file then holds what was flushed before.
+        """
+        if os.fstat(self._descriptor).st_nlink == 0:
+            raise OSError(errno.ENOENT, "the file was removed")
         if self._pending:
             self._put(self._ending)
 

@@ -103,6 +103,18 @@ def _default_rules(topics: Collection[str], namespace: str | None) -> dict[str, 
     return {**STATE_RULES, "voltage_command": command or STATE_RULES["voltage_command"]}
 
 
+def default_rule(name: str, rule: ChannelRule) -> ChannelRule:
+    """What a topics file need not say of a channel that is read by `rule`."""
+    if rule.column is not None:
+        return ChannelRule(topic=rule.topic, column=name)
+    for rules in (DEFAULT_RULES, STATE_RULES):
+        default = rules.get(name)
+        if default and _namespace(str(rule.topic), str(default.topic)) is not None:
+            return replace(default, topic=rule.topic)
+    own = DEFAULT_RULES.get(name)
+    return ChannelRule(field=own.field if own else "data")
+
+
 def _completed(rule: ChannelRule, default: ChannelRule | None, topic: str) -> ChannelRule:
     return replace(
         rule,

@@ -7,7 +7,7 @@ import zlib
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
@@ -17,24 +17,31 @@ from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Metadata, 
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
-from zstandard import ZstdDecompressor, ZstdError
+from zstandard import ZstdError
 
 from eha_core.errors import RecordingError
 from eha_core.recording.raw import RawRecording, RawTopic, TopicFilter
+from eha_core.recording.unpacking import LARGEST_CHUNK, Ceiling, unpacked, unpacked_start
 
 # What parsing of arbitrary bytes raises: ends too early, bad lengths and text, checksums, broken compression.
 _UNREADABLE = (McapError, ZstdError, struct.error, ValueError, RuntimeError, MemoryError, OverflowError, LookupError)
-_LARGEST_CHUNK = 2**30
 _RECORD_HEAD = struct.Struct("<BQ")  # kind, length
 _CHECKSUM_SIZE = 4
+_KINDS: dict[int, Any] = {
+    Opcode.FOOTER: Footer, Opcode.SCHEMA: Schema, Opcode.CHANNEL: Channel, Opcode.MESSAGE: Message,
+    Opcode.CHUNK: Chunk, Opcode.METADATA: Metadata,
+}  # fmt: skip
+"""The records that matter here; others are passed over."""
 _FOOTER_SIZE = _RECORD_HEAD.size + 8 + 8 + _CHECKSUM_SIZE + len(MCAP0_MAGIC)
 
 
 class _Collector:
     """Sorts records into topics."""
 
-    def __init__(self, wanted: TopicFilter) -> None:
+    def __init__(self, wanted: TopicFilter, ceiling: Ceiling) -> None:
         self.recording = RawRecording()
+        self.ceiling = ceiling
+        self.message_count = 0
         self.bad_chunks = 0
         self.lost_messages = 0
         self._wanted = wanted
@@ -43,6 +50,7 @@ class _Collector:
 
     def add(self, record: McapRecord) -> None:
         if isinstance(record, Message):
+            self.message_count += 1
             if record.channel_id not in self._topics:
                 self.lost_messages += 1
             elif topic := self._topics[record.channel_id]:
@@ -71,7 +79,7 @@ def read_mcap(path: Path, wanted: TopicFilter) -> RawRecording:
     summary knows; `damage` of the result then says what was lost.
 
     Raises:
-        RecordingError: the file cannot be opened or is no MCAP.
+        RecordingError: the file cannot be opened, is no MCAP, or unpacks to more than a file of its size may.
     """
     try:
         with path.open("rb") as stream:
@@ -80,13 +88,19 @@ def read_mcap(path: Path, wanted: TopicFilter) -> RawRecording:
                 raise RecordingError(f"{path}: the file is empty; record again")
             if magic != MCAP0_MAGIC:
                 raise RecordingError(f"{path}: not an MCAP file (it starts with other bytes)")
-            return _read_records(stream, path.stat().st_size, wanted)
+            size = path.stat().st_size
+            return _read_records(stream, size, _Collector(wanted, Ceiling(str(path), size)))
     except OSError as error:
         raise RecordingError(f"{path}: cannot be read ({error.strerror})") from error
 
 
-def _read_records(stream: IO[bytes], size: int, wanted: TopicFilter) -> RawRecording:
-    collector = _Collector(wanted)
+def is_finished(path: Path) -> bool:
+    """Whether an MCAP has the end that its recorder writes when it stops. Raises OSError where it cannot be read."""
+    with path.open("rb") as stream:
+        return _summary(stream, path.stat().st_size) is not None
+
+
+def _read_records(stream: IO[bytes], size: int, collector: _Collector) -> RawRecording:
     summary = _summary(stream, size)
     chunk_starts = sorted(index.chunk_start_offset for index in summary.chunk_indexes) if summary else []
     for record in (*summary.schemas.values(), *summary.channels.values()) if summary else ():
@@ -106,6 +120,11 @@ def _read_records(stream: IO[bytes], size: int, wanted: TopicFilter) -> RawRecor
         damage.append(f"damaged chunks left out: {collector.bad_chunks}")
     if collector.lost_messages:
         damage.append(f"messages left out for want of their topic's description: {collector.lost_messages}")
+    promised = summary.statistics.message_count if summary and summary.statistics else 0
+    if promised > collector.message_count:
+        damage.append(f"{promised - collector.message_count} of {promised} messages are missing")
+    if summary is None and not damage:
+        damage.append("it was not finished: what its recorder had not put on disk yet is missing")
     return collector.recording
 
 
@@ -113,40 +132,50 @@ def _collect(stream: IO[bytes], start: int, end: int, is_last: bool, collector: 
     """Collect the records from byte `start` to byte `end`; return where their structure breaks, if it does."""
     position = start
     for record, after in _records(stream, start, end):
-        if after > end:
-            return position
         position = after
         if isinstance(record, Chunk):
             _add_chunk(record, collector)
         elif isinstance(record, Footer):
             stream.seek(position)
             return None if stream.read() == MCAP0_MAGIC else position
-        else:
+        elif record:
             collector.add(record)
         if position == end and not is_last:
             return None
     return position
 
 
-def _records(stream: IO[bytes], start: int, end: int) -> Iterator[tuple[McapRecord, int]]:
-    """The records from byte `start` on, each with the byte after it, up to the first that is unreadable."""
-    stream.seek(start)
-    reader = StreamReader(stream, skip_magic=True, emit_chunks=True, record_size_limit=end - start)
-    records = iter(reader.records)
+def _records(stream: IO[bytes], start: int, end: int) -> Iterator[tuple[McapRecord | None, int]]:
+    """The records from byte `start` to byte `end`, each with the byte after it, up to the first that is unreadable.
+
+    Kinds that do not matter are None.
+    """
+    position = start
     while True:
-        try:
-            record = next(records)
-        except (*_UNREADABLE, StopIteration):
+        stream.seek(position)
+        head = stream.read(_RECORD_HEAD.size)
+        if len(head) < _RECORD_HEAD.size:
             return
-        yield record, stream.tell()
+        kind, length = _RECORD_HEAD.unpack(head)
+        position += _RECORD_HEAD.size + length
+        if kind == 0 or position > end:  # no record is of kind 0, but zeroed bytes look so
+            return
+        try:
+            yield (_parse(kind, stream.read(length)) if kind in _KINDS else None), position
+        except _UNREADABLE:
+            return
+
+
+def _parse(kind: int, content: bytes) -> McapRecord:
+    data = ReadDataStream(BytesIO(content))
+    record: McapRecord = Message.read(data, len(content)) if kind == Opcode.MESSAGE else _KINDS[kind].read(data)
+    return record
 
 
 def _add_chunk(chunk: Chunk, collector: _Collector) -> None:
     """Hand all records of a chunk to the collector, or none and count it if it is damaged."""
     try:
-        if chunk.uncompressed_size > _LARGEST_CHUNK:
-            raise ValueError("a chunk of that size is a damaged length")
-        records = breakup_chunk(chunk, validate_crc=True)
+        records = breakup_chunk(unpacked(chunk, collector.ceiling), validate_crc=True)
     except _UNREADABLE:
         collector.bad_chunks += 1
         return
@@ -162,21 +191,15 @@ def _add_cut_chunk(stream: IO[bytes], start: int, collector: _Collector) -> None
         if data[0] != Opcode.CHUNK:
             return
         chunk = Chunk.read(ReadDataStream(BytesIO(data[_RECORD_HEAD.size :])))
-        content = (
-            ZstdDecompressor().decompressobj().decompress(chunk.data) if chunk.compression == "zstd" else chunk.data
-        )
-        if chunk.compression not in ("", "zstd") or len(content) >= chunk.uncompressed_size:
-            return
+        content = unpacked_start(chunk, LARGEST_CHUNK)
     except _UNREADABLE:
         return
-    end = 0
-    while end + _RECORD_HEAD.size <= len(content):
-        after = end + _RECORD_HEAD.size + _RECORD_HEAD.unpack_from(content, end)[1]
-        if after > len(content):
-            break
-        end = after
-    for record, _ in _records(BytesIO(content[:end]), 0, end):
-        collector.add(record)
+    if len(content) >= chunk.uncompressed_size:
+        return
+    collector.ceiling.take(len(content))
+    for record, _ in _records(BytesIO(content), 0, len(content)):
+        if record:
+            collector.add(record)
 
 
 def _summary(stream: IO[bytes], size: int) -> Summary | None:

@@ -77,6 +77,7 @@ def _contained_types(fields: Any) -> Iterator[str]:
             yield detail
 
 
+@lru_cache(maxsize=256)
 def definition_of(type_name: str) -> tuple[str, str]:
     """The definition as `ros2 bag` stores it (parts divided by rows of 80 "=") and the type's hash (RIHS01)."""
     store = require_type(type_name)
@@ -110,29 +111,60 @@ def _build_field(store: Typestore, description: Any, value: Any) -> Any:
     return [_build_field(store, element, item) for item in (value or ())]
 
 
+LARGEST_DEFINITION = 2**17
+"""Characters of a type with all it contains; the longest of ROS's own has 2**14."""
+DEEPEST_TYPE = 20
+"""Levels of types in types; ROS's own have 6."""
+MOST_ELEMENTS = 2**20
+"""Numbers and texts of fixed count in a message; an hour of decoding is no price for a definition of 40 lines."""
+
+
 @lru_cache(maxsize=64)
-def _recorded_types(type_name: str, encoding: str, definition: str) -> Typestore:
-    """The store that a recording's own definition of a type makes; the installed one where that is damaged."""
+def _recorded_types(type_name: str, encoding: str, definition: str) -> Typestore | None:
+    """The store that a recording's own definition of a type makes; None where that is damaged or beyond all measure."""
     store = get_typestore(Stores.EMPTY)
+    if len(definition) > LARGEST_DEFINITION:
+        return None
     try:
         is_idl = encoding == _IDL_DEFINITION
-        store.register(get_types_from_idl(definition) if is_idl else get_types_from_msg(definition, type_name))
+        types = get_types_from_idl(definition) if is_idl else get_types_from_msg(definition, type_name)
+        if _elements(types, type_name, DEEPEST_TYPE) > MOST_ELEMENTS:
+            return None
+        store.register(types)
         store.get_msgdef(type_name)  # fails here, not at the first message, where a part is missing
-    except (TypesysError, SyntaxError, ValueError, LookupError):
-        return require_type(type_name)
+    except (TypesysError, SyntaxError, ValueError, LookupError, RecursionError, TypeError, AttributeError):
+        return None
     return store
+
+
+def _elements(types: Any, type_name: str, levels: int) -> int:
+    """How many elements of fixed count a type has, those of its parts included. Raises ValueError if it is too deep."""
+    if levels == 0:
+        raise ValueError(f"{type_name} contains types too deep")
+    total = 1
+    for _, (kind, detail) in types[type_name][1]:
+        element, count = detail if kind in (Nodetype.ARRAY, Nodetype.SEQUENCE) else ((kind, detail), 1)
+        inner = _elements(types, element[1], levels - 1) if element[0] == Nodetype.NAME else 1
+        total += inner * (count if kind == Nodetype.ARRAY else 1)
+        if total > MOST_ELEMENTS:
+            break
+    return total
 
 
 class Decoder:
     """Reads CDR bytes of one message type by the definition that its recording carries.
 
-    A recording without definitions (the SQLite bags of older distributions) is read by the installed ones.
+    A recording without definitions (the SQLite bags of older distributions) is read by the installed ones, and so is
+    one whose definition is damaged; `remark` then says so.
     """
 
     def __init__(self, type_name: str, encoding: str, definition: str) -> None:
         self.type_name = type_name
-        has_definition = bool(definition.strip())
-        self._store = _recorded_types(type_name, encoding, definition) if has_definition else require_type(type_name)
+        self.remark: str | None = None
+        store = _recorded_types(type_name, encoding, definition) if definition.strip() else None
+        self._store = store or require_type(type_name)
+        if definition.strip() and store is None:
+            self.remark = f"the definition of {type_name} in the file cannot be used; the installed one was taken"
 
     def __call__(self, data: bytes) -> Any:
         """The message as an object with the fields as attributes; raises rosbags' SerdeError for malformed bytes."""

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from eha_core.errors import RecordingError
+from eha_core.errors import RecordingError, printable
 from eha_core.recording.bag import read_bag
 from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
 from eha_core.recording.csv_file import read_csv
-from eha_core.recording.decoding import decode, on_one_clock
+from eha_core.recording.decoding import decode, on_one_clock, without_leaps
 from eha_core.recording.discovery import LEAKAGE_TOPIC, find_rules, leakage_topic, may_matter
 from eha_core.recording.raw import RawRecording
 from eha_core.recording.recording import CHANNEL_KINDS, Channel, Recording
-from eha_core.recording.samples import Samples, put_in_order
+from eha_core.recording.samples import Samples, on_one_span, put_in_order
 from eha_core.recording.units import in_model_units
 from eha_core.recording.writer import PARAMETERS_RECORD
 
@@ -39,9 +39,11 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
     topics_file = topics if isinstance(topics, TopicsFile) or topics is None else load_topics_file(topics)
     if not path.exists():
         raise RecordingError(f"{path}: there is no such file or folder")
+    if not (path.is_file() or path.is_dir()):
+        raise RecordingError(f"{path}: is neither a file nor a folder; name a recording")
     if path.suffix.lower() in _TEXT_ENDINGS:
-        samples, rules = read_csv(path, topics_file)
-        return _assemble(path, samples, rules, dict.fromkeys(rules, "csv"), RawRecording(), [])
+        samples, rules, remarks = read_csv(path, topics_file)
+        return assemble(path, samples, rules, dict.fromkeys(rules, "csv"), RawRecording(), list(remarks))
     raw = read_bag(path, lambda topic: may_matter(topic, topics_file))
     return _from_messages(path, raw, topics_file)
 
@@ -56,13 +58,14 @@ def _from_messages(path: Path, raw: RawRecording, topics_file: TopicsFile | None
         fields = {name: str(rule.field) for name, rule in rules.items() if rule.topic == topic}
         decoded.append(decode(raw.topics[topic], fields))
         remarks += decoded[-1].remarks
+    decoded, leap_remarks = without_leaps(decoded)
     decoded, clock_remarks = on_one_clock(decoded)
     samples = {name: Samples(topic.stamps, values) for topic in decoded for name, values in topic.columns.items()}
     types = {name: raw.topics[str(rule.topic)].type_name for name, rule in rules.items()}
-    return _assemble(path, samples, rules, types, raw, [*remarks, *clock_remarks])
+    return assemble(path, samples, rules, types, raw, [*remarks, *leap_remarks, *clock_remarks])
 
 
-def _assemble(
+def assemble(
     path: Path,
     samples: Mapping[str, Samples],
     rules: Mapping[str, ChannelRule],
@@ -70,6 +73,10 @@ def _assemble(
     raw: RawRecording,
     remarks: list[str],
 ) -> Recording:
+    """The samples of each channel as a recording: in order, in the model's units, on one time axis.
+
+    Raises RecordingError where no channel has a usable sample.
+    """
     parameters = _parameters(raw, remarks)
     atmosphere = parameters.get("atmospheric_pressure", STANDARD_ATMOSPHERE)
     ordered: dict[str, Samples] = {}
@@ -79,8 +86,15 @@ def _assemble(
         if not len(series.values):
             remarks.append(f"{source}: no values were recorded")
             continue
-        ordered[name], unit_notes = in_model_units(f"{path}: {source}", name, rules[name], series, atmosphere)
-        remarks += [f"{source}: {note}" for note in (*notes, *unit_notes)]
+        ordered[name] = series
+        remarks += [f"{source}: {note}" for note in notes]
+    if ordered:
+        ordered, span_remarks = on_one_span(ordered, samples, ("voltage_command",))
+        remarks += span_remarks
+    for name, series in ordered.items():
+        source = f"{name} ({rules[name].topic})"
+        ordered[name], notes = in_model_units(f"{path}: {source}", name, rules[name], series, atmosphere)
+        remarks += [f"{source}: {note}" for note in notes]
     if not ordered:
         raise RecordingError(f"{path}: {_nothing_usable(raw, remarks)}; map what there is to channels in a topics file")
     start = min(int(series.stamps[0]) for series in ordered.values())
@@ -88,21 +102,21 @@ def _assemble(
     return Recording(
         path=path,
         channels={
-            name: _channel(name, series, start, str(rules[name].topic), types[name]) for name, series in ordered.items()
+            name: _channel(name, series, start, rules[name], types[name]) for name, series in ordered.items()
         },
         start_stamp=start,
         duration=duration,
         parameters=parameters,
         leakage_changes=_changes(samples.get(LEAKAGE_TOPIC), start),
-        damaged=f"{'; '.join(raw.damage)}; what was read covers {duration:.4g} s" if raw.damage else None,
-        remarks=tuple(remarks),
+        damaged=printable(f"{'; '.join(raw.damage)}; what was read covers {duration:.4g} s") if raw.damage else None,
+        remarks=tuple(printable(remark) for remark in remarks),
     )
 
 
-def _channel(name: str, series: Samples, start: int, topic: str, type_name: str) -> Channel:
+def _channel(name: str, series: Samples, start: int, rule: ChannelRule, type_name: str) -> Channel:
     time, values = (series.stamps - start) / 1e9, series.values
     time.flags.writeable = values.flags.writeable = False
-    return Channel(name, time, values, CHANNEL_KINDS[name].unit, topic, type_name)
+    return Channel(name, time, values, CHANNEL_KINDS[name].unit, str(rule.topic), type_name, rule)
 
 
 def _parameters(raw: RawRecording, remarks: list[str]) -> dict[str, float]:

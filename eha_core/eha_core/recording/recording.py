@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from eha_core.recording.channel_rules import ChannelRule
 
 FloatArray = NDArray[np.float64]
 
@@ -56,6 +60,7 @@ class Channel:
         unit: SI unit as text.
         topic: topic, or CSV column, that it came from.
         type: message type, or "csv".
+        rule: how it was taken from there; None where it was no file's.
     """
 
     name: str
@@ -64,6 +69,7 @@ class Channel:
     unit: str
     topic: str
     type: str
+    rule: ChannelRule | None = None
 
 
 @dataclass(frozen=True)
@@ -89,3 +95,60 @@ class Recording:
     leakage_changes: tuple[tuple[float, float], ...]
     damaged: str | None
     remarks: tuple[str, ...]
+
+    @classmethod
+    def from_arrays(
+        cls, *, time: ArrayLike, pressures: str = "absolute", name: str = "in memory", **channels: ArrayLike
+    ) -> Recording:
+        """A recording from arrays, in SI units: any of CHANNEL_KINDS by keyword, one value for each time.
+
+        Args:
+            time: (n,) instants [s].
+            pressures: whether pressures are "absolute" or "gauge" [Pa].
+            name: what the recording is called in reports.
+            channels: voltage_command [V], position [m], velocity [m/s], pressure_a, pressure_b [Pa], force [N] ...
+
+        Raises:
+            RecordingError: an array of another length, an unknown channel, or numbers that can only be in another unit.
+        """
+        from eha_core.recording.arrays import from_arrays
+
+        return from_arrays(time, channels, pressures, name)
+
+    @classmethod
+    def from_dataframe(
+        cls,
+        frame: Any,
+        columns: Mapping[str, str] | None = None,
+        time: str | None = None,
+        pressures: str = "absolute",
+        name: str = "in memory",
+    ) -> Recording:
+        """A recording from a data frame of pandas or Polars whose columns are named like channels.
+
+        Args:
+            frame: one row for each instant, in SI units.
+            columns: the column of each channel that has another name, as {"position": "x_piston"}.
+            time: the column with the times; by default `time`, else the frame's index. Dates count from the first.
+            pressures: whether pressures are "absolute" or "gauge" [Pa].
+            name: what the recording is called in reports.
+
+        Raises:
+            RecordingError: a column that is not there, or what `from_arrays` refuses.
+        """
+        from eha_core.recording.arrays import from_dataframe
+
+        return from_dataframe(frame, columns or {}, time, pressures, name)
+
+    def to_dict(self) -> dict[str, FloatArray]:
+        """The channels as arrays over one time axis, that of the channel with most samples, ready for a data frame.
+
+        Voltage is held between its samples, everything else is interpolated; pressures are gauge.
+        """
+        longest = max(self.channels.values(), key=lambda one: len(one.time))
+        found = {"time": longest.time}
+        for name, one in self.channels.items():
+            held = np.clip(np.searchsorted(one.time, longest.time, side="right") - 1, 0, None)
+            is_held = name == "voltage_command"
+            found[name] = one.values[held] if is_held else np.interp(longest.time, one.time, one.values)
+        return found

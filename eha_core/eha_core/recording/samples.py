@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,8 @@ from numpy.typing import NDArray
 
 from eha_core.recording.recording import FloatArray
 
-_LONGEST_GAP = 3_600_000_000_000  # [ns]
+LONGEST_GAP = 3_600_000_000_000
+"""ns without a sample from which on what lies beyond is of another run, or its stamps are wrong."""
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,41 @@ def put_in_order(samples: Samples) -> tuple[Samples, tuple[str, ...]]:
         kept = _longest_increasing(stamps)
         remarks.append(f"{len(stamps) - len(kept)} samples were left out because time runs backwards there")
         stamps, values = stamps[kept], values[kept]
-    if np.any(np.diff(stamps) > _LONGEST_GAP):
-        pieces = np.split(np.arange(len(stamps)), np.flatnonzero(np.diff(stamps) > _LONGEST_GAP) + 1)
+    if np.any(np.diff(stamps) > LONGEST_GAP):
+        pieces = np.split(np.arange(len(stamps)), np.flatnonzero(np.diff(stamps) > LONGEST_GAP) + 1)
         kept = max(pieces, key=len)
         remarks.append(f"{len(stamps) - len(kept)} samples more than an hour away from the rest were left out")
         stamps, values = stamps[kept], values[kept]
     return Samples(stamps, values), tuple(remarks)
+
+
+def on_one_span(
+    ordered: Mapping[str, Samples], recorded: Mapping[str, Samples], held: Collection[str]
+) -> tuple[dict[str, Samples], tuple[str, ...]]:
+    """Put all channels on the time span of the longest one, where some kept another; also say what was kept out.
+
+    Args:
+        ordered: the channels in order, each by itself.
+        recorded: the same as recorded.
+        held: channels whose last value holds on, so that they may end before others begin.
+    """
+    measured = {name: series for name, series in ordered.items() if name not in held} or dict(ordered)
+    longest = max(measured, key=lambda name: len(measured[name].stamps))
+    start, end = (int(measured[longest].stamps[edge]) for edge in (0, -1))
+    kept, remarks = {}, []
+    for name, series in ordered.items():
+        first, last = int(series.stamps[0]), int(series.stamps[-1])
+        if first <= end and (last >= start or (name in held and start - last <= LONGEST_GAP)):
+            kept[name] = series
+            continue
+        stamps = recorded[name].stamps
+        inside = (stamps >= start) & (stamps <= end)
+        if not inside.any():
+            remarks.append(f"{name} was recorded at another time than {longest} and was left out")
+            continue
+        kept[name], _ = put_in_order(Samples(stamps[inside], recorded[name].values[inside]))
+        remarks.append(f"{name}: {np.count_nonzero(~inside)} samples of another time than {longest}'s were left out")
+    return kept, tuple(remarks)
 
 
 def _longest_increasing(stamps: NDArray[np.int64]) -> NDArray[np.int64]:

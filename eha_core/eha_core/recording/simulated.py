@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.errors import ParameterError
-from eha_core.plant import COLUMNS, Plant
+from eha_core.plant import COLUMNS, Plant, simulate_many
 from eha_core.recording.message_rows import encode_rows
 from eha_core.recording.message_types import encode
 from eha_core.recording.recording import FloatArray
@@ -111,9 +111,7 @@ def simulate(experiment: Experiment) -> Simulated:
     plant = Plant(experiment.parameters, experiment.step_size, experiment.initial_position)
     every, periods = experiment.steps_per_period, experiment.periods
     parameters = dict(plant.parameters)
-    first_steps = np.ceil(experiment.command_times / experiment.step_size - 1e-6).astype(np.int64)
-    latest = np.searchsorted(first_steps, np.arange(periods * every), side="right") - 1
-    voltages = np.where(latest >= 0, experiment.voltages[latest], 0.0)
+    voltages = _held_voltages(experiment)
     changes = [
         (int(np.ceil(time * experiment.rate - 1e-6)), name, value)
         for time, name, value in sorted(experiment.changes, key=lambda change: change[0])
@@ -123,17 +121,60 @@ def simulate(experiment: Experiment) -> Simulated:
     for start, end in zip(bounds, bounds[1:], strict=False):
         plant.set_parameters({name: value for period, name, value in changes if period == start})
         pieces.append(plant.run(voltages[start * every : end * every], every).values)
-    states = np.concatenate(pieces)
+    made = [(start, name, value) for start, name, value in changes if start < periods]
+    return _recorded(experiment, np.concatenate(pieces), parameters, made)
+
+
+def simulate_sweep(experiment: Experiment, name: str, values: Sequence[float]) -> list[Simulated]:
+    """Run an experiment once for each value of a parameter, all in lock-step.
+
+    Raises:
+        ParameterError: as `simulate`, and where the experiment changes a parameter on its way.
+    """
+    if experiment.changes:
+        raise ParameterError("a sweep changes nothing on its way; give every parameter from the start, without @S")
+    sets = [{**experiment.parameters, name: value} for value in values]
+    plants = [Plant(one, experiment.step_size, experiment.initial_position) for one in sets]
+    run = simulate_many(
+        sets, _held_voltages(experiment), step_size=experiment.step_size, every=experiment.steps_per_period,
+        initial_position=experiment.initial_position,
+    )  # fmt: skip
+    return [
+        _recorded(experiment, np.concatenate([[plant.state], rows]), dict(plant.parameters), [])
+        for plant, rows in zip(plants, run.values, strict=True)
+    ]
+
+
+def _first_steps(experiment: Experiment) -> NDArray[np.int64]:
+    """The first step in which each command holds."""
+    return np.ceil(experiment.command_times / experiment.step_size - 1e-6).astype(np.int64)
+
+
+def _held_voltages(experiment: Experiment) -> FloatArray:
+    """The voltage of each step."""
+    steps = np.arange(experiment.periods * experiment.steps_per_period)
+    latest = np.searchsorted(_first_steps(experiment), steps, side="right") - 1
+    return np.where(latest >= 0, experiment.voltages[latest], 0.0)
+
+
+def _recorded(
+    experiment: Experiment,
+    states: FloatArray,
+    parameters: Mapping[str, float],
+    changes: Sequence[tuple[int, str, float]],
+) -> Simulated:
+    """The record of rows that the plant went through; `changes` are (period, parameter, value)."""
     _add_noise(states, experiment)
-    period = every * experiment.step_size * _NANOSECONDS
-    used = first_steps < periods * every
+    period = experiment.steps_per_period * experiment.step_size * _NANOSECONDS
+    first_steps = _first_steps(experiment)
+    used = first_steps < experiment.periods * experiment.steps_per_period
     command_stamps = np.round(first_steps[used] * experiment.step_size * _NANOSECONDS).astype(np.int64)
     return Simulated(
-        np.round(np.arange(periods + 1) * period).astype(np.int64),
+        np.round(np.arange(experiment.periods + 1) * period).astype(np.int64),
         states,
         (command_stamps, experiment.voltages[used]),
         parameters,
-        [(round(start * period), name, value) for start, name, value in changes if start < periods],
+        [(round(start * period), name, value) for start, name, value in changes],
     )
 
 

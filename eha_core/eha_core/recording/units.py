@@ -12,6 +12,13 @@ from eha_core.recording.samples import Samples
 _LEAST_PRESSURE = {ABSOLUTE: 2e4, GAUGE: 1e3}
 """A pressure channel that never exceeds this [Pa] is in bar or MPa."""
 
+_UNITS = {
+    "Pa": {"bar": "1.0e5", "MPa": "1.0e6", "kPa": "1.0e3", "psi": "6894.757"},
+    "m": {"mm": "1.0e-3", "um": "1.0e-6"},
+}
+_USUAL = {"Pa": (1e6, 5e7), "m": (1e-3, 5.0)}
+"""What rigs reach, of that unit; only a message depends on it."""
+
 _MOST_OUTLIERS = 0.01
 """A larger share of impossible samples is no run of outliers but another unit."""
 
@@ -32,8 +39,8 @@ def in_model_units(
     too_small = kind.is_pressure and 0.0 < largest < _LEAST_PRESSURE[reference]
     if np.mean(impossible) > _MOST_OUTLIERS or too_small:
         raise RecordingError(
-            f"{where} reaches {largest:.4g} {kind.unit} at most, which is no rig's;"
-            f" if it is in another unit give its `scale` to {kind.unit} in a topics file"
+            f"{where} reaches {largest:.4g} {kind.unit} at most, which is no rig's; give its `scale` to {kind.unit}"
+            f" in a topics file{_likely_units(name, largest)}"
         )
     notes = []
     if impossible.any():
@@ -49,3 +56,14 @@ def in_model_units(
         if rule.reference is None:
             notes.append("taken as absolute pressure; a topics file can say otherwise")
     return Samples(stamps, values), tuple(notes)
+
+
+def _likely_units(name: str, largest: float) -> str:
+    """The topics files that bring the channel to what rigs reach, if its unit is a usual one."""
+    low, high = _USUAL.get(CHANNEL_KINDS[name].unit, (1.0, 0.0))
+    units = [
+        f"`channels: {{{name}: {{scale: {scale}}}}}` if it is in {unit}"
+        for unit, scale in _UNITS.get(CHANNEL_KINDS[name].unit, {}).items()
+        if low <= largest * float(scale) <= high
+    ]
+    return f": {', '.join(units)}" if units else ""

@@ -1,0 +1,83 @@
+"""The check: which single mistake, if any, makes an impossible recording a possible one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from eha_core.errors import RecordingError
+from eha_core.plausibility.copies import copies
+from eha_core.plausibility.finding import Finding, Suspect
+from eha_core.plausibility.mistakes import suspects, unrelated
+from eha_core.plausibility.relations import Relation, relations
+from eha_core.recording import Recording
+
+CLOSER = 0.5
+"""By so much (as a logarithm: a factor of 1.6 in scale) must a mistake lie closer than another to be told alone."""
+
+
+def check(recording: Recording, nominal: Mapping[str, float]) -> Finding | None:
+    """Say which mistake was made in a recording; None where it is sound, or no single mistake explains it.
+
+    A recording is only suspected where a relation that holds for every actuator of the nominal kind, whatever physics
+    is missing, is certainly broken; and a mistake is only told where undoing it mends all that is broken.
+
+    Args:
+        recording: as it was read.
+        nominal: every parameter's nominal value by name [SI].
+    """
+    if copy := copies(recording, nominal):
+        return Finding(copy.mistake, copy.cure)
+    found = relations(recording, nominal)
+    if not any(relation.broken for relation in found.values()):
+        return None
+    mended = _mended(found, recording, suspects(recording, nominal), nominal)
+    mended = mended or _mended(found, recording, unrelated(recording, nominal), nominal)
+    if not mended:
+        return None
+    least = min(distance for distance, _ in mended)
+    likely, *others = [suspect for distance, suspect in mended if distance < least + CLOSER]
+    return Finding(likely.mistake, likely.cure, (others[0].mistake, others[0].cure) if others else None)
+
+
+def admit(recording: Recording, nominal: Mapping[str, float], as_recorded: bool = False) -> Recording:
+    """The recording, if it can be right; with `as_recorded` also one that cannot, with a warning as its first remark.
+
+    Raises:
+        RecordingError: a mistake was made in the recording; the message says which, and its cure.
+    """
+    finding = check(recording, nominal)
+    if finding is None:
+        return recording
+    if not as_recorded:
+        raise RecordingError(f"{recording.path}: {finding}; --as-recorded goes on all the same")
+    warning = f"warning: taken as recorded, although {finding}"
+    return replace(recording, remarks=(warning, *recording.remarks))
+
+
+def _mended(
+    found: Mapping[str, Relation], recording: Recording, possible: Iterable[Suspect], nominal: Mapping[str, float]
+) -> list[tuple[float, Suspect]]:
+    """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording.
+
+    Of several units of one channel the closest is meant.
+    """
+    mended: dict[frozenset[str], tuple[float, Suspect]] = {}
+    for suspect in possible:
+        without = relations(suspect.without(recording), nominal)
+        if without and _mends(found, without):
+            distance = sum(relation.distance for relation in without.values())
+            channels = frozenset(suspect.undone)
+            if channels not in mended or distance < mended[channels][0]:
+                mended[channels] = (distance, suspect)
+    return list(mended.values())
+
+
+def _mends(found: Mapping[str, Relation], without: Mapping[str, Relation]) -> bool:
+    """Whether nothing is broken any more, and what was broken or sound is sound (or can be looked at no longer)."""
+    judged = [relation for name, relation in without.items() if name in found and _is_certain(found[name])]
+    return all(relation.sound for relation in judged) and not any(relation.broken for relation in without.values())
+
+
+def _is_certain(relation: Relation) -> bool:
+    return relation.broken or relation.sound

@@ -1,0 +1,89 @@
+"""What a check finds, what it suspects, and the lines of a topics file that cure it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from eha_core.recording import Channel, ChannelRule, Recording
+from eha_core.recording.channel_rules import GAUGE
+from eha_core.recording.discovery import default_rule
+from eha_core.recording.reader import STANDARD_ATMOSPHERE
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A mistake in a recording.
+
+    Attributes:
+        mistake: what is wrong with which channel.
+        cure: a topics file, in one line, that puts it right.
+        other: a mistake that this recording does not tell from it, and its cure.
+    """
+
+    mistake: str
+    cure: str
+    other: tuple[str, str] | None = None
+
+    def __str__(self) -> str:
+        other = f", or, if {self.other[0]}, `{self.other[1]}`" if self.other else ""
+        return f"{self.mistake}; say so in a topics file (--topics): `{self.cure}`{other}"
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A mistake that may have been made; `undone` are the channels without it, None for one to be left out."""
+
+    mistake: str
+    undone: Mapping[str, Channel | None]
+
+    @property
+    def cure(self) -> str:
+        """The topics file that puts it right."""
+        return topics_line(self.undone)
+
+    def without(self, recording: Recording) -> Recording:
+        """The recording as it would be had the mistake not been made."""
+        channels = {**recording.channels, **self.undone}
+        return replace(recording, channels={name: channel for name, channel in channels.items() if channel})
+
+
+def rescaled(recording: Recording, name: str, factor: float, shift: float = 0.0) -> Channel:
+    """The channel as a topics file with another scale and offset gives it; `shift` is in its SI unit.
+
+    A pressure is scaled as the message has it, before the atmosphere is taken off.
+    """
+    channel = recording.channels[name]
+    rule = channel.rule or ChannelRule()
+    zero = 0.0
+    if channel.unit == "Pa" and rule.reference != GAUGE:
+        zero = recording.parameters.get("atmospheric_pressure", STANDARD_ATMOSPHERE)
+    values = factor * (channel.values + zero) - zero + shift
+    rule = replace(rule, scale=factor * rule.scale, offset=factor * rule.offset + shift)
+    return replace(channel, values=values, rule=rule)
+
+
+def topics_line(channels: Mapping[str, Channel | None]) -> str:
+    """The topics file that reads these channels so, with what differs from the default alone; it is one line."""
+    return f"channels: {{{', '.join(_entry(name, channel) for name, channel in channels.items())}}}"
+
+
+def _entry(name: str, channel: Channel | None) -> str:
+    if channel is None:
+        return f"{name}: null"
+    rule = channel.rule or ChannelRule()
+    default = default_rule(name, rule)
+    parts = [
+        f"{key}: {_text(getattr(rule, key))}"
+        for key in ("topic", "field", "column", "scale", "offset", "reference")
+        if getattr(rule, key) not in (None, getattr(default, key))
+    ]
+    return f"{name}: {{{', '.join(parts)}}}"
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, float):
+        return f'"{value}"' if "[" in str(value) else str(value)
+    text = f"{value:.6g}"
+    mantissa, _, exponent = text.partition("e")
+    return f"{mantissa}.0e{exponent}" if exponent and "." not in mantissa else text  # YAML 1.1 reads 1e-3 as text

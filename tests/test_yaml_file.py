@@ -1,0 +1,73 @@
+"""YAML files of strangers: what grows without bound, or is none, is refused in one line and at once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from eha_core.errors import EhaError, ParameterError, RecordingError
+from eha_core.parameters import load_parameters
+from eha_core.recording import load_topics_file, read_recording
+from eha_core.yaml_file import load_yaml
+
+LAUGHS = "a: &a [x, x, x, x, x, x, x, x, x]\n" + "".join(
+    f"{new}: &{new} [{', '.join(['*' + old] * 9)}]\n" for old, new in zip("abcdefgh", "bcdefghi", strict=True)
+)
+HOSTILE = {
+    "aliases": (LAUGHS + "channels: *i\n", "line 2: aliases are not read"),
+    "an alias of itself": ("channels: &a [*a]\n", "aliases are not read"),
+    "depth": ("[" * 5000, "nested more than 20 levels deep"),
+    "digits": ("channels: {position: {scale: " + "9" * 6000 + "}}", "a number of more than 30 digits"),
+    "sixties": ("channels: {position: {scale: " + "1:" * 5000 + "1}}", "a number of more than 30 digits"),
+    "a date that is none": ("channels: {position: {scale: 2024-99-99}}", "holds a value that is none"),
+    "a Python object": ("channels: !!python/object/apply:os.system [true]", "could not determine a constructor"),
+    "size": ("# " + "x" * 2**20 + "\nchannels: {}\n", "is larger than 1 MB"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_one_line_for_what_is_hostile(tmp_path: Path, name: str) -> None:
+    text, told = HOSTILE[name]
+    path = tmp_path / "file.yaml"
+    path.write_text(text)
+    for load, error in ((load_topics_file, RecordingError), (load_parameters, ParameterError)):
+        with pytest.raises(error) as caught:
+            load(path)
+        assert told in str(caught.value) and "\n" not in str(caught.value) and str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "value", [".nan", ".inf", "-.inf", "0", "0.0", "1e400", "true-ish", "[1]", "2024-01-01", "!!binary aGk="]
+)
+def test_a_scale_is_a_number_that_keeps_what_was_recorded(tmp_path: Path, value: str) -> None:
+    path = tmp_path / "topics.yaml"
+    path.write_text(f"channels: {{position: {{scale: {value}}}}}")
+    with pytest.raises(RecordingError, match=r"topics\.yaml: channel position: scale "):
+        load_topics_file(path)
+
+
+def test_what_is_read_is_what_the_safe_loader_reads(tmp_path: Path) -> None:
+    path = tmp_path / "file.yaml"
+    path.write_text("a: 1\nb: [1.0e-3, two, null, true]\nc: {d: '12345678901234567890123456789012345'}\n")
+    assert load_yaml(path, EhaError, "file") == {
+        "a": 1, "b": [1e-3, "two", None, True], "c": {"d": "12345678901234567890123456789012345"},
+    }  # fmt: skip
+
+
+def test_messages_hold_no_escape_sequence_and_end(tmp_path: Path) -> None:
+    path = tmp_path / "topics.yaml"
+    path.write_text('channels: {"\\e]0;owned\\a\\e[2J\\u202e": {scale: 1.0}}')
+    with pytest.raises(RecordingError) as caught:
+        load_topics_file(path)
+    assert str(caught.value).isprintable() and "owned" in str(caught.value)
+    assert len(str(EhaError("x" * 100_000))) < 1100
+
+
+@pytest.mark.parametrize("listed", ["../secret.mcap", "/etc/passwd", "a/../../b.mcap"])
+def test_a_bag_lists_no_files_outside_its_folder(tmp_path: Path, listed: str) -> None:
+    folder = tmp_path / "bag"
+    folder.mkdir()
+    (folder / "metadata.yaml").write_text(f"rosbag2_bagfile_information: {{relative_file_paths: ['{listed}']}}")
+    with pytest.raises(RecordingError, match="which is not in its folder"):
+        read_recording(folder)
