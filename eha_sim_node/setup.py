@@ -17,7 +17,8 @@ setup(
     version="0.1.0",
     description="Nodes of the electro-hydraulic actuator simulator",
     license="Apache-2.0",
-    packages=[NAME],
+    packages=[NAME, f"{NAME}.live"],
+    package_data={f"{NAME}.live": ["page.html"]},
     package_dir={"": "."},  # so that an editable install wins over this folder when Python starts beside it
     python_requires=">=3.10",
     install_requires=["eha_core"],
@@ -34,6 +35,8 @@ setup(
             "reference = eha_sim_node.reference:main",
             "monitor = eha_sim_node.monitor:main",
             "twin = eha_sim_node.twin:main",
+            "controller = eha_sim_node.controller:main",
+            "live_page = eha_sim_node.live_page:main",
         ]
     },
 )

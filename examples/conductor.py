@@ -23,9 +23,9 @@ from eha_core.errors import EhaError
 from eha_interfaces.msg import TrackingError
 from eha_interfaces.srv import Step
 
-STEP_SIZE = 1e-4  # s
 _HALF_PERIOD = 1e-3  # s, of the samples
-RIG_TOPICS = ("voltage_command", "joint_states", "state", "chamber_a/pressure", "chamber_b/pressure")
+INSTRUMENTS = ("voltage_command", "joint_states", "chamber_a/pressure", "chamber_b/pressure")
+SIMULATOR_TOPICS = (*INSTRUMENTS, "state")
 _START = 120.0  # s; the first node compiles the plant, on a machine that may be busy
 PIECE = 0.5  # s of simulated time a lockstep takes before the monitor has caught up: half of what a queue holds
 _SETTLE = 0.5  # s; the monitor counts its diagnostics too, so the run's last messages may still be on their way
@@ -62,9 +62,12 @@ class Processes:
 
     def start(self, executable: str, *arguments: str) -> None:
         """Start a node as `ros2 run eha_sim_node <executable>` does."""
-        command = [sys.executable, "-m", f"eha_sim_node.{executable}", "--ros-args", *arguments]
-        with (self._logs / f"{executable}.log").open("wb") as log:
-            self._running[executable] = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
+        self.start_program(executable, "-m", f"eha_sim_node.{executable}", "--ros-args", *arguments)
+
+    def start_program(self, name: str, *words: str) -> None:
+        """Start Python with these words; `name` is that of its log."""
+        with (self._logs / f"{name}.log").open("wb") as log:
+            self._running[name] = subprocess.Popen([sys.executable, *words], stdout=log, stderr=subprocess.STDOUT)
 
     def check(self) -> None:
         """Raise DemoError with the last line of a node's log if it has ended."""
@@ -73,9 +76,9 @@ class Processes:
                 lines = (self._logs / f"{name}.log").read_text(errors="replace").strip().splitlines() or ["no output"]
                 raise DemoError(f"{name} ended with status {process.returncode}: {lines[-1]}")
 
-    def stop(self) -> None:
-        """End the nodes, the monitor first so that it finishes its file."""
-        for name in ("monitor", "reference", "sim"):
+    def stop(self, *names: str) -> None:
+        """End these nodes, or all: the monitor first so that it finishes its file."""
+        for name in names or sorted(self._running, key=lambda one: one != "monitor"):
             process = self._running.pop(name, None)
             if process is None or process.poll() is not None:
                 continue
@@ -89,13 +92,14 @@ class Processes:
 
 
 class Conductor:
-    """Steps the simulator and watches the graph, with an ordinary node's means."""
+    """Steps a simulator, or a rig that is one, and watches the graph, with an ordinary node's means."""
 
-    def __init__(self, processes: Processes) -> None:
+    def __init__(self, processes: Processes, simulator: str = "eha_sim", step_size: float = 1e-4) -> None:
         rclpy.init()
         self._processes = processes
         self._node = rclpy.create_node("eha_demo")
-        self._step = self._node.create_client(Step, "eha_sim/step")
+        self._step_size = step_size
+        self._step = self._node.create_client(Step, f"{simulator}/step")
         self._reset = self._node.create_client(Trigger, "eha_monitor/reset")
         self._clients = [self._step, self._reset]
 
@@ -108,7 +112,7 @@ class Conductor:
             if time.monotonic() > deadline:
                 raise DemoError(f"waited {seconds:g} s for {what}")
 
-    def await_nodes(self, recorded: Iterable[str] = RIG_TOPICS) -> None:
+    def await_nodes(self, recorded: Iterable[str] = SIMULATOR_TOPICS) -> None:
         """Wait until the services answer and the monitor has subscribed to all that it is to record."""
         self.wait(lambda: all(client.service_is_ready() for client in self._clients), _START, "the nodes' services")
         self.wait(lambda: all(map(self._is_recorded, recorded)), 30, "the monitor to subscribe to every topic")
@@ -123,7 +127,7 @@ class Conductor:
 
     def step(self, seconds: float) -> None:
         """Let a paused simulator take so many simulated seconds."""
-        answer = self._call(self._step, Step.Request(steps=round(seconds / STEP_SIZE)))
+        answer = self._call(self._step, Step.Request(steps=round(seconds / self._step_size)))
         if not answer.success:
             raise DemoError(f"the simulator does not step: {answer.message}")
 
@@ -134,10 +138,17 @@ class Conductor:
 
 
 class RigConductor(Conductor):
-    """Lets a rig run until its recording is complete."""
+    """Lets a rig run until its recording of `topics` is complete."""
 
-    def __init__(self, processes: Processes) -> None:
-        super().__init__(processes)
+    def __init__(
+        self,
+        processes: Processes,
+        simulator: str = "eha_sim",
+        step_size: float = 1e-4,
+        topics: tuple[str, ...] = SIMULATOR_TOPICS,
+    ) -> None:
+        super().__init__(processes, simulator, step_size)
+        self._topics = topics
         self._recorded, self._reached = 0, 0.0
         self._node.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 100)
         self._node.create_subscription(JointState, "joint_states", self._on_state, 1)
@@ -158,7 +169,7 @@ class RigConductor(Conductor):
         for piece in range(1, round(seconds / PIECE) + 1):
             self.step(PIECE)
             self._await_state(piece * PIECE, patience)
-            messages = (len(RIG_TOPICS) + 1) * (round(piece * PIECE / period) + 1)  # with /clock, and with the start
+            messages = (len(self._topics) + 1) * (round(piece * PIECE / period) + 1)  # with /clock, and with the start
             self._await_written(messages, patience)
         settled = time.monotonic() + _SETTLE
         self.wait(lambda: time.monotonic() > settled, patience, "the last of them")

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from conductor import RIG_TOPICS, LeakageConductor, Processes, perform
+from conductor import SIMULATOR_TOPICS, LeakageConductor, Processes, perform
 from rosbags.highlevel import AnyReader
 
 from eha_core.paper import LEVELS, PRINTED_RMSE, Level, as_json, measure, reproduce
@@ -148,7 +148,7 @@ def demonstrate(out: Path, realtime: bool) -> None:
     try:
         start_nodes(processes, out, realtime)
         conductor = LeakageConductor(processes)
-        conductor.await_nodes((*RIG_TOPICS, "reference"))
+        conductor.await_nodes((*SIMULATOR_TOPICS, "reference"))
         passed = run_levels(conductor, realtime, Progress())
     finally:
         processes.stop()

@@ -46,7 +46,9 @@ class PositionController(Node):
         if not reference.position or not measured.position or reference.header.stamp != measured.header.stamp:
             return
         gain, feedforward = self.get_parameter("gain").value, self.get_parameter("feedforward").value
-        voltage = gain * (reference.position[0] - measured.position[0]) + feedforward * reference.velocity[0]
+        wanted, found = reference.name.index("piston"), measured.name.index("piston")
+        error = reference.position[wanted] - measured.position[found]
+        voltage = gain * error + feedforward * reference.velocity[wanted]
         self.voltage.publish(Float64(data=voltage))
 
 

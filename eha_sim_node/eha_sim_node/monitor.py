@@ -9,17 +9,19 @@ from pathlib import Path
 import rclpy.node
 from rcl_interfaces.srv import GetParameters
 from rclpy.clock import Clock, ClockType
+from rclpy.parameter import parameter_value_to_python
 from rclpy.serialization import deserialize_message
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
 from eha_core.errors import EhaError, RecordingError
-from eha_core.parameters import catalogue
+from eha_core.recording import is_finished
 from eha_core.tracking import Tracker, TrackingSample
 from eha_interfaces.msg import TrackingError
 from eha_sim_node.diagnostics import Diagnostics, Report
-from eha_sim_node.parameters import ParameterSet, Row, Value
+from eha_sim_node.joints import value_of
+from eha_sim_node.parameters import ParameterSet, Row, Value, plant_rows, plant_values
 from eha_sim_node.recorder import Handler, Recorder
 from eha_sim_node.running import run
 from eha_sim_node.stamps import nanoseconds_of, set_stamp
@@ -28,6 +30,8 @@ from eha_sim_node.state_topics import OUTPUT_QUALITY
 NAME = "eha_monitor"
 _DISCOVERY_PERIOD = 0.1  # s
 _FLUSH_PERIOD = 0.25  # s
+_FEW_UNPAIRED = 0.05  # share of positions without a reference that an RMSE stands; assumed
+_PLANT = [row.name for row in plant_rows()]
 OWN_ROWS = (
     Row("directory", "bags", "folder that recordings go to", fixed=True),
     Row("name", "", "file name of the recording without ending; empty: from the date", fixed=True),
@@ -50,12 +54,14 @@ class MonitorNode(rclpy.node.Node):
         self._tracker = Tracker(window=self._window)
         self._publisher = self.create_publisher(TrackingError, "tracking_error", OUTPUT_QUALITY)
         self._message = TrackingError()
+        self._reported = (0, 0)  # pairs and positions without one, at the last report
         handlers: dict[str, Handler] = {
             self.resolve_topic_name("joint_states"): self._on_measured,
             self.resolve_topic_name("reference"): self._on_reference,
         }
         simulated = bool(self.get_parameter("use_sim_time").value)
-        self._recorder = Recorder(self, Path(own["directory"]), own["name"], simulated, handlers)
+        self._directory = Path(own["directory"])
+        self._recorder = Recorder(self, self._directory, own["name"], simulated, handlers)
         self._settings.declare(_refuse_changes)
         for name in ("start", "stop", "split"):
             self.create_service(Trigger, f"~/{name}", self._recording_service(getattr(self._recorder, name)))
@@ -76,18 +82,35 @@ class MonitorNode(rclpy.node.Node):
             self.get_logger().info(f"recorded {self._recorder.message_count} messages to {self._recorder.stop()}")
 
     def _start_recording(self) -> None:
+        self._tell_unfinished()
         try:
             self.get_logger().info(f"recording to {self._recorder.start()}")
         except RecordingError as error:
             self.get_logger().error(f"not recording, monitoring goes on: {error}")
 
+    def _tell_unfinished(self) -> None:
+        """Say what the last recorder left behind, if it was killed."""
+        try:
+            latest = max(self._directory.glob("*.mcap"), key=lambda path: path.stat().st_mtime, default=None)
+            if latest is not None and not is_finished(latest):
+                self.get_logger().warning(
+                    f"{latest} was not finished: its recorder was killed, or is running still; it can be read as it is,"
+                    " and lacks what came after its last flush"
+                )
+        except OSError:
+            pass  # a folder that cannot be read is told when the recording starts
+
     def _on_measured(self, data: bytes) -> None:
         message = deserialize_message(data, JointState)
-        self._publish(self._tracker.measured(nanoseconds_of(message.header.stamp), message.position[0]))
+        position = value_of(message.name, message.position)
+        if position is not None:
+            self._publish(self._tracker.measured(nanoseconds_of(message.header.stamp), position))
 
     def _on_reference(self, data: bytes) -> None:
         message = deserialize_message(data, JointState)
-        self._publish(self._tracker.reference(nanoseconds_of(message.header.stamp), message.position[0]))
+        position = value_of(message.name, message.position)
+        if position is not None:
+            self._publish(self._tracker.reference(nanoseconds_of(message.header.stamp), position))
 
     def _publish(self, pairs: Iterable[TrackingSample]) -> None:
         message = self._message
@@ -102,17 +125,18 @@ class MonitorNode(rclpy.node.Node):
 
     def _on_discovery(self) -> None:
         self._recorder.discover()
+        if path := self._recorder.resume():
+            self.get_logger().info(f"recording goes on in {path}")
         if not self._asked_simulator and self._simulator.service_is_ready():
             self._asked_simulator = True
-            request = GetParameters.Request(names=list(catalogue()))
+            request = GetParameters.Request(names=_PLANT)
             self._simulator.call_async(request).add_done_callback(self._on_parameters)
 
     def _on_parameters(self, future: Future) -> None:
         values = future.result().values
-        if len(values) == len(catalogue()):
-            self._recorder.keep_parameters(
-                {name: value.double_value for name, value in zip(catalogue(), values, strict=True)}
-            )
+        if len(values) == len(_PLANT):
+            found = {name: parameter_value_to_python(value) for name, value in zip(_PLANT, values, strict=True)}
+            self._recorder.keep_parameters(plant_values(found))
 
     def _recording_service(
         self, act: Callable[[], Path]
@@ -130,6 +154,8 @@ class MonitorNode(rclpy.node.Node):
 
     def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._tracker.reset()
+        self._message.sample_count = 0
+        self._reported = (0, 0)
         response.success = True
         response.message = "the errors count from here"
         return response
@@ -146,15 +172,26 @@ class MonitorNode(rclpy.node.Node):
     def _report(self) -> Report:
         recorder = self._recorder
         troubles = [f"not recording: {recorder.failure}"] if recorder.failure else []
+        troubles += self._missing_pairs()
         troubles += [f"{topic} is not recorded: {reason}" for topic, reason in recorder.unrecorded.items()]
         values = {
             "recording": recorder.path or "",
             "messages": recorder.message_count,
             "topics": " ".join(sorted(recorder.topics)),
             "samples": self._message.sample_count,
+            "unpaired": self._tracker.unpaired,
             "rmse": self._message.rmse,
         }
         return Report(values, troubles)
+
+    def _missing_pairs(self) -> list[str]:
+        """Positions since the last report that found no reference, where they are more than a few."""
+        paired, unpaired = self._message.sample_count, self._tracker.unpaired
+        new = paired - self._reported[0], unpaired - self._reported[1]
+        self._reported = (paired, unpaired)
+        if new[1] <= _FEW_UNPAIRED * sum(new):
+            return []
+        return [f"{new[1]} of {sum(new)} positions have no reference: the RMSE rests on the other {max(new[0], 0)}"]
 
 
 def _refuse_changes(changes: Mapping[str, Value]) -> None:
@@ -163,7 +200,7 @@ def _refuse_changes(changes: Mapping[str, Value]) -> None:
 
 def main() -> int:
     """Run the monitor node."""
-    return run(MonitorNode, NAME)
+    return run(MonitorNode, NAME, OWN_ROWS)
 
 
 if __name__ == "__main__":

@@ -13,9 +13,11 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from eha_core.errors import EhaError, ParameterError
+from eha_core.node_parameters import from_node, node_name, to_node
 from eha_core.parameter import Parameter as PlantParameter
+from eha_core.parameters import catalogue
 
-Value = Any  # bool, int, float or str: whatever the row's default is
+Value = Any  # bool, int, float, str or list of float: whatever the row's default is
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service", "qos_overrides.")
 
 
@@ -30,21 +32,41 @@ class Row:
     upper: float | None = None
     fixed: bool = False
     choices: tuple[str, ...] = ()
+    hint: str = ""
 
     def convert(self, value: object) -> Value:
         """Return the value in the parameter's type, or raise ParameterError.
 
         A whole number, or a number that YAML takes for text (`1e-10` has no dot), is taken where a float is asked for.
         """
+        return self._check(self.typed(value))
+
+    def typed(self, value: object) -> Value:
+        """Return the value in the parameter's type, in range or not, or raise ParameterError."""
+        if isinstance(self.default, list):
+            return self._list(value)
         kind = type(self.default)
         if kind is float and isinstance(value, int | float | str) and not isinstance(value, bool):
             with suppress(ValueError):
                 value = float(value)
         if type(value) is not kind:
             raise ParameterError(f"{self.name} = {value!r} is no {kind.__name__}; {self.meaning}")
-        return self._check(value)
+        return value
+
+    def _list(self, value: object) -> list[float]:
+        count = len(self.default)
+        if isinstance(value, Iterable) and not isinstance(value, str):
+            with suppress(ValueError, TypeError):
+                numbers = [float(item) for item in value]
+                if len(numbers) == count:
+                    return numbers
+        raise ParameterError(f"{self.name} = {value!r} is no list of {count} numbers; {self.meaning}")
 
     def _check(self, value: Value) -> Value:
+        if isinstance(value, list):
+            for item in value:
+                self._check(item)
+            return value
         if self.choices and value not in self.choices:
             raise ParameterError(f"{self.name} = {value!r} is unknown; give one of {', '.join(self.choices)}")
         if isinstance(value, float) and not isfinite(value):
@@ -57,9 +79,11 @@ class Row:
     def descriptor(self) -> ParameterDescriptor:
         """Return what `ros2 param describe` shows and rqt_reconfigure makes sliders from."""
         descriptor = ParameterDescriptor(name=self.name, description=self.meaning, read_only=self.fixed)
-        descriptor.additional_constraints = f"one of {', '.join(self.choices)}" if self.choices else ""
+        descriptor.additional_constraints = f"one of {', '.join(self.choices)}" if self.choices else self.hint
         if self.lower is not None and self.upper is not None and isfinite(self.lower) and isfinite(self.upper):
-            if isinstance(self.default, float):
+            if isinstance(self.default, list):
+                descriptor.additional_constraints = f"{len(self.default)} numbers from {self.lower:g} to {self.upper:g}"
+            elif isinstance(self.default, float):
                 bounds = FloatingPointRange(from_value=float(self.lower), to_value=float(self.upper), step=0.0)
                 descriptor.floating_point_range = [bounds]
             else:
@@ -68,10 +92,28 @@ class Row:
         return descriptor
 
 
-def plant_row(name: str, parameter: PlantParameter) -> Row:
-    """Return the ROS parameter of a plant parameter, under its full name."""
+def plant_rows(values: Mapping[str, float] | None = None) -> list[Row]:
+    """Return the ROS parameters of the plant, whose defaults are `values` (catalogue names), else nominal."""
+    values = values or {}
+    defaults = to_node({name: values.get(name, row.nominal) for name, row in catalogue().items()})
+    rows: dict[str, Row] = {}
+    for name, parameter in catalogue().items():
+        rows.setdefault(node_name(name), _plant_row(node_name(name), parameter, defaults[node_name(name)]))
+    return list(rows.values())
+
+
+def _plant_row(name: str, parameter: PlantParameter, default: float | list[float]) -> Row:
     meaning = f"{parameter.meaning} {parameter.symbol} [{parameter.unit}]; {parameter.source}"
-    return Row(name, float(parameter.nominal), meaning, parameter.lower, parameter.upper)
+    if isinstance(default, list):
+        meaning = f"values at the knots from `lower` to `upper` [{parameter.unit}]; {parameter.source}"
+    hint = "spans orders of magnitude: turn it by factors" if parameter.logarithmic else ""
+    return Row(name, default, meaning, parameter.lower, parameter.upper, hint=hint)
+
+
+def plant_values(values: Mapping[str, Value]) -> dict[str, float]:
+    """Return those of a node's parameters that are the plant's, under the catalogue's names."""
+    found = from_node(values)
+    return {name: float(found[name]) for name in catalogue() if name in found}  # type: ignore[arg-type]
 
 
 class ParameterSet:
@@ -86,13 +128,29 @@ class ParameterSet:
         self._node = node
         self._rows = {row.name: row for row in rows}
         self.values: dict[str, Value] = {row.name: row.default for row in self._rows.values()}
-        given = node.get_parameters_by_prefix("")
-        for name, parameter in given.items():
-            if name in self._rows:
-                self.values[name] = self._rows[name].convert(parameter.value)
-            elif not name.startswith(_OF_EVERY_NODE):
+        given = {name: parameter.value for name, parameter in node.get_parameters_by_prefix("").items()}
+        self._given = [name for name in given if not name.startswith(_OF_EVERY_NODE)]
+        for name, value in self._renamed({name: given[name] for name in self._given}).items():
+            if name not in self._rows:
                 raise ParameterError(f"parameter {name} is unknown; `ros2 param list` shows what {node.get_name()} has")
-        self._given = [name for name in given if name in self._rows]
+            self.values[name] = self._rows[name].convert(value)
+
+    def _renamed(self, given: Mapping[str, Value]) -> dict[str, Value]:
+        """Take an earlier name of a plant parameter, with a warning, for the one it has now."""
+        renamed: dict[str, Value] = {}
+        for name, value in given.items():
+            now = node_name(name)
+            if name in self._rows or now not in self._rows:
+                renamed[name] = value
+                continue
+            self._node.get_logger().warning(f"parameter {name} is now {now}; the old name will go")
+            row = self._rows[now]
+            if isinstance(row.default, list):
+                law = renamed.setdefault(now, list(self.values[now]))
+                law[int(name[-2:])] = value
+            else:
+                renamed[now] = value
+        return renamed
 
     def declare(self, apply: Callable[[Mapping[str, Value]], None]) -> None:
         """Declare the parameters; from now on `apply` gets each request's changes and raises EhaError to refuse."""
@@ -109,7 +167,7 @@ class ParameterSet:
         for parameter in parameters:
             row = self._rows.get(parameter.name)
             try:
-                value = row.convert(parameter.value) if row else None
+                value = row.typed(parameter.value) if row else None
             except ParameterError:
                 value = None  # refused with its reason by the checks that follow
             converted.append(parameter if value is None else Parameter(parameter.name, value=value))

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from datetime import datetime
 from importlib import import_module
 from pathlib import Path
+from shutil import disk_usage
 from typing import Any
 
 from rclpy.node import Node
@@ -20,6 +21,8 @@ from eha_sim_node.log_time import SimulatedTime, leading_stamp
 _ALWAYS = ("/clock", "/diagnostics", "/parameter_events")
 _DEPTH = 5000  # samples that may wait while the disk or another process has the machine
 _LONGEST_WAIT = 0.25  # s that a message waits for the /clock that settles its log time
+_RETRY = 5.0  # s after which a recording that was given up is begun anew
+_ROOM = 2**26  # bytes that must be free for that; it would end at once otherwise, again and again
 _WALL_CLOCK_HEADERS = frozenset({"diagnostic_msgs/msg/DiagnosticArray"})
 
 Handler = Callable[[bytes], None]
@@ -29,7 +32,8 @@ Waiting = tuple[float, str, bytes, int]
 class Recorder:
     """Subscribes every topic of the node's namespace and writes what arrives while a recording is open.
 
-    A recording that cannot be written is given up with its reason in `failure`; subscriptions and handlers go on.
+    A recording that cannot be written is given up with its reason in `failure`; subscriptions and handlers go on, and
+    `resume` opens the next one when there is room again.
 
     Args:
         node: owner of the subscriptions.
@@ -54,6 +58,7 @@ class Recorder:
         self._parameters: dict[str, float] = {}
         self.unrecorded: dict[str, str] = {}
         self.failure: str | None = None
+        self._next_attempt = 0.0
 
     @property
     def path(self) -> Path | None:
@@ -82,8 +87,22 @@ class Recorder:
         self.failure = None
         return self._writer.path
 
+    def resume(self) -> Path | None:
+        """Open a new recording in place of one that was given up, if there is room and a while has passed; its path."""
+        if self._writer or self.failure is None or time.monotonic() < self._next_attempt:
+            return None
+        self._next_attempt = time.monotonic() + _RETRY
+        try:
+            if disk_usage(self._directory).free < _ROOM:
+                return None
+            return self.start()
+        except (OSError, RecordingError):
+            return None
+
     def stop(self) -> Path:
         """Finish the recording; raise RecordingError where none is open or its end cannot be written."""
+        if self._writer is None and self.failure is not None:
+            self.failure = None  # whoever stops a recording that was given up wants none anew
         writer = self._open_writer()
         self._settle(everything=True)
         self._writer = None
@@ -205,6 +224,7 @@ class Recorder:
     def _give_up(self, error: RecordingError) -> None:
         self.failure = str(error)
         self._writer = None
+        self._next_attempt = time.monotonic() + _RETRY
         self._waiting.clear()
         self._node.get_logger().error(f"recording stopped, monitoring goes on: {error}")
 

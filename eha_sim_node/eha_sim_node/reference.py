@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Mapping
 
+import rclpy
 import rclpy.node
 from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import JointState
@@ -13,11 +14,11 @@ from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
 
 from eha_core.errors import ParameterError
-from eha_core.parameters import catalogue
 from eha_core.plant import Plant
 from eha_core.realtime import NANOSECONDS
 from eha_core.signals import Signal, make_signal, signals
-from eha_sim_node.parameters import ParameterSet, Row, Value, plant_row
+from eha_sim_node.joints import JOINT
+from eha_sim_node.parameters import ParameterSet, Row, Value, plant_rows, plant_values
 from eha_sim_node.running import run
 from eha_sim_node.stamps import nanoseconds_of, set_stamp
 from eha_sim_node.state_topics import OUTPUT_QUALITY
@@ -32,6 +33,8 @@ OWN_ROWS = (
     Row("leakage_free_response", False,
         "in mode voltage: whether `reference` is the response of this actuator without internal leakage", fixed=True),
     Row("step_size", 1e-4, "step of that response [s]", 1e-6, 1e-3, fixed=True),
+    Row("listeners", 1, "how many subscribers a signal that a timer drives waits for", 1, 100, fixed=True),
+    Row("duration", 0.0, "time after which the signal is zero and the node ends [s]; 0: never", 0.0, 1e6, fixed=True),
 )  # fmt: skip
 
 
@@ -86,16 +89,15 @@ class ReferenceNode(rclpy.node.Node):
     def __init__(self) -> None:
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         responds = self.has_parameter("leakage_free_response") and self.get_parameter("leakage_free_response").value
-        plant_rows = [plant_row(name, row) for name, row in catalogue().items()] if responds else []
-        self._settings = ParameterSet(self, (*OWN_ROWS, *signal_rows(), *plant_rows))
+        self._settings = ParameterSet(self, (*OWN_ROWS, *signal_rows(), *(plant_rows() if responds else [])))
         own = self._settings.values
         if responds and own["mode"] != "voltage":
             raise ParameterError("leakage_free_response answers a voltage; give mode:=voltage")
         self._signal = chosen_signal(own)
+        self._duration = own["duration"]
+        self._least_listeners = own["listeners"]
         self._commands_voltage = own["mode"] == "voltage"
-        self._actuator = (
-            LeakageFreeActuator({name: own[name] for name in catalogue()}, own["step_size"]) if responds else None
-        )
+        self._actuator = LeakageFreeActuator(plant_values(own), own["step_size"]) if responds else None
         self._origin: int | None = None
         self._listeners = 0
         self._still_since = 0.0
@@ -107,7 +109,7 @@ class ReferenceNode(rclpy.node.Node):
             if self._actuator or not self._commands_voltage
             else None
         )
-        self._reference = JointState(name=["piston"])
+        self._reference = JointState(name=[JOINT])
         self._voltage = Float64()
         self._settings.declare(self._apply)
         self.create_service(Trigger, "~/reset", self._on_reset)
@@ -137,13 +139,16 @@ class ReferenceNode(rclpy.node.Node):
         listeners = publisher.get_subscription_count() if publisher else 0
         if listeners != self._listeners:
             self._listeners, self._still_since = listeners, time.monotonic()
-        return listeners > 0 and time.monotonic() - self._still_since > _SETTLE
+        return listeners >= self._least_listeners and time.monotonic() - self._still_since > _SETTLE
 
     def _sample(self, now: int, stamp: int) -> None:
         """Publish the signal's value at `now` [ns], under `stamp` [ns]."""
         if self._origin is None:
             self._origin = now
         elapsed = now - self._origin
+        if 0.0 < self._duration <= elapsed / NANOSECONDS:
+            self._end()
+            return
         value = float(self._signal.value(elapsed / NANOSECONDS))
         if self._voltage_publisher is not None:
             self._voltage.data = value
@@ -152,6 +157,15 @@ class ReferenceNode(rclpy.node.Node):
             self._publish_reference(*self._actuator.respond(elapsed, value), stamp)
         elif not self._commands_voltage:
             self._publish_reference(value, float(self._signal.derivative(elapsed / NANOSECONDS)), stamp)
+
+    def _end(self) -> None:
+        """Leave the valve at rest, give the last message time to leave, and end the node."""
+        self.get_logger().info(f"{self._duration:g} s are over")
+        if self._voltage_publisher is not None:
+            self._voltage.data = 0.0
+            self._voltage_publisher.publish(self._voltage)
+        time.sleep(_SETTLE)
+        rclpy.shutdown()
 
     def _publish_reference(self, position: float, velocity: float, stamp: int) -> None:
         if self._reference_publisher is None:
@@ -164,7 +178,7 @@ class ReferenceNode(rclpy.node.Node):
     def _apply(self, changes: Mapping[str, Value]) -> None:
         signal = chosen_signal({**self._settings.values, **changes})
         if self._actuator:
-            self._actuator.change({name: value for name, value in changes.items() if name in catalogue()})
+            self._actuator.change(plant_values(changes))
         self._signal = signal
 
     def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -178,7 +192,7 @@ class ReferenceNode(rclpy.node.Node):
 
 def main() -> int:
     """Run the reference node."""
-    return run(ReferenceNode, NAME)
+    return run(ReferenceNode, NAME, OWN_ROWS)
 
 
 if __name__ == "__main__":

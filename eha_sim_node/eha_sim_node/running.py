@@ -5,15 +5,18 @@ from __future__ import annotations
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import rclpy
 from rcl_interfaces.srv import GetParameterTypes
 from rclpy.executors import ExternalShutdownException
+from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.task import Future
 
 from eha_core.errors import EhaError
+from eha_core.plant import Plant
+from eha_sim_node.parameters import Row
 
 _DISCOVERY = 1.5  # s until a node that is there has surely been seen, on a busy machine too
 _ANSWER = 5.0  # s within which a node that lives answers
@@ -24,11 +27,23 @@ class StartError(EhaError):
     """The node cannot start."""
 
 
-def run(make_node: Callable[[], Node], name: str) -> int:
-    """Run a node until a signal ends it and return the exit status."""
+def run(
+    make_node: Callable[[], Node], name: str, rows: Sequence[Row] = (), prepare: Callable[[], None] | None = None
+) -> int:
+    """Run a node until a signal ends it and return the exit status.
+
+    `rows` are what `--help` tells of. `prepare` does what takes long before the node appears in the graph, where it
+    would have to answer.
+    """
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        print(_help(make_node, name, rows))
+        return 0
     node = None
     try:
         _join()
+        _end_with_the_terminal()
+        if prepare is not None:
+            prepare()
         node = make_node()
         _refuse_namesake(node)
         rclpy.spin(node)
@@ -50,6 +65,34 @@ def run(make_node: Callable[[], Node], name: str) -> int:
             node.destroy_node()
         rclpy.try_shutdown()
     return 0
+
+
+def compile_plant() -> None:
+    """Compile the plant, or read its code from the cache, and say how long that took."""
+    log = get_logger("eha_plant")
+    log.info("compiling the plant; the next start finds it in the cache")
+    start = time.monotonic()
+    Plant().advance(0.0, 1)
+    log.info(f"compiled in {time.monotonic() - start:.1f} s")
+
+
+def _help(make_node: Callable[[], Node], name: str, rows: Sequence[Row]) -> str:
+    """What the node does, its own parameters, and how they are given."""
+    module = sys.modules[make_node.__module__]
+    executable = make_node.__module__.rpartition(".")[2]
+    if executable == "__main__":
+        executable = name.removeprefix("eha_")
+    usage = f"usage: ros2 run eha_sim_node {executable} [--ros-args -p NAME:=VALUE ... --params-file FILE ...]"
+    width = max((len(row.name) for row in rows), default=0)
+    lines = [f"  {row.name:{width}}  {row.meaning} (default {row.default!r})" for row in rows]
+    more = f"`ros2 param list /{name}` names every parameter of the running node, `ros2 param describe` tells of one."
+    return "\n".join([usage, "", module.__doc__ or "", "", "parameters:", *lines, "", more])
+
+
+def _end_with_the_terminal() -> None:
+    """Let a terminal that closes end the node as Ctrl-C does, its files finished; under nohup it runs on."""
+    if signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:
+        signal.signal(signal.SIGHUP, lambda *_: signal.raise_signal(signal.SIGINT))
 
 
 def _join() -> None:

@@ -6,22 +6,22 @@ import sys
 from collections.abc import Mapping
 
 import rclpy.node
-from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from eha_core.errors import EhaError, ParameterError
-from eha_core.parameters import catalogue
 from eha_core.plant import Plant
 from eha_core.realtime import NANOSECONDS, CommandInput
 from eha_interfaces.srv import Step
+from eha_sim_node.command_topics import CommandTopics, each, newest
 from eha_sim_node.diagnostics import Diagnostics, Report
-from eha_sim_node.parameters import ParameterSet, Row, Value, plant_row
-from eha_sim_node.running import run
-from eha_sim_node.state_topics import OUTPUT_QUALITY, StateTopics
+from eha_sim_node.parameters import ParameterSet, Row, Value, plant_rows, plant_values
+from eha_sim_node.running import compile_plant, run
+from eha_sim_node.standard_services import StandardServices
+from eha_sim_node.state_topics import StateTopics
 from eha_sim_node.time_modes import Lockstep, PacedTime, TimeMode
 
 NAME = "eha_sim"
-COMMAND_TYPE = "std_msgs/msg/Float64"
+_SLICE = 100_000  # steps whose voltages are in memory at once
 OWN_ROWS = (
     Row("step_size", 1e-4, "time the plant is advanced by in one step [s]", 1e-6, 1e-3, fixed=True),
     Row("publish_rate", 500.0, "rate of the published state, in simulated time [Hz]", 0.1, 10_000.0, fixed=True),
@@ -41,8 +41,18 @@ OWN_ROWS = (
         3600.0,
     ),
     Row("command_limit", 10.0, "largest voltage that the drive takes, either sign [V]; assumed", 0.0, 1000.0),
+    Row(
+        "lockstep_patience",
+        0.0,
+        "wall-clock time that a period in time_mode lockstep waits for its command before it is taken with the voltage"
+        " in force [s]; 0: for ever",
+        0.0,
+        3600.0,
+        fixed=True,
+    ),
     Row("catch_up_limit", 0.5, "longest backlog that is made up for after a stall [s]", 0.0, 60.0, fixed=True),
     Row("initial_position", 0.0, "piston position at the start and after a reset [m]", -10.0, 10.0, fixed=True),
+    Row("clock_rate", 0.0, "rate of /clock, in simulated time [Hz]; 0: publish_rate", 0.0, 10_000.0, fixed=True),
     Row(
         "start_paused",
         False,
@@ -59,26 +69,25 @@ class SimNode(rclpy.node.Node):
 
     def __init__(self) -> None:
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        rows = [plant_row(name, parameter) for name, parameter in catalogue().items()]
-        self._settings = ParameterSet(self, (*OWN_ROWS, *rows))
+        self._settings = ParameterSet(self, (*OWN_ROWS, *plant_rows()))
         own = self._settings.values
-        self._plant = Plant({name: own[name] for name in catalogue()}, own["step_size"], own["initial_position"])
+        self._plant = Plant(plant_values(own), own["step_size"], own["initial_position"])
         self._steps = _steps_per_period(own["step_size"], own["publish_rate"])
-        self._plant.advance(0.0, 1)  # compiled before anybody waits for it; what is refused was refused before
-        self._plant.reset()
         self._step_ns = round(own["step_size"] * NANOSECONDS)
         self._period = self._steps * own["step_size"]
         self._earlier_steps = 0  # steps before the last reset: time goes on when the plant starts anew
         self._command = CommandInput(own["command_limit"], own["command_timeout"])
-        self._topics = StateTopics(self, own["frame_id"], owns_time=own["time_mode"] != "realtime")
+        owns_time = own["time_mode"] != "realtime"
+        self._topics = StateTopics(self, own["frame_id"], _clock_period(own) if owns_time else None)
         self._settings.declare(self._apply)
         self._time: TimeMode = (Lockstep if own["time_mode"] == "lockstep" else PacedTime)(self, own)
         self._reported = (0, 0)
         self._told: set[str] = set()
-        self._commands = self.create_subscription(Float64, "voltage_command", self._on_command, OUTPUT_QUALITY)
+        self._commands = CommandTopics(self, self._on_command, each if own["time_mode"] == "lockstep" else newest)
         self.create_service(SetBool, "~/pause", self._on_pause)
         self.create_service(Trigger, "~/reset", self._on_reset)
         self.create_service(Step, "~/step", self._on_step)
+        self._standard = StandardServices(self, self._time) if StandardServices.available() else None
         self._diagnostics = Diagnostics(self, own["diagnostics_rate"], self._report)
         self._topics.publish_leakage(self._plant.state.internal_leakage)
         self.get_logger().info(
@@ -104,25 +113,27 @@ class SimNode(rclpy.node.Node):
     @property
     def peers(self) -> tuple[int, int]:
         """How many commanders and how many subscribers are matched."""
-        return self._commands.get_publisher_count(), self._topics.subscribers
+        return self._commands.commanders, self._topics.subscribers
 
     def advance(self) -> None:
         """Take one period with the voltage in force and publish the state at its end."""
         self._plant.advance(self._command.voltage, self._steps)
         self._command.elapse(self._period)
         self.publish_state()
+        if self._standard is not None:
+            self._standard.period_passed()
 
     def publish_state(self) -> None:
         """Publish the state as it is."""
         atmosphere = self._plant.parameters["atmospheric_pressure"]
         self._topics.publish(self._plant.state, atmosphere, self._time.stamp())
 
-    def _on_command(self, message: Float64) -> None:
-        self._command.offer(message.data)
+    def _on_command(self, voltage: float) -> None:
+        self._command.offer(voltage)
         self._time.command_arrived()
 
     def _apply(self, changes: Mapping[str, Value]) -> None:
-        plant_changes = {name: value for name, value in changes.items() if name in catalogue()}
+        plant_changes = plant_values(changes)
         if plant_changes:
             self._plant.set_parameters(plant_changes)
         if "internal_leakage" in plant_changes:
@@ -139,12 +150,20 @@ class SimNode(rclpy.node.Node):
         return response
 
     def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        self._earlier_steps += self._plant.step_count
-        self._plant.reset()
-        self._command.release()
+        self.reset_plant()
         response.success = True
         response.message = f"back to the initial state at {self.elapsed / NANOSECONDS:.4f} s"
         return response
+
+    def reset_plant(self) -> None:
+        """Put the plant back to rest, its command to zero; time goes on."""
+        self._earlier_steps += self._plant.step_count
+        self._plant.reset()
+        self._command.release()
+
+    def reset_time(self) -> None:
+        """Set simulated time back to zero."""
+        self._earlier_steps = -self._plant.step_count
 
     def _on_step(self, request: Step.Request, response: Step.Response) -> Step.Response:
         try:
@@ -158,7 +177,8 @@ class SimNode(rclpy.node.Node):
 
     def step_plant(self, steps: int) -> None:
         """Take so many plant steps with the voltage in force and publish the state at their end."""
-        self._plant.advance(self._command.voltage, steps)
+        for taken in range(0, steps, _SLICE):
+            self._plant.advance(self._command.voltage, min(steps - taken, _SLICE))
         self.publish_state()
 
     def _report(self) -> Report:
@@ -171,7 +191,7 @@ class SimNode(rclpy.node.Node):
             troubles.append(f"{clamped} commands clamped to {command.limit:g} V")
         if command.timeouts and not command.holds:
             troubles.append(f"no command for {command.timeout:g} s: the voltage is zero")
-        troubles += self._commander_troubles()
+        troubles += self._commander_troubles() + self._topics.troubles()
         values = {
             "simulated_time": self.elapsed / NANOSECONDS,
             "voltage": command.voltage,
@@ -184,19 +204,11 @@ class SimNode(rclpy.node.Node):
         return Report({**values, **time_values}, troubles + time_troubles)
 
     def _commander_troubles(self) -> list[str]:
-        """What is wrong with those who command; a publisher of another type would else be ignored in silence."""
-        troubles = []
-        for info in self.get_publishers_info_by_topic("voltage_command"):
-            if info.topic_type != COMMAND_TYPE:
-                troubles.append(
-                    f"voltage_command of type {info.topic_type} from {info.node_name} is ignored;"
-                    f" publish {COMMAND_TYPE}"
-                )
+        """What is wrong with those who command; the log says it once."""
+        troubles = self._commands.troubles()
         for trouble in set(troubles) - self._told:
             self.get_logger().warning(trouble)
         self._told = set(troubles)
-        if self.peers[0] > 1:
-            troubles.append(f"{self.peers[0]} publishers on voltage_command")
         return troubles
 
 
@@ -209,9 +221,21 @@ def _steps_per_period(step_size: float, rate: float) -> int:
     return steps
 
 
+def _clock_period(own: Mapping[str, Value]) -> int:
+    """Simulated time from one /clock to the next [ns]; 0: with every state."""
+    if not own["clock_rate"]:
+        return 0
+    periods = own["publish_rate"] / own["clock_rate"]
+    if periods < 1 or abs(periods - round(periods)) > 1e-9:
+        raise ParameterError(
+            f"clock_rate = {own['clock_rate']:g} Hz does not divide publish_rate = {own['publish_rate']:g} Hz"
+        )
+    return round(NANOSECONDS / own["clock_rate"])
+
+
 def main() -> int:
     """Run the simulator node."""
-    return run(SimNode, NAME)
+    return run(SimNode, NAME, OWN_ROWS, compile_plant)
 
 
 if __name__ == "__main__":

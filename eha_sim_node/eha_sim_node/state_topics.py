@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from copy import copy
+from typing import Any
+
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+from rclpy.qos_overriding_options import QoSOverridingOptions
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
-from eha_core.plant import COLUMNS, State
+from eha_core.plant import COLUMNS, Row
 from eha_interfaces.msg import ActuatorState
+from eha_sim_node.joints import JOINT
 from eha_sim_node.stamps import set_stamp
 
 OUTPUT_QUALITY = QoSProfile(depth=500)
-"""Reliable, a second of samples: what a recorder whose machine is busy may fall behind without loss."""
+"""Reliable, a second of samples: what a recorder whose machine is busy may fall behind without loss. Best-effort
+subscribers match it too."""
 
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -24,18 +30,26 @@ class StateTopics:
     Args:
         node: the node that owns the publishers.
         frame_id: frame of every header.
-        owns_time: whether /clock is published too.
+        clock_period: simulated time from one /clock to the next [ns], 0: with every state; None: no /clock.
     """
 
-    def __init__(self, node: Node, frame_id: str, owns_time: bool) -> None:
-        self._clock_publisher = node.create_publisher(Clock, "/clock", OUTPUT_QUALITY) if owns_time else None
-        self._joint_publisher = node.create_publisher(JointState, "joint_states", OUTPUT_QUALITY)
-        self._pressure_a_publisher = node.create_publisher(FluidPressure, "chamber_a/pressure", OUTPUT_QUALITY)
-        self._pressure_b_publisher = node.create_publisher(FluidPressure, "chamber_b/pressure", OUTPUT_QUALITY)
-        self._state_publisher = node.create_publisher(ActuatorState, "state", OUTPUT_QUALITY)
+    def __init__(self, node: Node, frame_id: str, clock_period: int | None) -> None:
+        def publisher(message_type: Any, topic: str) -> Any:
+            options = QoSOverridingOptions.with_default_policies()
+            # a profile of its own for each: parameters may change it
+            return node.create_publisher(message_type, topic, copy(OUTPUT_QUALITY), qos_overriding_options=options)
+
+        self._node = node
+        self._clock_period = clock_period or 0
+        self._clock_publisher = publisher(Clock, "/clock") if clock_period is not None else None
+        self._clock_stamp: int | None = None
+        self._joint_publisher = publisher(JointState, "joint_states")
+        self._pressure_a_publisher = publisher(FluidPressure, "chamber_a/pressure")
+        self._pressure_b_publisher = publisher(FluidPressure, "chamber_b/pressure")
+        self._state_publisher = publisher(ActuatorState, "state")
         self._leakage_publisher = node.create_publisher(Float64, "internal_leakage", LATCHED)
         self._clock = Clock()
-        self._joint = JointState(name=["piston"])
+        self._joint = JointState(name=[JOINT])
         self._pressure = FluidPressure()
         self._state = ActuatorState()
         for message in (self._joint, self._pressure, self._state):
@@ -54,11 +68,9 @@ class StateTopics:
         )
         return sum(publisher.get_subscription_count() for publisher in publishers if publisher is not None)
 
-    def publish(self, state: State, atmospheric_pressure: float, stamp: int) -> None:
+    def publish(self, state: Row, atmospheric_pressure: float, stamp: int) -> None:
         """Publish a state that belongs to `stamp` [ns]; joint_states comes last, for controllers answer that."""
-        if self._clock_publisher is not None:
-            set_stamp(self._clock.clock, stamp)
-            self._clock_publisher.publish(self._clock)
+        self._publish_clock(stamp)
         self.publish_leakage(state.internal_leakage)
         pressure = self._pressure
         set_stamp(pressure.header.stamp, stamp)
@@ -77,6 +89,22 @@ class StateTopics:
         joint.velocity = [state.measured_velocity]
         joint.effort = [state.hydraulic_force]
         self._joint_publisher.publish(joint)
+
+    def _publish_clock(self, stamp: int) -> None:
+        if self._clock_publisher is None:
+            return
+        # A state that is published again brings its /clock again, for the sake of whoever asks for it.
+        last = self._clock_stamp
+        if last is not None and 0 < stamp - last < self._clock_period:
+            return
+        self._clock_stamp = stamp
+        set_stamp(self._clock.clock, stamp)
+        self._clock_publisher.publish(self._clock)
+
+    def troubles(self) -> list[str]:
+        """Others that publish /clock beside this node: two clocks make every other node's time jump."""
+        others = self._node.count_publishers("/clock") - 1 if self._clock_publisher is not None else 0
+        return [f"{others} other publishers of /clock: time jumps between them; stop all but one"] if others > 0 else []
 
     def publish_leakage(self, coefficient: float) -> None:
         """Publish K_Lin [m^3/(s Pa)] if it is another than before."""

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _LARGEST_CLOCK_STEP = NANOSECONDS // 10
 _PEER_CHECK = 0.05  # s
+_MOST_STEPS = 10_000_000  # steps taken at one request: a second or two, in which the node answers nobody
 
 
 class StepRefused(EhaError):
@@ -38,8 +39,19 @@ class TimeMode(Protocol):
     def resume(self) -> None:
         """Let time run."""
 
+    @property
+    def paused(self) -> bool:
+        """Whether time stands."""
+
+    @property
+    def owned(self) -> bool:
+        """Whether stamps are simulated time, which can be set back."""
+
     def step(self, steps: int) -> tuple[str, int]:
         """Take so many plant steps while paused; return what was done and how many are still to come."""
+
+    def step_periods(self, periods: int) -> None:
+        """Let so many periods pass while paused: at once, or as commands come."""
 
     def set_factor(self, factor: float) -> None:
         """Change how fast time runs."""
@@ -48,9 +60,11 @@ class TimeMode(Protocol):
         """Return values and troubles for /diagnostics."""
 
 
-def _refuse_zero(steps: int) -> None:
+def _check_count(steps: int) -> None:
     if steps == 0:
         raise StepRefused("0 steps asked for; give at least 1")
+    if steps > _MOST_STEPS:
+        raise StepRefused(f"{steps} steps asked for, which would keep the node too long; give {_MOST_STEPS} at most")
 
 
 class PacedTime:
@@ -63,6 +77,8 @@ class PacedTime:
         self._pacer = Pacer(node.period, node.period, factor, settings["catch_up_limit"])
         self._paused = settings["start_paused"]
         self._offset = time.time_ns() - time.monotonic_ns()
+        self._ahead = 0  # ns that stamps lead the wall clock by, so as not to go back with it
+        self._latest = (0, 0)  # stamp and elapsed time of the latest state [ns]
         self._elapsed_at_origin = 0
         self._clock_steps = 0
         self._timer = node.create_timer(node.period, self._on_tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -78,15 +94,26 @@ class PacedTime:
             self._node.advance()
 
     def stamp(self) -> int:
-        """Simulated time, or the wall-clock time at which the state was due: exact periods without jitter."""
+        """Simulated time, or the wall-clock time at which the state was due: exact periods without jitter.
+
+        A stamp never lies before the latest: where the wall clock is set back, or steps taken while paused have gone
+        ahead of it, stamps go on by simulated time and stay ahead.
+        """
         elapsed = self._node.elapsed
         if self._stamps_are_simulated:
             return elapsed
         offset = time.time_ns() - time.monotonic_ns()
         if abs(offset - self._offset) > _LARGEST_CLOCK_STEP:
             self._clock_steps += 1
+            self._ahead = max(0, self._ahead - max(0, offset - self._offset))
             self._offset = offset
-        return self._offset + self._pacer.origin + elapsed - self._elapsed_at_origin
+        stamp = self._offset + self._ahead + self._pacer.origin + elapsed - self._elapsed_at_origin
+        earliest = self._latest[0] + max(0, elapsed - self._latest[1])
+        if stamp < earliest:
+            self._ahead += earliest - stamp
+            stamp = earliest
+        self._latest = (stamp, elapsed)
+        return stamp
 
     def command_arrived(self) -> None:
         """Nothing to do: the next period takes the voltage in force."""
@@ -107,11 +134,26 @@ class PacedTime:
 
     def step(self, steps: int) -> tuple[str, int]:
         """Take the steps at once."""
-        _refuse_zero(steps)
+        _check_count(steps)
         if not self._paused:
             raise StepRefused("the simulator is running; pause it first")
         self._node.step_plant(steps)
         return f"{steps} steps taken", 0
+
+    @property
+    def paused(self) -> bool:
+        """Whether time stands."""
+        return self._paused
+
+    @property
+    def owned(self) -> bool:
+        """Whether stamps are simulated time: in mode `scaled`."""
+        return self._stamps_are_simulated
+
+    def step_periods(self, periods: int) -> None:
+        """Take the periods at once."""
+        for _ in range(periods):
+            self._node.advance()
 
     def set_factor(self, factor: float) -> None:
         """Change how fast time runs in mode `scaled`; in real time there is nothing to scale."""
@@ -131,8 +173,10 @@ class PacedTime:
             "lateness_p99": health.lateness_p99,
             "lateness_max": health.lateness_max,
             "clock_steps": self._clock_steps,
+            "stamps_ahead": self._ahead / NANOSECONDS,
         }
-        return values, []
+        ahead = [f"stamps are {self._ahead / NANOSECONDS:.3g} s ahead of the wall clock"] if self._ahead else []
+        return values, health.troubles() + ahead
 
 
 class Lockstep:
@@ -140,15 +184,20 @@ class Lockstep:
 
     def __init__(self, node: SimNode, settings: Mapping[str, Value]) -> None:
         self._node = node
-        self._gate = LockstepGate()
+        self._gate = LockstepGate(patience=settings["lockstep_patience"])
         if settings["start_paused"]:
             self._gate.pause()
         self._tick_published = False
-        self._timer = node.create_timer(_PEER_CHECK, self._check_peers, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._told_uncommanded = 0
+        check = min(_PEER_CHECK, settings["lockstep_patience"] or _PEER_CHECK)
+        self._timer = node.create_timer(check, self._check_peers, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _check_peers(self) -> None:
-        if self._gate.tick_wanted(*self._node.peers):
+        commanders, listeners = self._node.peers
+        if self._gate.tick_wanted(commanders, listeners):
             self._publish_tick()
+        elif self._gate.give_up(commanders):
+            self._node.advance()
 
     def _publish_tick(self) -> None:
         self._tick_published = True
@@ -181,7 +230,7 @@ class Lockstep:
 
     def step(self, steps: int) -> tuple[str, int]:
         """Let so many steps pass as commands come."""
-        _refuse_zero(steps)
+        _check_count(steps)
         periods, rest = divmod(steps, self._node.steps_per_period)
         if rest:
             raise StepRefused(f"{steps} steps are no whole number of periods of {self._node.steps_per_period} steps")
@@ -190,6 +239,21 @@ class Lockstep:
         self._gate.allow(periods)
         self._take()
         return f"{steps} steps, each period when its command comes", self._gate.allowance * self._node.steps_per_period
+
+    @property
+    def paused(self) -> bool:
+        """Whether time stands."""
+        return self._gate.paused
+
+    @property
+    def owned(self) -> bool:
+        """Always: stamps are simulated time."""
+        return True
+
+    def step_periods(self, periods: int) -> None:
+        """Let the periods pass as commands come."""
+        self._gate.allow(periods)
+        self._take()
 
     def set_factor(self, factor: float) -> None:
         """Nothing to do: commands set the pace."""
@@ -200,5 +264,7 @@ class Lockstep:
             "paused": self._gate.paused,
             "waiting": self._gate.waiting,
             "surplus_commands": self._gate.surplus,
+            "periods_without_command": self._gate.uncommanded,
         }
-        return values, []
+        missed, self._told_uncommanded = self._gate.uncommanded - self._told_uncommanded, self._gate.uncommanded
+        return values, [f"{missed} periods taken without a command"] if missed else []

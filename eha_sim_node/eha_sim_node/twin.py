@@ -5,29 +5,30 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 import rclpy.node
 from rclpy.clock import Clock, ClockType
-from rclpy.qos import QoSProfile
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 from eha_core.errors import ParameterError
-from eha_core.parameters import catalogue, load_parameters
+from eha_core.parameters import load_parameters
 from eha_core.realtime import NANOSECONDS
 from eha_core.twin import Comparison, Settings, Twin
 from eha_interfaces.msg import ActuatorState
 from eha_sim_node.diagnostics import Diagnostics, Report
-from eha_sim_node.parameters import ParameterSet, Row, Value, plant_row
+from eha_sim_node.joints import JOINT, value_of
+from eha_sim_node.parameters import ParameterSet, Row, Value, plant_rows, plant_values
 from eha_sim_node.running import run
 from eha_sim_node.stamps import nanoseconds_of
 
 NAME = "eha_twin"
 _PERIOD = 0.05  # s between two looks whether a window is complete
 _SILENCE = 5.0  # s beyond the window's length without a comparison until that is said
-_QUALITY = QoSProfile(depth=10_000)  # a simulator in lockstep may be faster than the twin for a while
+# Best effort matches whatever a rig's drivers publish; a simulator in lockstep may be faster than the twin for a while.
+_QUALITY = QoSProfile(depth=10_000, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 OWN_ROWS = (
     Row("model", "", "parameters file of the model, as the simulator takes it (fitted.yaml); empty: nominal",
         fixed=True),
@@ -51,14 +52,14 @@ class TwinNode(rclpy.node.Node):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         self._settings = ParameterSet(self, (*OWN_ROWS, *self._plant_rows()))
         own = self._settings.values
-        parameters = {name: own[name] for name in catalogue()}
-        self._twin = Twin(parameters, own["step_size"], Settings(**{name: own[name] for name in _SETTINGS}))
+        self._twin = Twin(plant_values(own), own["step_size"], Settings(**{name: own[name] for name in _SETTINGS}))
         self._settings.declare(self._apply)
         self._latest: Comparison | None = None
         self._windows = 0
         self._compared_at = time.monotonic()
         self._patience = own["window"] + _SILENCE
         self.create_subscription(Float64, "voltage_command", self._on_command, _QUALITY)
+        self.create_subscription(JointState, "joint_command", self._on_joint_command, _QUALITY)
         self.create_subscription(JointState, "joint_states", self._on_joint_states, _QUALITY)
         self.create_subscription(ActuatorState, "state", self._on_state, _QUALITY)
         for chamber in "ab":
@@ -74,25 +75,29 @@ class TwinNode(rclpy.node.Node):
         given = self.get_parameter("model").value if self.has_parameter("model") else ""
         if not isinstance(given, str):
             raise ParameterError(f"model = {given!r} is no path of a parameters file")
-        values = load_parameters(given) if given else {}
-        rows = [plant_row(name, parameter) for name, parameter in catalogue().items()]
-        return [replace(row, default=values.get(row.name, row.default)) for row in rows]
+        return plant_rows(load_parameters(given) if given else None)
 
     def _apply(self, changes: Mapping[str, Value]) -> None:
-        plant_changes = {name: value for name, value in changes.items() if name in catalogue()}
-        if len(plant_changes) < len(changes):
-            raise ParameterError(f"{', '.join(changes.keys() - plant_changes)} cannot change while the twin runs")
-        self._twin.set_parameters(plant_changes)
+        fixed = [row.name for row in OWN_ROWS if row.name in changes]
+        if fixed:
+            raise ParameterError(f"{', '.join(fixed)} cannot change while the twin runs")
+        self._twin.set_parameters(plant_values(changes))
 
     def _on_command(self, message: Float64, info: Mapping[str, Any]) -> None:
         self._twin.command(_published(info), message.data)
+
+    def _on_joint_command(self, message: JointState, info: Mapping[str, Any]) -> None:
+        voltage = value_of(message.name, message.effort)
+        if voltage is not None:
+            self._twin.command(_published(info), voltage)
 
     def _on_state(self, message: ActuatorState) -> None:
         self._twin.applied(nanoseconds_of(message.header.stamp), message.voltage)
 
     def _on_joint_states(self, message: JointState, info: Mapping[str, Any]) -> None:
-        if message.position:
-            self._twin.position(nanoseconds_of(message.header.stamp), message.position[0], _published(info))
+        position = value_of(message.name, message.position)
+        if position is not None:
+            self._twin.position(nanoseconds_of(message.header.stamp), position, _published(info))
 
     def _pressure_receiver(self, chamber: str) -> Callable[[FluidPressure], None]:
         def receive(message: FluidPressure) -> None:
@@ -121,7 +126,9 @@ class TwinNode(rclpy.node.Node):
         troubles = []
         silent = time.monotonic() - self._compared_at
         if silent > self._patience:
-            troubles.append(f"nothing to compare for {silent:.0f} s; joint_states must come without gaps")
+            troubles.append(
+                f"nothing to compare for {silent:.0f} s; joint_states must come without gaps, with a joint {JOINT}"
+            )
         values: dict[str, object] = {"windows": self._windows}
         if self._latest:
             latest = self._latest
@@ -151,7 +158,7 @@ def _published(info: Mapping[str, Any]) -> int:
 
 def main() -> int:
     """Run the twin node."""
-    return run(TwinNode, NAME)
+    return run(TwinNode, NAME, OWN_ROWS)
 
 
 if __name__ == "__main__":

@@ -14,12 +14,15 @@ from conftest import NodeProcess, Rig
 from mcap.reader import make_reader
 from sensor_msgs.msg import JointState
 
+from eha_core.exam.truth import simulate_truth
 from eha_core.plant import Plant
 from eha_core.recording import read_recording
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+sys.path.insert(0, str(EXAMPLES))
+import concealment  # noqa: E402 - beside the examples, which are no package
+
 LEVELS = (1e-12, 1e-11, 1e-10, 1e-9)
-CONCEALED = {"moving_mass": 11.0, "coulomb_friction.force": 250.0}
 
 
 def test_the_demonstration_equals_the_plant_to_rounding(tmp_path: Path) -> None:
@@ -50,24 +53,47 @@ def test_the_demonstration_equals_the_plant_to_rounding(tmp_path: Path) -> None:
 @pytest.mark.timeout(400)
 def test_what_is_concealed_in_a_rig_is_named_and_simulated(tmp_path: Path) -> None:
     environment = {**os.environ, "ROS_DOMAIN_ID": str(int(os.environ["ROS_DOMAIN_ID"]) - 1)}
-    command = [sys.executable, str(EXAMPLES / "concealed_demo.py"), "--out", str(tmp_path)]
+    command = [sys.executable, str(EXAMPLES / "concealed_demo.py"), "--seed", "1", "--out", str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=390, env=environment, check=False)
     assert done.returncode == 0, done.stderr
+    answer, digest = concealment.unseal(tmp_path / "answer.sealed")
+    assert done.stdout.count(f"SHA-256 {digest[:16]}...") == 2
+    assert answer == concealment.draw(1)
     document = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
     assert document["verdict"] == "missing_physics"
-    (effect,) = document["effects"]
-    assert effect["id"] == "coulomb_friction"
-    assert effect["parameters"]["force"]["value"] == pytest.approx(250.0, rel=0.01)
-    masses = [row["fitted"] for row in document["parameters"] if row["name"] == "moving_mass"]
-    assert masses == pytest.approx([11.0], rel=0.01)
+    assert {effect["id"] for effect in document["effects"]} == set(answer.effects)
+    for effect in document["effects"]:
+        for name, true in answer.effects[effect["id"]].items():
+            found = effect["parameters"][name]
+            assert abs(found["value"] - true) < 4.0 * found["std"] < 0.05 * true
+    # The claim ends at the noise: the simulator with what was found is as near the rig as its sensors can tell.
     errors = json.loads((tmp_path / "before_after.json").read_text())
     for name in ("position", "pressure_a", "pressure_b"):
-        assert errors["fitted"][name] < 0.01 * errors["nominal"][name]
-    # What the two errors are measured between is what the plant does, with and without what was concealed.
-    volts = read_recording(tmp_path / "rig.mcap").channels["voltage_command"]
-    rig, nominal = (Plant(given).run(np.repeat(volts.values[:6000], 20), every=20) for given in (CONCEALED, {}))
-    expected = np.sqrt(np.sum((rig.position - nominal.position) ** 2) / 6001)
-    assert errors["nominal"]["position"] == pytest.approx(expected, rel=1e-9)
+        assert errors["nominal"][name] > 10.0 * answer.noises[name]
+        assert 0.95 < errors["fitted"][name] / answer.noises[name] < 1.15
+    rig = tmp_path / "rig.mcap"
+    with rig.open("rb") as stream:
+        reader = make_reader(stream)
+        topics = {channel.topic for channel in reader.get_summary().channels.values()}
+        assert not list(reader.iter_metadata())
+        stream.seek(0)
+        told = b"".join(message.data for _, _, message in make_reader(stream).iter_messages())
+    assert not topics & {"/state", "/internal_leakage"}
+    assert not any(effect.encode() in told for effect in answer.effects)
+    # What the nominal error is measured between is what the two plants do.
+    volts = read_recording(rig).channels["voltage_command"].values[:6000]
+    truth = simulate_truth(answer.plant, tuple(answer.effects.items()), np.append(volts, 0.0), 12.0, 500.0)
+    nominal = Plant().run(np.repeat(volts, 20), every=20)
+    expected = np.sqrt(np.mean((truth["position"][1:] - nominal.position) ** 2) + answer.noises["position"] ** 2)
+    assert errors["nominal"]["position"] == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_seal_holds_and_no_effect_can_be_read_through_it(tmp_path: Path) -> None:
+    answer = concealment.draw(7)
+    digest = concealment.seal(answer, tmp_path / "answer.sealed")
+    assert concealment.unseal(tmp_path / "answer.sealed") == (answer, digest)
+    assert not any(effect.encode() in (tmp_path / "answer.sealed").read_bytes() for effect in answer.effects)
+    assert concealment.draw().seed != concealment.draw().seed
 
 
 def test_a_demonstration_that_fails_says_so_in_one_line(tmp_path: Path) -> None:

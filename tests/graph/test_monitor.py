@@ -6,6 +6,7 @@ import math
 import resource
 import signal
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -72,6 +73,22 @@ def test_errors_are_paired_by_stamp_and_not_by_arrival(rig: Rig) -> None:
     reference.publish(joint_state(6.002, 0.25))
     rig.wait(lambda: heard[-1].sample_count < 10, "the count after the reset")
     assert heard[-1].rmse == pytest.approx(0.25, rel=1e-9)
+
+
+def test_positions_without_a_reference_are_named(rig: Rig) -> None:
+    reference = rig.node.create_publisher(JointState, "reference", 100)
+    measured = rig.node.create_publisher(JointState, "joint_states", 100)
+    start_monitor(rig, "record:=false", "diagnostics_rate:=2.0")
+    reports = rig.diagnostics("eha_monitor")
+    rig.wait(lambda: reference.get_subscription_count() and measured.get_subscription_count(), "the monitor")
+    for tick in range(100):  # the reference begins with the fortieth position
+        measured.publish(joint_state(5.0 + 0.002 * tick, 0.0))
+        if tick >= 40:
+            reference.publish(joint_state(5.0 + 0.002 * tick, 0.0))
+        rig.spin(0.002)
+    rig.wait(lambda: any("have no reference" in report["message"] for report in reports), "the warning", 10)
+    rig.wait(lambda: reports[-1]["samples"] == "60" and reports[-1]["unpaired"] == "40", "the counts", 10)
+    rig.wait(lambda: reports[-1]["message"] == "running", "the next report, with nothing new missing", 10)
 
 
 def test_a_killed_recorder_leaves_a_file_that_lacks_one_second_at_most(rig: Rig) -> None:
@@ -162,6 +179,45 @@ def test_a_full_disk_is_reported_and_monitoring_goes_on(rig: Rig) -> None:
     assert monitor.process.poll() is None
     assert "Traceback" not in monitor.output
     assert len(read_recording(recording_of(rig.folder)).channels["position"].values) > 100
+
+
+def test_a_file_that_is_removed_is_noticed_and_the_recording_goes_on_in_the_next(rig: Rig) -> None:
+    rig.start_sim()
+    monitor = start_monitor(rig, "name:=run", "diagnostics_rate:=5.0")
+    reports = rig.diagnostics("eha_monitor")
+    rig.wait(lambda: is_recorded(rig, "joint_states"), "the monitor's subscriptions")
+    (rig.folder / "run.mcap").unlink()
+    rig.wait(lambda: reports and "the file was removed" in reports[-1]["message"], "the loss in /diagnostics")
+    rig.wait(lambda: (rig.folder / "run.mcap").is_file(), "the next recording")
+    rig.spin(0.5)
+    assert monitor.end() == 0
+    assert "recording goes on in" in monitor.output
+    recording = read_recording(rig.folder / "run.mcap")
+    assert recording.damaged is None and len(recording.channels["position"].values) > 50
+
+
+@pytest.fixture
+def hangup_as_on_a_terminal() -> Iterator[None]:
+    """Processes started inherit what a terminal gives them, also where the tests run under nohup."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.usefixtures("hangup_as_on_a_terminal")
+def test_a_closed_terminal_ends_the_recording_properly_and_a_kill_is_told_at_the_next_start(rig: Rig) -> None:
+    rig.start_sim()
+    for number, name in ((signal.SIGHUP, "closed"), (signal.SIGKILL, "killed")):
+        monitor = start_monitor(rig, f"name:={name}")
+        rig.wait(lambda: is_recorded(rig, "joint_states"), "the monitor's subscriptions")
+        rig.spin(0.5)
+        assert "was not finished" not in monitor.output
+        monitor.end(number)
+        rig.wait(lambda: not is_recorded(rig, "joint_states"), "the monitor to be gone")
+    assert read_recording(rig.folder / "closed.mcap").damaged is None
+    assert "was not finished" in str(read_recording(rig.folder / "killed.mcap").damaged)
+    again = start_monitor(rig, "name:=again")
+    rig.wait(lambda: f"{rig.folder / 'killed.mcap'} was not finished" in again.output, "what the last one left")
 
 
 def assert_it_monitors(rig: Rig) -> None:

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+import signal
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from conftest import Rig
@@ -13,6 +17,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float32, Float64
 from std_srvs.srv import SetBool, Trigger
 
+from eha_core.node_parameters import node_name
 from eha_core.parameters import catalogue
 from eha_core.plant import COLUMNS
 from eha_interfaces.msg import ActuatorState
@@ -81,13 +86,39 @@ def test_a_number_that_yaml_takes_for_text_is_taken_as_a_number(rig: Rig) -> Non
 
 def test_every_plant_parameter_is_described_with_unit_and_range(rig: Rig) -> None:
     rig.start_sim()
-    names = list(catalogue())
+    names = sorted({node_name(name) for name in catalogue()})
     described = rig.call(DescribeParameters, "eha_sim/describe_parameters", names=names).descriptors
-    assert [item.name for item in described] == names
-    for item, row in zip(described, catalogue().values(), strict=True):
+    found = {item.name: item for item in described}
+    for name, row in catalogue().items():
+        item = found[node_name(name)]
+        if item.name.endswith(".knots"):
+            assert item.additional_constraints == f"25 numbers from {row.lower:g} to {row.upper:g}"
+            continue
         assert f"[{row.unit}]" in item.description
         bounds = item.floating_point_range[0]
         assert (bounds.from_value, bounds.to_value) == (row.lower, row.upper)
+
+
+def test_names_of_before_are_read_with_a_warning_and_laws_are_lists(rig: Rig) -> None:
+    given = ("external_leakage.coefficient_a:=1.0e-17", "recovered_force.knot_03:=7.0")
+    sim = rig.start_sim(*given)
+    rig.wait(lambda: "coefficient_a is now external_leakage_effect.coefficient_a" in sim.output, "the warning", 10)
+    names = ["external_leakage_effect.coefficient_a", "recovered_force.knots"]
+    leak, law = rig.call(GetParameters, "eha_sim/get_parameters", names=names).values
+    assert leak.double_value == 1e-17
+    assert list(law.double_array_value) == [7.0 if knot == 3 else 0.0 for knot in range(25)]
+    values = [("recovered_force.knots", [1.0] * 24), ("recovered_force.knots", [1e9] * 25), ("coil_resistance", 0)]
+    answers = [
+        rig.call(SetParameters, "eha_sim/set_parameters", parameters=[Parameter(name, value=value).to_parameter_msg()])
+        for name, value in values
+    ]
+    reasons = [answer.results[0].reason for answer in answers]
+    assert "no list of 25 numbers" in reasons[0]
+    assert "out of range" in reasons[1] and "range" in reasons[2]
+    whole = Parameter("recovered_force.knots", value=[5.0] * 25).to_parameter_msg()
+    assert rig.call(SetParameters, "eha_sim/set_parameters", parameters=[whole]).results[0].successful
+    states = rig.hear(ActuatorState, "state")
+    rig.wait(lambda: states and states[-1].position > 0.0, "the piston pushed by the law", 10)
 
 
 @pytest.mark.parametrize(
@@ -111,9 +142,11 @@ def test_the_drive_guards_its_input(rig: Rig) -> None:
     rig.start_sim("diagnostics_rate:=10.0", "command_timeout:=0.3")
     reports = rig.diagnostics("eha_sim")
     states = rig.hear(ActuatorState, "state")
-    rig.command(math.nan, seconds=0.05)
-    rig.command(-math.inf, seconds=0.02)
-    rig.command(1e6, seconds=0.03)
+    rig.wait(lambda: states, "the first state")
+    # slowly: of commands that come between two of the simulator's looks the newest alone counts
+    rig.command(math.nan, seconds=0.5, rate=10.0)
+    rig.command(-math.inf, seconds=0.2, rate=10.0)
+    rig.command(1e6, seconds=0.3, rate=10.0)
     rig.wait(lambda: any(report["commands_clamped"] == "3" for report in reports), "the clamped commands")
     assert reports[-1]["commands_refused"] == "7"
     assert max(state.voltage for state in states) == 10.0
@@ -151,6 +184,49 @@ def test_pause_step_reset(rig: Rig) -> None:
     assert rig.call(SetBool, "eha_sim/pause", data=False).success
     rig.wait(lambda: states[-1].position == 0.0 and states[-1].voltage == 0.0, "the initial state", 5)
     assert states[-1].pressure_a == pytest.approx(HALF_SUPPLY, rel=1e-6)
+
+
+def test_absurd_steps_are_refused_and_many_are_taken_in_slices(rig: Rig) -> None:
+    sim = rig.start_sim("start_paused:=true")
+    refused = rig.call(Step, "eha_sim/step", steps=4_294_967_295)
+    assert not refused.success and "10000000 at most" in refused.message
+    taken = rig.call(Step, "eha_sim/step", steps=10_000_000)
+    assert taken.success and taken.time == pytest.approx(1000.0)
+    status = Path(f"/proc/{sim.process.pid}/status").read_text()
+    peak = next(line for line in status.splitlines() if line.startswith("VmHWM"))
+    assert int(peak.split()[1]) < 700_000  # kB
+
+
+def test_stamps_go_on_after_steps_that_went_ahead_of_the_clock(rig: Rig) -> None:
+    rig.start_sim("start_paused:=true", "diagnostics_rate:=5.0")
+    states, reports = rig.hear(ActuatorState, "state"), rig.diagnostics("eha_sim")
+    assert rig.call(Step, "eha_sim/step", steps=30_000).success  # 3 s at once
+    assert rig.call(SetBool, "eha_sim/pause", data=False).success
+    rig.wait(lambda: len(states) > 200, "states")
+    stamps = [message.header.stamp.sec * 10**9 + message.header.stamp.nanosec for message in states]
+    steps = [later - earlier for earlier, later in zip(stamps, stamps[1:], strict=False)]
+    assert min(steps) >= 2_000_000
+    rig.wait(lambda: "ahead of the wall clock" in reports[-1]["message"], "the lead in /diagnostics")
+
+
+def test_a_process_that_stood_still_says_so(rig: Rig) -> None:
+    sim = rig.start_sim("diagnostics_rate:=5.0")
+    reports = rig.diagnostics("eha_sim")
+    rig.wait(lambda: len(reports) > 2, "diagnostics")
+    sim.process.send_signal(signal.SIGSTOP)
+    rig.spin(2.0)
+    sim.process.send_signal(signal.SIGCONT)
+    rig.wait(lambda: any("the process stood still" in report["message"] for report in reports), "the pause told")
+    rig.wait(lambda: any("of time lost" in report["message"] for report in reports), "the loss told")
+
+
+def test_help_is_printed_and_nothing_started(tmp_path: Path) -> None:
+    for executable in ("sim", "monitor"):
+        command = [sys.executable, "-m", f"eha_sim_node.{executable}", "--help"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout.startswith(f"usage: ros2 run eha_sim_node {executable} ")
+        assert "\n  diagnostics_rate " in done.stdout
 
 
 def test_scaled_time_runs_at_its_factor_and_owns_the_clock(rig: Rig) -> None:

@@ -1,0 +1,1 @@
+"""The live page of a rig: its web server, and the page itself."""
