@@ -11,10 +11,10 @@ from eha_core.errors import EhaError
 from eha_core.exam.case import Case
 from eha_core.exam.cases import make_case
 from eha_core.exam.concealed import DRAWS, SITES, draw_effect, scaled
-from eha_core.exam.drawing import draw_case
+from eha_core.exam.drawing import WORN_RIG, draw_case
 from eha_core.exam.excitation import SHAPES, draw_reference
 from eha_core.exam.measuring import measure, simulate_case
-from eha_core.exam.oracle import consult
+from eha_core.exam.oracle import consult, seen_beside_the_others
 from eha_core.exam.plants import FAMILIES, UNCERTAIN, draw_rig
 from eha_core.exam.truth import effect_parameters
 
@@ -128,3 +128,17 @@ def test_a_test_that_would_draw_a_vacuum_is_run_more_gently() -> None:
     truth = simulate_case(case)
     assert min(truth["pressure_a"].min(), truth["pressure_b"].min()) > -0.5e5
     assert np.max(np.abs(truth["position"])) < 0.92 * case.plant["actuator_displacement"]
+
+
+def test_a_worn_rig_has_four_to_six_effects_and_never_two_of_one_kind() -> None:
+    for number in range(12):
+        names = [name for name, _ in draw_case("rig", number, 5).effects]
+        assert len(names) == 4 + number % 3
+        assert all(len(set(group) & set(names)) <= 1 for group in WORN_RIG)
+    assert len(draw_case("three", 0, 5).effects) == 3
+
+
+def test_of_several_effects_the_oracle_tells_which_show_beside_the_others() -> None:
+    spring, delay = ("hardening_spring", {"coefficient": 3e8}), ("command_delay", {"delay": 1e-7})
+    case = short("single", 12, duration=1.5, effects=(spring, delay))
+    assert seen_beside_the_others(case, simulate_case(case)) == ("hardening_spring",)

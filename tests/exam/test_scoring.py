@@ -12,6 +12,7 @@ from eha_core.exam.case import Case
 from eha_core.exam.drawing import draw_case
 from eha_core.exam.outside import curve_agreement
 from eha_core.exam.scoring import Answer, mark, wilson
+from eha_core.exam.summary import confusion
 from eha_core.exam.tiers import MEANINGS, SHARES, plan
 
 
@@ -128,3 +129,42 @@ def test_a_short_exam_is_the_beginning_of_a_long_one() -> None:
     assert all(abs(counts[tier] - 1000 * share) <= 1.0 for tier, share in SHARES.items())
     assert set(SHARES) == set(MEANINGS)
     assert sum(SHARES.values()) == pytest.approx(1.0)
+
+
+RIG = (*PAIR, ("constant_load", {"force": 50.0}))
+
+
+def test_of_several_effects_those_that_can_be_seen_must_be_named_and_no_other() -> None:
+    hidden = single(tier="rig", decidable=False, seen=("coulomb_friction", "constant_load"))
+    hidden = replace(hidden, effects=RIG)
+    for named, outcome, exact in (
+        (("coulomb_friction", "constant_load"), "right", True),
+        (("coulomb_friction", "constant_load", "command_delay"), "right", True),
+        (("coulomb_friction",), "wrong", False),
+        (("coulomb_friction", "constant_load", "end_stop"), "wrong", False),
+    ):
+        one = mark(hidden, answer("missing_physics", *named))
+        assert (one.outcome, one.exact) == (outcome, exact), named
+
+
+def test_complete_is_told_truly_where_no_channel_keeps_more_than_one_and_a_half_times_the_noise() -> None:
+    for complete, after, truthful in ((True, 1.0, True), (True, 1.6, False), (False, 1.6, True)):
+        fit = {"held_out": {"position": {"rmse_after": after, "noise": 1.0}}}
+        given = answer("missing_physics", "coulomb_friction", fit=fit, explained={"complete": complete})
+        assert mark(single(), given).truthful is truthful
+    assert mark(single(), answer("missing_physics", "coulomb_friction")).truthful is None
+
+
+def test_a_named_effect_and_an_unknown_law_are_right_together() -> None:
+    both = (("coulomb_friction", {"force": 200.0}), ("position_ripple", {"force": 9.0, "pitch": 0.01, "phase": 0.0}))
+    case = replace(single(), tier="named_and_unknown", effects=both)
+    law = {"site": "force", "function_of": "position", "samples": []}
+    assert mark(case, answer("unknown_physics", "coulomb_friction", unknown=law)).outcome == "right"
+    assert mark(case, answer("unknown_physics", unknown=law)).outcome == "abstained"
+    assert mark(case, answer("missing_physics", "coulomb_friction")).outcome == "wrong"
+
+
+def test_what_was_named_in_place_of_what_is_counted() -> None:
+    wrong = mark(single(), answer("missing_physics", "stribeck_friction"))
+    right = mark(single(), answer("missing_physics", "coulomb_friction"))
+    assert confusion([wrong, wrong, right]) == [("coulomb_friction", "stribeck_friction", 2)]

@@ -34,8 +34,9 @@ class Case:
         duration [s], rate [1/s]: of the recording. noise: multiple of 10 um and 0.01 MPa.
         position_step [m], pressure_step [Pa]: resolution of the sensors, 0 for none. jitter [s]: standard deviation of
         the sampling times. dropout: share of samples lost, in bursts. channels: what was recorded.
-        decidable: whether an oracle that knows the concealed form gains enough from this recording to name it; of two
-        effects, each beside the other.
+        decidable: whether an oracle that knows the concealed form gains enough from this recording to name it; of
+        several effects, each beside all the others. seen: of several effects, those that can be named beside the
+        others.
         rivals: effects that this recording cannot tell from the concealed one.
     """
 
@@ -62,6 +63,7 @@ class Case:
     channels: tuple[str, ...] = ("voltage_command", "position", "pressure_a", "pressure_b")
     decidable: bool = True
     rivals: tuple[str, ...] = ()
+    seen: tuple[str, ...] = ()
 
     @property
     def setting(self) -> Setting:

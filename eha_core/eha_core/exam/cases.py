@@ -15,7 +15,8 @@ from eha_core.exam.case import Array, Arrays, Case
 from eha_core.exam.concealed import draw_effect, scaled
 from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case
-from eha_core.exam.oracle import DECIDABLE, Insight, consult
+from eha_core.exam.oracle import Insight, consult, seen_beside_the_others
+from eha_core.exam.tiers import SETS
 
 __all__ = ["Arrays", "Case", "draw_case", "make_case", "make_cases"]
 
@@ -67,9 +68,9 @@ def _decide(case: Case) -> tuple[Case, dict[str, Array]]:
         return case, truth
     if case.rivals:
         return _as_twin(case, truth)
-    if case.tier == "pair":
-        beyond = [consult(case, truth, other).beyond_rival or 0.0 for other in case.effects]
-        return replace(case, decidable=min(beyond) >= DECIDABLE), truth
+    if case.tier in SETS:
+        seen = seen_beside_the_others(case, truth)
+        return replace(case, seen=seen, decidable=len(seen) == len(case.effects)), truth
     insight = consult(case, truth)
     if case.tier == "refit" and insight.residual > HIDDEN:
         case = _smaller(case, HIDDEN / insight.residual)

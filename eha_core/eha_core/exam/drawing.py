@@ -34,6 +34,16 @@ TWINS = (
 """What command and position alone hardly tell apart: (concealed, rival). A load takes pressure from one direction's
 orifices, and one chamber's leak feeds the piston a flow as a valve off its null does."""
 
+WORN_RIG = (
+    ("coulomb_friction", "stribeck_friction", "presliding_friction"),
+    ("valve_deadband", "valve_null_offset", "flow_gain_asymmetry", "valve_null_leakage", "spool_hysteresis"),
+    ("supply_pressure_droop", "return_back_pressure"),
+    ("constant_load", "hardening_spring", "quadratic_damping"),
+    ("position_sensor_lag", "position_sensor_backlash", "position_sensor_scale", "pressure_sensor_bias"),
+    ("turbulent_leakage", "external_leakage", "entrained_air"),
+)
+"""What a worn rig has at once: at most one of each of these."""
+
 NOISES = (1.0, 3.0, 10.0)
 FRICTION = {"coulomb_friction", "stribeck_friction", "presliding_friction"}
 
@@ -96,11 +106,18 @@ def _conceal(
     catalogue = [name for name in CATALOGUE if equal or name != "unequal_piston_area"]
     if tier in ("null", "null_parameters"):
         return (), {}
-    if tier == "pair":
+    if tier in ("pair", "three"):
         while True:
-            first, second = (str(name) for name in g.choice(catalogue, 2, replace=False))
-            if not {first, second} <= FRICTION:
-                return ((first, draw_effect(first, setting, g)), (second, draw_effect(second, setting, g))), {}
+            names = [str(name) for name in g.choice(catalogue, 2 if tier == "pair" else 3, replace=False)]
+            if len(FRICTION.intersection(names)) < 2:
+                return tuple((name, draw_effect(name, setting, g)) for name in names), {}
+    if tier == "rig":
+        groups = sorted(g.choice(len(WORN_RIG), 4 + number % 3, replace=False).tolist())
+        names = [str(g.choice(WORN_RIG[group])) for group in groups]
+        return tuple((name, draw_effect(name, setting, g)) for name in names), {}
+    if tier == "named_and_unknown":
+        names = [catalogue[number % len(catalogue)], str(g.choice(list(OUTSIDE)))]
+        return tuple((name, draw_effect(name, setting, g)) for name in names), {}
     pools = {
         "outside": list(OUTSIDE),
         "other_law": list(OTHER_LAWS),

@@ -72,7 +72,8 @@ def read_answer(text: str) -> Case:
     fields = json.loads(text)
     fields["effects"] = tuple((name, values) for name, values in fields["effects"])
     fields["windows"] = {name: tuple(span) for name, span in fields["windows"].items()}
-    fields["channels"] = tuple(fields["channels"])
+    for name in ("channels", "seen"):
+        fields[name] = tuple(fields[name])
     return Case(**fields)
 
 

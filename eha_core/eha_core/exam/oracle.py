@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.exam.case import POSITION_NOISE, PRESSURE_NOISE, Case
+from eha_core.exam.concealed import SIZES
 from eha_core.exam.plants import RIG_MISTAKES, UNCERTAIN
 from eha_core.exam.truth import resume_truth
 from eha_core.exam.truth.record import Effect
@@ -55,11 +56,16 @@ class Insight:
         return self.gain >= DECIDABLE
 
 
-def consult(case: Case, truth: Mapping[str, Array], rival: Effect | None = None) -> Insight:
-    """Ask what the recording of a case can tell, and how much of that a rival effect does not explain at any size."""
-    starts = _telling_windows(case, truth)
+def consult(
+    case: Case, truth: Mapping[str, Array], rival: Effect | None = None, kept: Sequence[Effect] = ()
+) -> Insight:
+    """Ask what the recording of a case can tell, and how much of that a rival effect does not explain at any size.
+
+    Effects that are `kept` stay in the model, each at any size: what is asked is what the others show beside them.
+    """
+    starts = _telling_windows(case, truth, kept)
     names = (*UNCERTAIN, *RIG_MISTAKES)
-    blocks = [_window(case, truth, first, names, rival) for first in starts]
+    blocks = [_window(case, truth, first, names, rival, kept) for first in starts]
     marks = np.concatenate([mark for mark, _ in blocks])
     columns = np.concatenate([matrix for _, matrix in blocks])
     gain, residual, solution = _best_imitation(marks, columns[:, : len(names)])
@@ -67,7 +73,19 @@ def consult(case: Case, truth: Mapping[str, Array], rival: Effect | None = None)
     if rival is not None:
         columns[:, -1] *= FREE
         beyond = _best_imitation(marks, columns)[0]
+    if kept:
+        gain = _best_imitation(marks, columns)[0]
     return Insight(gain, residual, dict(zip(names, solution.tolist(), strict=True)), beyond)
+
+
+def seen_beside_the_others(case: Case, truth: Mapping[str, Array]) -> tuple[str, ...]:
+    """The concealed effects that the recording can show, each beside all the others at any size."""
+    seen = []
+    for effect in case.effects:
+        others = [other for other in case.effects if other is not effect]
+        if consult(case, truth, kept=others).decidable:
+            seen.append(effect[0])
+    return tuple(seen)
 
 
 def _best_imitation(marks: Array, columns: Array) -> tuple[float, float, Array]:
@@ -84,11 +102,11 @@ def _length(case: Case) -> int:
     return round(WINDOW * case.rate)
 
 
-def _telling_windows(case: Case, truth: Mapping[str, Array]) -> list[int]:
+def _telling_windows(case: Case, truth: Mapping[str, Array], kept: Sequence[Effect]) -> list[int]:
     """First samples of the windows in which leaving the effect out matters most."""
     length = _length(case)
     candidates = list(range(0, len(truth["time"]) - length, length))
-    energies = [float(np.sum(_mark(case, truth, first) ** 2)) for first in candidates]
+    energies = [float(np.sum(_mark(case, truth, first, kept) ** 2)) for first in candidates]
     order = np.argsort(energies)[::-1][:WINDOWS]
     return sorted(candidates[i] for i in order)
 
@@ -102,30 +120,40 @@ def _scaled(case: Case, columns: Mapping[str, Array]) -> Array:
     return np.concatenate(pieces)
 
 
-def _mark(case: Case, truth: Mapping[str, Array], first: int) -> Array:
+def _mark(case: Case, truth: Mapping[str, Array], first: int, kept: Sequence[Effect]) -> Array:
     last = first + _length(case)
     there = {name: column[first : last + 1] for name, column in truth.items()}
-    return _scaled(case, there) - _scaled(case, resume_truth(case.plant, (), truth, first, last))
+    return _scaled(case, there) - _scaled(case, resume_truth(case.plant, kept, truth, first, last))
 
 
 def _window(
-    case: Case, truth: Mapping[str, Array], first: int, names: Sequence[str], rival: Effect | None
+    case: Case,
+    truth: Mapping[str, Array],
+    first: int,
+    names: Sequence[str],
+    rival: Effect | None,
+    kept: Sequence[Effect],
 ) -> tuple[Array, Array]:
     """The effect's mark in one window and the columns that can imitate it, free of the window's initial state.
 
-    Columns: one for each nominal parameter (relative change), then one for the rival.
+    Columns: one for each nominal parameter (relative change), one for each kept effect's size, one for the rival.
     """
     last = first + _length(case)
     there = _scaled(case, {name: column[first : last + 1] for name, column in truth.items()})
-    nominal = _scaled(case, resume_truth(case.plant, (), truth, first, last))
+    nominal = _scaled(case, resume_truth(case.plant, kept, truth, first, last))
     columns = []
     for name in names:
         nudged = {**case.plant, name: case.plant[name] * (1.0 + STEP)}
-        columns.append((_scaled(case, resume_truth(nudged, (), truth, first, last)) - nominal) / STEP)
+        columns.append((_scaled(case, resume_truth(nudged, kept, truth, first, last)) - nominal) / STEP)
+    for place, (name, values) in enumerate(kept):
+        for size in SIZES.get(name, ()):
+            larger = (name, {**values, size: float(values[size]) * (1.0 + STEP)})
+            resized = (*kept[:place], larger, *kept[place + 1 :])
+            columns.append((_scaled(case, resume_truth(case.plant, resized, truth, first, last)) - nominal) / STEP)
     if rival is not None:
-        columns.append(_scaled(case, resume_truth(case.plant, (rival,), truth, first, last)) - nominal)
+        columns.append(_scaled(case, resume_truth(case.plant, (*kept, rival), truth, first, last)) - nominal)
     states = [
-        _scaled(case, resume_truth(case.plant, (), truth, first, last, shift={name: step})) - nominal
+        _scaled(case, resume_truth(case.plant, kept, truth, first, last, shift={name: step})) - nominal
         for name, step in SHIFTS.items()
     ]
     basis = np.linalg.qr(np.stack(states, axis=1))[0]

@@ -32,6 +32,12 @@ BAGS: dict[str, tuple[str, frozenset[str]]] = {
     "rig_valve_deadband.mcap": ("missing_physics", frozenset({"valve_deadband"})),
     "rig_leakage_onset.mcap": ("missing_physics", frozenset({"leakage_onset"})),
     "rig_deadband_and_friction.mcap": ("missing_physics", frozenset({"valve_deadband", "coulomb_friction"})),
+    "rig_five_effects.mcap": (
+        "missing_physics",
+        frozenset(
+            {"coulomb_friction", "valve_deadband", "supply_pressure_droop", "constant_load", "external_leakage"}
+        ),
+    ),
     "rig_cut_short.mcap": ("missing_physics", frozenset({"coulomb_friction"})),
 }
 """What the shipped recordings conceal: the right verdict and effects. All of them are simulated."""

@@ -12,10 +12,14 @@ import numpy as np
 from eha_core.exam.case import Case
 from eha_core.exam.concealed import EQUIVALENT, SITES
 from eha_core.exam.outside import curve_agreement
+from eha_core.exam.truth.record import OUTSIDE
 
 OUTCOMES = ("right", "abstained", "wrong", "failed")
 DISCOVERIES = ("missing_physics", "unknown_physics")
 NORMAL_95 = 1.959963984540054
+
+LEFT = 1.5
+"""Times the noise above which no explanation is complete."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,8 @@ class Mark:
     was claimed where none is missing. `intervals`: for each parameter of a rightly named effect in the catalogue's own
     law, whether its 95 % interval holds the truth. `nominal_intervals`: the same for the rig's parameters.
     `held_out_ratio`: held-out error after over noise, worst channel. `curve_r_squared`: agreement of a recovered law.
-    `resolved`: whether the test that an ambiguous verdict prescribed led to the truth.
+    `resolved`: whether the test that an ambiguous verdict prescribed led to the truth. `seen`: of what is concealed,
+    the effects that the recording can show beside the others. `complete`: what the diagnosis says of itself.
     """
 
     name: str
@@ -57,6 +62,21 @@ class Mark:
     seconds: float
     decidable: bool
     resolved: bool | None = None
+    seen: tuple[str, ...] = ()
+    complete: bool | None = None
+
+    @property
+    def exact(self) -> bool:
+        """Whether the effects named are those concealed, or all of those that can be seen."""
+        return set(self.seen or self.concealed) <= set(self.named) <= set(self.concealed)
+
+    @property
+    def truthful(self) -> bool | None:
+        """Whether `complete` is true where, and only where, no channel has more than LEFT times the noise left on
+        held-out data; None where it cannot be said."""
+        if self.complete is None or self.held_out_ratio is None:
+            return None
+        return not (self.complete and self.held_out_ratio > LEFT)
 
 
 def mark(case: Case, answer: Answer, second: Answer | None = None) -> Mark:
@@ -84,6 +104,8 @@ def mark(case: Case, answer: Answer, second: Answer | None = None) -> Mark:
         seconds=answer.seconds,
         decidable=case.decidable,
         resolved=_resolved(case, second) if verdict == "ambiguous" else None,
+        seen=case.seen,
+        complete=(diagnosis.get("explained") or {}).get("complete"),
     )
 
 
@@ -100,22 +122,24 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
     """The rule. Abstaining is "ambiguous" with the truth in the stated set, or seeing nothing of what is concealed.
 
     Where the recording cannot hold enough to tell (an oracle that knows the form gains too little), not naming anything
-    is right, and so is naming one of two effects where the other cannot be seen beside it. Where it cannot tell the
-    truth from a rival, the right answer is to say so: a name is a guess, and wrong even when lucky. An effect that acts
-    for a while may be located without a name, which is to abstain. Nothing missing: "consistent" and "parameters" claim
-    no physics, and either is right.
+    is right, and so is leaving out of several effects those that cannot be seen beside the others. Where it cannot tell
+    the truth from a rival, the right answer is to say so: a name is a guess, and wrong even when lucky. An effect that
+    acts for a while may be located without a name, which is to abstain. Nothing missing: "consistent" and "parameters"
+    claim no physics, and either is right.
     """
     if verdict == "none":
         return "failed"
     silent = verdict in ("consistent", "parameters")
     if not case.effects:
         return "right" if silent else "abstained" if verdict == "ambiguous" else "wrong"
+    if case.tier == "named_and_unknown":
+        return _named_and_unknown(case, verdict, named, diagnosis)
     if verdict == "unknown_physics" and case.windows:
         return "abstained" if _site_right(case, diagnosis) else "wrong"
     if verdict == case.verdict == "unknown_physics":
         return "right" if _site_right(case, diagnosis) else "wrong"
     if verdict == "missing_physics":
-        tellable = not case.decidable and set(named) < set(case.effect_ids)
+        tellable = not case.decidable and set(case.seen) <= set(named) < set(case.effect_ids)
         return "right" if (set(named) in accepted(case) or tellable) and not case.rivals else "wrong"
     if verdict == "ambiguous":
         if not _in_stated_set(case, diagnosis):
@@ -123,6 +147,15 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
         return "right" if case.rivals else "abstained"
     if silent:
         return "abstained" if case.decidable else "right"
+    return "wrong"
+
+
+def _named_and_unknown(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[str, Any]) -> str:
+    """One effect of the catalogue and one law outside of it: right where both are told apart, abstained where a site of
+    theirs is told and nothing false is named."""
+    known = {name for name in case.effect_ids if name not in OUTSIDE}
+    if verdict == "unknown_physics" and set(named) <= known and _site_right(case, diagnosis):
+        return "right" if named else "abstained"
     return "wrong"
 
 

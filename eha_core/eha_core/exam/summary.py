@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from statistics import median
 
 from eha_core.exam.scoring import Mark, Proportion
-from eha_core.exam.tiers import MEANINGS
+from eha_core.exam.tiers import MEANINGS, SETS
 
 Choice = Callable[[Mark], bool]
 
@@ -39,12 +40,13 @@ class Target:
 
 @dataclass(frozen=True)
 class Summary:
-    """The score of one tool."""
+    """The score of one tool. `confusion`: what was named in place of what, and how often."""
 
     tool: str
     rows: tuple[Row, ...]
     targets: tuple[Target, ...]
     lost: tuple[Mark, ...]
+    confusion: tuple[tuple[str, str, int], ...] = ()
 
 
 def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
@@ -57,11 +59,50 @@ def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
             groups += [(f"{tier}, noise {noise:g}x", [m for m in inside if m.noise == noise]) for noise in (1, 3, 10)]
     rows = tuple(_row(name, group) for name, group in groups if group)
     lost = tuple(m for m in marks if m.outcome in ("wrong", "failed"))
-    return Summary(tool, rows, tuple(_targets(marks)), lost)
+    return Summary(tool, rows, tuple(_targets(marks)), lost, tuple(confusion(marks)))
 
 
 def _count(marks: Sequence[Mark], chosen: Choice) -> Proportion:
     return Proportion(sum(1 for m in marks if chosen(m)), len(marks))
+
+
+def _of_sets(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
+    """The aims for several effects at once: statement, share asked, share reached."""
+    pairs = [m for m in marks if m.tier == "pair" and m.decidable]
+    three, rigs = ([m for m in marks if m.tier == tier] for tier in ("three", "rig"))
+    return [
+        ("pairs exact", 0.95, _count(pairs, lambda m: m.outcome == "right")),
+        ("three effects exact", 0.92, _count(three, lambda m: m.exact)),
+        ("rigs exact", 0.80, _count(rigs, lambda m: m.exact)),
+        ("decidable effects of rigs found", 0.95, _found(rigs)),
+        ("`complete` told truly", 1.0, _count([m for m in marks if m.truthful is not None], _truthful)),
+    ]
+
+
+def _truthful(one: Mark) -> bool:
+    return bool(one.truthful)
+
+
+def _found(marks: Sequence[Mark]) -> Proportion:
+    """Of the effects that can be seen beside the others, those that are named."""
+    found = [effect in m.named for m in marks for effect in m.seen]
+    return Proportion(sum(found), len(found))
+
+
+def _false_names(marks: Sequence[Mark]) -> Proportion:
+    """Of the names given, those of nothing concealed."""
+    false = [name not in m.concealed for m in marks for name in m.named]
+    return Proportion(sum(false), len(false))
+
+
+def confusion(marks: Sequence[Mark]) -> list[tuple[str, str, int]]:
+    """What was named in place of what: (concealed and not named, named and not concealed, how often)."""
+    counts: Counter[tuple[str, str]] = Counter()
+    for m in marks:
+        missed = sorted(set(m.seen or m.concealed) - set(m.named)) or ["nothing"]
+        false = sorted(set(m.named) - set(m.concealed)) or ["nothing"]
+        counts.update((one, other) for one in missed for other in false if one != other)
+    return [(one, other, count) for (one, other), count in counts.most_common()]
 
 
 def _row(name: str, marks: Sequence[Mark]) -> Row:
@@ -101,7 +142,7 @@ def _targets(marks: Sequence[Mark]) -> list[Target]:
             for noise, goal in ((1.0, 0.98), (3.0, 0.98), (10.0, 0.95))
         ),
         ("right site of single effects", 0.99, _count(single, lambda m: bool(m.site_right))),
-        ("pairs exact", 0.90, _count([m for m in marks if m.tier == "pair" and m.decidable], right)),
+        *_of_sets(marks),
         ("named from command and position", 0.90, _count([m for m in marks if m.tier == "position_only"], right)),
         ("truth in the set stated as ambiguous", 0.99, _count(ambiguous, lambda m: bool(m.in_stated_set))),
         (
@@ -123,7 +164,9 @@ def _targets(marks: Sequence[Mark]) -> list[Target]:
         ),
     ]
     targets = [_at_least(statement, goal, reached) for statement, goal, reached in rows]
+    sets = [m for m in marks if m.tier in SETS]
     targets += [
+        _at_most("names in sets that are false", 0.02, _false_names(sets)),
         _at_most("small effects named wrongly", 0.01, _count(small, lambda m: m.outcome == "wrong")),
         _at_most("false discoveries with nothing missing", 0.01, _count(null, lambda m: m.discovery)),
         _covering("effects' parameters", held),

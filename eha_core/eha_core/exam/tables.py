@@ -37,6 +37,8 @@ def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown
         lines += ["", f"## {summary.tool}: targets", ""]
         rows = [[t.statement, t.aim, t.reached, _met(t.met)] for t in summary.targets]
         lines += _markdown_table(("target", "aim", "reached", "met"), rows)
+        lines += ["", f"## {summary.tool}: what was named in place of what", ""]
+        lines += _markdown_table(("concealed", "named", "times"), _confusion(summary))
         if summary.lost:
             lines += ["", f"## {summary.tool}: lost cases", ""]
             lines += _markdown_table(("case", "noise", "concealed", "verdict", "named"), _lost(summary))
@@ -65,7 +67,9 @@ def as_html(
             parts.append(f"<tr><td>{escape(cells[0])}</td><td>{bar}</td>" + _cells(cells[2:]) + "</tr>")
         parts.append("</table><h3>Targets</h3><table><tr><th>target</th><th>aim</th><th>reached</th><th>met</th></tr>")
         parts += [f"<tr>{_cells((t.statement, t.aim, t.reached, _met(t.met)))}</tr>" for t in summary.targets]
-        parts.append("</table>")
+        parts.append("</table><h3>What was named in place of what</h3><table>")
+        parts.append("<tr><th>concealed</th><th>named</th><th>times</th></tr>")
+        parts += [f"<tr>{_cells(cells)}</tr>" for cells in _confusion(summary)] + ["</table>"]
         if summary.lost:
             parts.append("<h3>Lost cases</h3><table><tr><th>case</th><th>noise</th><th>concealed</th><th>verdict</th>")
             parts.append("<th>named</th></tr>")
@@ -107,6 +111,10 @@ def _rows(summaries: Sequence[Summary]) -> list[list[str]]:
                 times = [f"{row.median_seconds:.1f}", f"{row.longest_seconds:.1f}"]
                 lines.append([group, summary.tool, str(row.cases), *shares, *times])
     return lines
+
+
+def _confusion(summary: Summary) -> list[list[str]]:
+    return [[concealed, named, str(times)] for concealed, named, times in summary.confusion]
 
 
 def _lost(summary: Summary) -> list[list[str]]:

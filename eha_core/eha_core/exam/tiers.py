@@ -2,30 +2,39 @@
 
 from __future__ import annotations
 
-from eha_core.errors import EhaError
+from eha_core.errors import EhaError, remedy
 
 SHARES = {
-    "single": 0.24,
-    "small": 0.09,
-    "other_law": 0.06,
-    "pair": 0.10,
-    "null": 0.06,
-    "null_parameters": 0.09,
-    "tracking": 0.06,
-    "window": 0.05,
-    "position_only": 0.06,
-    "outside": 0.06,
-    "wrong_rig": 0.05,
-    "refit": 0.04,
-    "twins": 0.04,
+    "single": 0.20,
+    "small": 0.06,
+    "other_law": 0.05,
+    "pair": 0.12,
+    "three": 0.10,
+    "rig": 0.10,
+    "named_and_unknown": 0.03,
+    "null": 0.05,
+    "null_parameters": 0.07,
+    "tracking": 0.05,
+    "window": 0.04,
+    "position_only": 0.04,
+    "outside": 0.03,
+    "wrong_rig": 0.03,
+    "refit": 0.015,
+    "twins": 0.015,
 }
 """Share of each tier in an exam of all tiers."""
+
+SETS = ("pair", "three", "rig")
+"""Tiers that conceal several effects of the catalogue at once."""
 
 MEANINGS = {
     "single": "one effect of normal size, nominal parameters up to 30 % off",
     "small": "one effect of 15 % of that size",
     "other_law": "one effect that follows another published law than the catalogue's",
     "pair": "two effects",
+    "three": "three effects",
+    "rig": "four to six effects: dry friction, valve, supply, load, sensor and leakage together",
+    "named_and_unknown": "one effect of the catalogue, and one law that it does not know",
     "null": "nothing missing, nominal parameters exact",
     "null_parameters": "nothing missing, nominal parameters up to 30 % off",
     "tracking": "one effect under a tight position controller, which hides it in command and pressure",
@@ -41,7 +50,7 @@ MEANINGS = {
 def check_tier(tier: str) -> None:
     """EhaError when there is no such tier."""
     if tier not in SHARES:
-        raise EhaError(f"tier {tier!r} is none of the exam's; give one of {', '.join(SHARES)}")
+        raise EhaError(f"tier {tier!r} is none of the exam's; {remedy(tier, SHARES)}")
 
 
 def plan(cases: int, tier: str | None = None) -> list[tuple[str, int]]:

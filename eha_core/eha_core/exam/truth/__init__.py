@@ -7,6 +7,6 @@ Nothing here imports the plant, the effects or the diagnosis.
 
 from eha_core.exam.truth.control import PositionController
 from eha_core.exam.truth.record import effect_parameters
-from eha_core.exam.truth.simulate import resume_truth, simulate_truth
+from eha_core.exam.truth.simulate import SteppedTruth, resume_truth, simulate_truth
 
-__all__ = ["PositionController", "effect_parameters", "resume_truth", "simulate_truth"]
+__all__ = ["PositionController", "SteppedTruth", "effect_parameters", "resume_truth", "simulate_truth"]

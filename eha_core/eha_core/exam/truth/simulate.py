@@ -81,16 +81,81 @@ def simulate_truth(
         EhaError: an unknown parameter or effect, or a truth that cannot be integrated.
     """
     samples = round(duration * rate) + 1
-    plan = schedule(plant, effects, windows or {})
-    records = plan[0][1]
-    record = records[0]
     command = _commands(voltage, samples, rate)
-    valve = Valve(samples)
-    delay = float(record["command_delay_delay"])
-    if delay > 0.0:
-        valve.command(0.0, delay, 0.0, records)
-    automaton = Automaton(valve, records, _initial_state(record, initial_position))
-    return _run(automaton, plan, command, rate, range(samples), initial_position)
+    stepped = SteppedTruth(plant, effects, rate, samples, initial_position=initial_position, windows=windows)
+    return _run(stepped, command, samples)
+
+
+class SteppedTruth:
+    """The truth one sample at a time, for a rig whose command comes while it runs.
+
+    Each sample is `sense`d first; then `hold` puts the voltage on until the next one. Arguments as `simulate_truth`;
+    `samples` is about how many there will be.
+    """
+
+    def __init__(
+        self,
+        plant: Mapping[str, float],
+        effects: Sequence[Effect],
+        rate: float,
+        samples: int = 10_000,
+        *,
+        initial_position: float = 0.0,
+        windows: Mapping[str, tuple[float, float]] | None = None,
+    ) -> None:
+        plan = schedule(plant, effects, windows or {})
+        records = plan[0][1]
+        valve = Valve(samples)
+        delay = float(records[0]["command_delay_delay"])
+        if delay > 0.0:
+            valve.command(0.0, delay, 0.0, records)
+        automaton = Automaton(valve, records, _initial_state(records[0], initial_position))
+        self._begin(automaton, plan, rate, 0, initial_position)
+
+    @classmethod
+    def resumed(
+        cls,
+        automaton: Automaton,
+        plan: Sequence[tuple[float, NDArray[np.void]]],
+        rate: float,
+        first: int,
+        sensed: float,
+    ) -> SteppedTruth:
+        """Go on from sample `first` of an earlier run."""
+        made = cls.__new__(cls)
+        made._begin(automaton, plan, rate, first, sensed)
+        return made
+
+    def _begin(
+        self,
+        automaton: Automaton,
+        plan: Sequence[tuple[float, NDArray[np.void]]],
+        rate: float,
+        first: int,
+        sensed: float,
+    ) -> None:
+        self.rate = rate
+        self._automaton, self._plan, self._sample, self._sensed = automaton, plan, first, sensed
+        self._delay = float(automaton.record["command_delay_delay"])
+
+    def sense(self) -> tuple[float, float, float, float]:
+        """Measured position [m], velocity [m/s] and pressures [Pa, gauge] of this sample, without noise."""
+        _advance(self._automaton, self._plan, self._sample / self.rate)
+        record, state = self._automaton.record, self._automaton.state
+        self._sensed = _sensed_position(state, record, self._sensed)
+        position = self._sensed * (1.0 + record["position_sensor_scale_ratio"])
+        pressure_a = state[PRESSURE_A] + record["pressure_sensor_bias_bias_a"]
+        pressure_b = state[PRESSURE_B] + record["pressure_sensor_bias_bias_b"]
+        return float(position), float(state[VELOCITY]), float(pressure_a), float(pressure_b)
+
+    def hold(self, voltage: float) -> tuple[float, ...]:
+        """Hold a voltage [V] until the next sample; returns the row of this one, in the order of COLUMNS."""
+        automaton, time = self._automaton, self._sample / self.rate
+        until = (self._sample + 1) / self.rate
+        automaton.valve.command(time + self._delay, until + self._delay, voltage, automaton.records)
+        self._sample += 1
+        measured = self._sensed * (1.0 + automaton.record["position_sensor_scale_ratio"])
+        return _row(automaton, time, voltage, self._sensed, measured)
 
 
 def resume_truth(
@@ -125,33 +190,21 @@ def resume_truth(
         if end > start:
             valve.command(max(begin, start), end, float(truth["voltage"][k]), records)
     automaton = Automaton(valve, records, _resumed_state(record, row), start)
-    return _run(automaton, plan, truth["voltage"], rate, range(first, last + 1), row["sensed_position"])
+    resumed = SteppedTruth.resumed(automaton, plan, rate, first, row["sensed_position"])
+    return _run(resumed, truth["voltage"][first:], last + 1 - first)
 
 
-def _run(
-    automaton: Automaton,
-    plan: Sequence[tuple[float, NDArray[np.void]]],
-    command: Array | PositionController,
-    rate: float,
-    samples: range,
-    sensed: float,
-) -> dict[str, Array]:
+def _run(stepped: SteppedTruth, command: Array | PositionController, samples: int) -> dict[str, Array]:
     integral = 0.0
-    delay = float(automaton.record["command_delay_delay"])
-    rows = np.empty((len(samples), len(COLUMNS)))
-    for place, k in enumerate(samples):
-        time = k / rate
-        _advance(automaton, plan, time)
-        record = automaton.record
-        sensed = _sensed_position(automaton.state, record, sensed)
-        measured = sensed * (1.0 + record["position_sensor_scale_ratio"])
+    rows = np.empty((samples, len(COLUMNS)))
+    for k in range(samples):
+        measured = stepped.sense()[0]
         if isinstance(command, PositionController):
             volts, error = command.command(k, measured, integral)
-            integral += error / rate
+            integral += error / stepped.rate
         else:
             volts = float(command[k])
-        automaton.valve.command(time + delay, (k + 1) / rate + delay, volts, automaton.records)
-        rows[place] = _row(automaton, time, volts, sensed, measured)
+        rows[k] = stepped.hold(volts)
     return dict(zip(COLUMNS, rows.T.copy(), strict=True))
 
 
