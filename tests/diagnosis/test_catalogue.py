@@ -6,6 +6,7 @@ from made import recorded
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates, starts
+from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.refine import attempts, settle, try_effect
 from eha_core.diagnosis.screen import screen
@@ -56,7 +57,7 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     attempt = next((one for one in leading if one.promise.start.effect.id == effect.id), None)
     assert attempt is not None, [one.promise.start.effect.id for one in leading]
     first = try_effect(calibration.problem, attempt, float("inf"))
-    ((_, result),) = settle(calibration.problem, [((effect,), first)])
+    (result,) = settle(calibration.problem, {NOTHING.with_effects([effect]): first}).values()
     assert result.data / result.count < 1.1
     assert calibration.fitted.objective - result.objective > 50.0
     for row in effect.parameters:

@@ -22,6 +22,28 @@ def test_a_quantised_channel_has_at_least_the_noise_of_its_step():
     assert estimate_noise(values) >= 0.999 * step / np.sqrt(12.0)
 
 
+@pytest.mark.parametrize("kind", [np.float64, np.float32])
+@pytest.mark.parametrize("unit", [1.0, 1e-3])
+def test_a_fine_encoder_is_quantised_however_many_of_its_levels_were_seen(kind, unit):
+    """25 um over 50 mm of stroke: 2,001 levels in 7,500 samples, one in four."""
+    step = 25e-6
+    travel = 0.025 * np.sin(2 * np.pi * 0.31 * TIME[:7500]) + 0.025
+    values = (np.round(travel / step) * (step / unit)).astype(kind).astype(float) * unit
+    assert len(np.unique(values)) == 2001
+    assert quantisation(values) == pytest.approx(step, rel=1e-3)
+    assert estimate_noise(values) >= 0.999 * step / np.sqrt(12.0)
+    values[[77, 3000, 5001]] += 0.37 * step
+    assert quantisation(values) == pytest.approx(step, rel=1e-2)
+
+
+def test_what_is_on_no_grid_is_not_quantised():
+    generator = np.random.default_rng(6)
+    assert quantisation(SMOOTH) == 0.0
+    assert quantisation(SMOOTH + 1e-5 * generator.standard_normal(len(TIME))) == 0.0
+    assert quantisation(generator.choice([0.0, 0.3, 0.71, 1.13], 500)) == 0.0
+    assert quantisation(np.zeros(100)) == quantisation(np.array([1.0, 2.0] * 50)) == 0.0
+
+
 def test_a_slow_misfit_does_not_raise_the_noise_of_a_residual():
     residual = np.random.default_rng(4).standard_normal(len(TIME)) + 50.0 * np.sin(TIME)
     assert residual_noise(residual) == pytest.approx(1.0, rel=0.03)

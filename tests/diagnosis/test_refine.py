@@ -6,6 +6,7 @@ from made import recorded
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.fit import fit
 from eha_core.diagnosis.freedom import effect_freedom
+from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.refine import as_given, settle
 from eha_core.effects import effects
@@ -25,7 +26,7 @@ def test_an_instant_a_second_off_is_found(calibration):
     free = (*calibration.fitted.free, *effect_freedom(ONSET, values))
     stuck = fit(calibration.problem, values, free, calibration.fitted.states)
     assert abs(stuck.values["leakage_onset.time"] - 4.87) > 0.3
-    ((_, found),) = settle(calibration.problem, [((ONSET,), stuck)])
+    (found,) = settle(calibration.problem, {NOTHING.with_effects([ONSET]): stuck}).values()
     assert found.values["leakage_onset.time"] == pytest.approx(4.87, abs=0.01)
     assert found.data < 1.05 * found.count
 

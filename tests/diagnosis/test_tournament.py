@@ -8,6 +8,7 @@ from made import recorded
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import starts
+from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.refine import FAR_OFF
 from eha_core.diagnosis.screen import screen
@@ -34,7 +35,7 @@ def promises(calibration):
 
 def test_the_effect_that_was_passed_over_is_found(calibration, promises):
     assert calibration.fitted.data > FAR_OFF * calibration.fitted.count
-    nothing_tried = Tournament(Entry((), calibration.fitted, 0.0), (), promises, 1.0)
+    nothing_tried = Tournament(Entry(NOTHING, calibration.fitted, 0.0), (), promises, 1.0)
     found = from_every_start(calibration.problem, nothing_tried)
     winner = found.entries[0]
     assert winner.ids == ("leakage_onset",)
@@ -44,5 +45,5 @@ def test_the_effect_that_was_passed_over_is_found(calibration, promises):
 
 def test_what_leaves_little_is_left_alone(calibration, promises):
     near = replace(calibration.fitted, data=0.9 * FAR_OFF * calibration.fitted.count)
-    tournament = Tournament(Entry((), near, 0.0), (), promises, 1.0)
+    tournament = Tournament(Entry(NOTHING, near, 0.0), (), promises, 1.0)
     assert from_every_start(calibration.problem, tournament) is tournament

@@ -104,9 +104,9 @@ class Balance:
         return float(np.mean(self.residual**2)) if len(self.missing) else 0.0
 
 
-def bumps(duration: float, step: float, channels: Sequence[Measured]) -> Bumps:
-    """Bumps of HALF_WIDTH all over a duration [s], on a grid of `step` [s], for channels that may have gaps."""
-    half = max(8, round(HALF_WIDTH / step))
+def bumps(duration: float, step: float, channels: Sequence[Measured], half_width: float = HALF_WIDTH) -> Bumps:
+    """Bumps of `half_width` [s] all over a duration [s], on a grid of `step` [s], for channels that may have gaps."""
+    half = max(8, round(half_width / step))
     at = np.arange(-half, half + 1) / half
     inside = 1.0 - at**2
     width = half * step

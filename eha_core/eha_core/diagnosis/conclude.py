@@ -8,13 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from eha_core.diagnosis.calibrate import UNITS, corrected_noise, has_changed, identifiable
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
+from eha_core.diagnosis.explained import explained, predictions
 from eha_core.diagnosis.fit import Fit, fit, with_noise
+from eha_core.diagnosis.freedom import Free
 from eha_core.diagnosis.intervals import with_residual
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
-from eha_core.diagnosis.locate import DESCRIBED, stated
+from eha_core.diagnosis.locate import stated
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.outlook import RATE
 from eha_core.diagnosis.problem import Problem
@@ -23,6 +26,7 @@ from eha_core.diagnosis.result import (
     ChannelFit,
     Diagnosis,
     Experiment,
+    Explained,
     FittedParameter,
     FittedValue,
     Location,
@@ -30,10 +34,12 @@ from eha_core.diagnosis.result import (
     Pictures,
     UnknownLaw,
 )
+from eha_core.diagnosis.search.prune import wald
 from eha_core.diagnosis.shooting import Shooting, cut
 from eha_core.diagnosis.tournament import Entry
 from eha_core.diagnosis.validate import channel_rmse, instants_of, judge, split
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
+from eha_core.effects import SITES
 from eha_core.effects import effects as every_effect
 from eha_core.parameters import catalogue, nominal_values
 from eha_core.recording import Recording
@@ -49,6 +55,7 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
     unknown = _unknown(evidence)
     decision = _without_another_curve(evidence, unknown)
     final = polish(evidence, decision.winner)
+    left = explained(replace(evidence, decision=decision), final)
     before, calibrated = evidence.calibration.nominal, evidence.tournament.nominal.fit
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
@@ -62,7 +69,7 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
         remarks=evidence.observation.remarks,
         damaged=recording.damaged,
         verdict=decision.verdict,
-        summary=_summary(decision, effects, unknown),
+        summary=_summary(decision, effects, unknown, left),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
         parameters=_parameters(final, evidence.nominal),
         effects=effects,
@@ -76,6 +83,8 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
         fitted_values=_changed_values(final),
         pictures=_pictures(evidence, before, calibrated, decision.winner.fit),
         start_stamp=recording.start_stamp,
+        explained=left,
+        prediction=predictions(evidence, final),
     )
 
 
@@ -86,6 +95,9 @@ def polish(evidence: Evidence, winner: Entry) -> Fit:
     shooting = with_noise(shooting, corrected_noise(evidence.calibration.shooting, winner.fit))
     problem = Problem(shooting, np.arange(shooting.windows))
     final = fit(problem, winner.fit.values, winner.fit.free, winner.fit.states, iterations=4)
+    if final.data > FAR_FROM_NOISE * final.count > winner.fit.data:
+        # the finer step met a worse valley than the search had left: go on to its end
+        final = fit(problem, final.values, final.free, final.states, iterations=30)
     return with_residual(problem, final)
 
 
@@ -115,6 +127,9 @@ def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParamet
         if one.name not in UNITS:
             continue
         note = "" if identifiable(final, one.name) else "this recording does not tell it; held near its nominal value"
+        at_bound = _is_at_bound(one, final.values[one.name])
+        if at_bound:
+            note = "at the bound of what is believed of it: its interval does not count"
         found.append(
             FittedParameter(
                 one.name,
@@ -124,25 +139,36 @@ def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParamet
                 UNITS[one.name],
                 has_changed(final, nominal, one.name),
                 note,
+                at_bound,
             )
         )
     return tuple(found)
 
 
+def _is_at_bound(one: Free, value: float) -> bool:
+    """Whether a fitted value rests on a bound that is no nominal value: one at nothing is no wish for more."""
+    return any(
+        np.isclose(value, bound, rtol=1e-6, atol=0.0) and bound != one.reference
+        for bound in (one.lower, one.upper)
+        if bound != 0.0
+    )
+
+
 def _named(winner: Entry, final: Fit) -> tuple[NamedEffect, ...]:
     found = []
-    for effect in winner.effects:
+    for member in winner.hypothesis.members:
+        effect = member.effect
         values = {
             row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
             for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)
         }
-        statement = effect.describe({name: value.value for name, value in values.items()}) + _while(winner)
-        found.append(NamedEffect(effect.id, effect.site, effect.equation, values, winner.score, statement))
+        active = winner.span if member.limited else None
+        statement = effect.describe({name: value.value for name, value in values.items()})
+        statement += f", from {active[0]:.4g} s to {active[1]:.4g} s only" if active else ""
+        evidence = winner.score if len(winner.effects) == 1 else wald(final, effect)
+        row = NamedEffect(effect.id, effect.site, effect.equation, values, evidence, statement, active, effect.kind)
+        found.append(row)
     return tuple(found)
-
-
-def _while(winner: Entry) -> str:
-    return f", from {winner.span[0]:.4g} s to {winner.span[1]:.4g} s only" if winner.span else ""
 
 
 def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, ...]:
@@ -185,12 +211,27 @@ def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> De
 def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
     """The law's site first, whatever effects of other sites could make up for."""
     where, when = (location[0].where, location[0].when) if location else ("all over the states that were visited", ())
-    statement = f"{law.r_squared:.0%} of what is missing {DESCRIBED[law.site]} is a law over {law.function_of}"
+    statement = f"{law.r_squared:.0%} of what is missing {SITES[law.site].words} is a law over {law.function_of}"
     others = (one for one in location if one.site != law.site)
     return (Location(law.site, law.r_squared, where, when, statement), *others)
 
 
-def _summary(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None) -> str:
+def _summary(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None, left: Explained) -> str:
+    """What was found in words; first what it leaves, where that is more than noise."""
+    said = _found_in_words(decision, effects, unknown)
+    if left.complete or not effects:
+        return said
+    most = max(left.times_noise, key=lambda name: left.times_noise[name])
+    many = "One effect explains" if len(effects) == 1 else f"{len(effects)} effects explain"
+    rest = (
+        f"what is left is {left.times_noise[most]:.3g} times the noise, most in {most.replace('_', ' ')}"
+        if left.times_noise[most] >= LEFT_IN_A_CHANNEL
+        else "what is left is small, but no noise"
+    )
+    return f"{many} {100.0 * left.share:.3g} % of the mismatch; {rest}, so more is missing. {said}"
+
+
+def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None) -> str:
     if decision.verdict == "consistent":
         return "The nominal model explains the recording down to its noise; nothing is missing."
     if decision.verdict == "parameters":

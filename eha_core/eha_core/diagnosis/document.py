@@ -19,6 +19,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
     plain: dict[str, Any] = _plain(
         {
             "schema": SCHEMA,
+            "provenance": diagnosis.provenance,
             "recording": {
                 "path": diagnosis.path,
                 "duration_s": diagnosis.duration,
@@ -30,7 +31,9 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             "verdict": diagnosis.verdict,
             "summary": diagnosis.summary,
             "location": _rows(diagnosis.location, ("site", "share", "where", "when", "statement")),
-            "parameters": _rows(diagnosis.parameters, ("name", "nominal", "fitted", "std", "unit", "changed", "note")),
+            "parameters": _rows(
+                diagnosis.parameters, ("name", "nominal", "fitted", "std", "unit", "changed", "note", "at_bound")
+            ),
             "effects": [_effect(one) for one in diagnosis.effects],
             "alternatives": _rows(diagnosis.alternatives, ("effects", "evidence_gap")),
             "unknown": _row(diagnosis.unknown, ("site", "function_of", "expression", "r_squared", "samples")),
@@ -40,6 +43,17 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             ),
             "rivals": [{"effects": effects, "score": score} for effects, score in diagnosis.rivals],
             "whiteness": diagnosis.whiteness,
+            "explained": {
+                **_rows([diagnosis.explained], ("share", "times_noise", "complete"))[0],
+                "left_over": _rows(diagnosis.explained.left_over, ("site", "share", "where", "when")),
+            },
+            "prediction": {
+                name: {
+                    "ahead": {f"{ahead:g}": rmse for ahead, rmse in one.ahead.items()},
+                    "free_running": one.free_running,
+                }
+                for name, one in diagnosis.prediction.items()
+            },
         }
     )
     return plain
@@ -59,7 +73,7 @@ def _row(item: Any, names: tuple[str, ...]) -> dict[str, Any] | None:
 
 
 def _effect(effect: NamedEffect) -> dict[str, Any]:
-    row = _rows([effect], ("id", "site", "equation", "evidence", "statement"))[0]
+    row = _rows([effect], ("id", "site", "kind", "equation", "evidence", "statement", "active"))[0]
     row["parameters"] = {name: _row(value, ("value", "std", "unit")) for name, value in effect.parameters.items()}
     return row
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
@@ -33,6 +34,16 @@ WORTH = 2e-4
 HOPE = 4.0
 
 
+class Ending(Enum):
+    """Why a fit ended."""
+
+    CONVERGED = "an iteration gained next to nothing"
+    NO_DESCENT = "no step along its derivatives led lower"
+    HOPELESS = "it could not come near enough to the best so far"
+    ITERATIONS = "it ran out of iterations"
+    DIVERGED = "the simulation ran away"
+
+
 @dataclass(frozen=True)
 class Fit:
     """A fitted model.
@@ -44,7 +55,7 @@ class Fit:
         objective: chi^2 of data, links and priors over the windows used; `data` of the data alone.
         count: samples used.
         residuals: measured less simulated over the noise, one array a channel (all windows).
-        converged: whether the last steps no longer helped; a fit that diverged says False.
+        ending: why it ended.
     """
 
     free: tuple[Free, ...]
@@ -56,8 +67,13 @@ class Fit:
     count: int
     residuals: tuple[Array, ...]
     covariance: Array
-    converged: bool
+    ending: Ending
     iterations: int
+
+    @property
+    def converged(self) -> bool:
+        """Whether more iterations would not have helped."""
+        return self.ending in (Ending.CONVERGED, Ending.NO_DESCENT)
 
     def deviation(self, name: str) -> float:
         """Standard deviation of a fitted parameter's value, from the curvature at the optimum.
@@ -92,14 +108,17 @@ def fit(
     steps = np.maximum(1e-3, resolution)
     rows, ends = simulate(shooting, values, free, q, states)
     objective = objective_of(problem, free, q, states, rows, ends)
-    damping, converged, done = 1e-6, False, 0
+    damping, ending, done = 1e-6, Ending.ITERATIONS, 0
     normal = np.eye(len(free) + STATE_SIZE * shooting.windows)
     for done in range(1, iterations + 1):
-        linear = linearise(problem, values, free, q, states, steps)
+        linear = linearise(problem, values, free, q, states, steps, (rows, ends))
         normal, gradient = normal_equations(problem, free, q, states, linear)
         found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), normal, gradient, damping)
+        if found is None and problem.slope_step > shooting.step_size:
+            problem = exact(problem)
+            continue
         if found is None:
-            converged = True
+            ending = Ending.NO_DESCENT
             break
         new, move, damping = found
         gain = objective - new.objective
@@ -109,11 +128,18 @@ def fit(
         spread = np.sqrt(1.0 / np.maximum(np.diag(normal)[: len(free)], 1e-12))
         steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
         if gain < max(SETTLED, WORTH * (objective - problem.count())):
-            converged = True
+            ending = Ending.CONVERGED
             break
         if done > 2 and objective - HOPE * gain > give_up_above:
+            ending = Ending.HOPELESS
             break
-    return _finish(problem, values, free, q, states, rows, objective, normal, converged, done)
+    ending = ending if np.isfinite(objective) else Ending.DIVERGED
+    return _finish(problem, values, free, q, states, rows, objective, normal, ending, done)
+
+
+def exact(problem: Problem) -> Problem:
+    """The same problem with derivatives taken at the simulation's own step."""
+    return replace(problem, slope_step=problem.shooting.step_size)
 
 
 def fit_in_stages(
@@ -214,7 +240,7 @@ def _finish(
     rows: Array,
     objective: float,
     normal: Array,
-    converged: bool,
+    ending: Ending,
     iterations: int,
 ) -> Fit:
     used = problem.used()
@@ -231,7 +257,7 @@ def _finish(
         problem.count(),
         left,
         covariance,
-        converged and np.isfinite(objective),
+        ending,
         iterations,
     )
 

@@ -15,23 +15,13 @@ from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Location
 from eha_core.diagnosis.shooting import Shooting
 from eha_core.diagnosis.tournament import Tournament
+from eha_core.effects import SITES
 
 SLICE = 0.25
 """s; resolution in time of "when"."""
 
 LOUD = 4.0
 """A slice of the record is named when its residual energy is this many times what noise leaves."""
-
-DESCRIBED = {
-    "command": "between command and coil",
-    "spool": "between coil current and spool",
-    "orifice": "in the valve's flow",
-    "supply": "in supply or return line",
-    "chamber": "in the continuity of the chambers",
-    "force": "in the force balance of the piston",
-    "sensor": "in what a sensor reports",
-    "schedule": "in a parameter that changes in time",
-}
 
 
 @dataclass(frozen=True)
@@ -50,7 +40,7 @@ def locate(
     shooting = calibration.shooting
     unexplained = max(nominal.objective - nominal.count, 1.0)
     gains = _site_gains(tournament, equations)
-    where, when = _where(shooting, nominal, facts), _when(shooting, nominal)
+    where, when = whereabouts(shooting, nominal, facts)
     found: list[Location] = []
     for site, gain in sorted(gains.items(), key=lambda item: -item[1])[:4]:
         share = float(np.clip(gain / unexplained, 0.0, 1.0))
@@ -60,9 +50,15 @@ def locate(
     return tuple(found)
 
 
+def whereabouts(shooting: Shooting, result: Fit, facts: Facts) -> tuple[str, tuple[tuple[float, float], ...]]:
+    """In which part of state space, and when, a fit leaves most."""
+    return _where(shooting, result, facts), _when(shooting, result)
+
+
 def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> str:
     """A location in words."""
-    return f"{share:.0%} of what the calibrated model leaves unexplained sits {DESCRIBED[site]}, {where}{_times(when)}"
+    place = f"{SITES[site].words}, {where}{_times(when)}"
+    return f"{share:.0%} of what the calibrated model leaves unexplained sits {place}"
 
 
 def _site_gains(tournament: Tournament, equations: Sequence[Balance]) -> dict[str, float]:

@@ -13,6 +13,14 @@ NORMAL_MEDIAN = 0.6744897501960817
 """The median of |z| for a standard normal z."""
 
 
+ROUNDING = 1e-9
+"""Share of a channel's size below which two values are one level, split by the rounding of double precision."""
+ON_GRID = 0.1
+"""Steps off a level up to which a value counts as on it; of values that are on no grid, one in five is."""
+SHARE_ON_GRID = 0.95
+"""Share of the values that must be on the grid; the others may be interpolated or outliers."""
+
+
 def estimate_noise(values: Array, order: int = 4, blocks: int = 20) -> float:
     """Standard deviation of white noise on a smooth signal.
 
@@ -34,11 +42,24 @@ def residual_noise(residual: Array, order: int = 2) -> float:
 
 
 def quantisation(values: Array) -> float:
-    """The step of a quantised channel, or 0 where its values are not on a grid."""
+    """The step of a quantised channel, or 0 where its values are not on a grid.
+
+    However many of a fine encoder's levels a recording has, they lie on a grid; the steps between the values of another
+    channel have no common measure.
+    """
     distinct = np.unique(values)
-    if len(distinct) < 3 or len(distinct) > 0.25 * len(values):
+    steps = np.diff(distinct)
+    steps = steps[steps > ROUNDING * float(np.max(np.abs(values)))] if len(steps) else steps
+    if len(steps) < 2:
         return 0.0
-    return float(np.min(np.diff(distinct)))
+    least = float(np.quantile(steps, 0.05))  # a few values between the levels are let pass
+    # One step bears the rounding of two values; the sum of many bears hardly more.
+    whole = np.round(steps / least)
+    usual = (whole > 0.0) & (np.abs(steps / least - whole) < ON_GRID)
+    step = float(np.sum(steps[usual])) / float(np.sum(whole[usual]))
+    levels = (values - np.median(values)) / step
+    off = np.abs(levels - np.round(levels))
+    return step if float(np.mean(off < ON_GRID)) > SHARE_ON_GRID else 0.0
 
 
 def find_outliers(values: Array, noise: float, limit: float = 8.0, width: int = 51) -> Flags:

@@ -11,13 +11,19 @@ import numpy as np
 from eha_core.diagnosis.noise import estimate_noise, find_outliers
 from eha_core.diagnosis.numbers import Array
 from eha_core.errors import RecordingError
-from eha_core.recording import Channel, Recording
+from eha_core.recording import CHANNEL_KINDS, Channel, Recording
 
 SHORTEST = 1.0
 """s; a shorter recording says too little about any parameter."""
 
 FITTED = ("position", "velocity", "pressure_a", "pressure_b")
 """Channels that a simulation is compared with, in the order of the plant's measured columns."""
+
+NOT_COMPARED = dict.fromkeys(CHANNEL_KINDS, "recorded, but compared with nothing") | {
+    "velocity": "checked for sign and scale against the position alone, as it may have been computed from it",
+    "force": "recorded, but the pressures tell it",
+}
+"""Why a recorded channel is neither driven by nor compared with, by its name."""
 
 RESOLVED = {"m": 1e-6, "m/s": 1e-3, "Pa": 3e3}
 """Better than any sensor and coarser than the search's simulation: a recording without noise is not held to more."""
@@ -95,6 +101,9 @@ def observe(recording: Recording) -> Observation:
         if name == "velocity":
             continue
         measured.append(_measured(channels[name], column, remarks))
+    driving = {"voltage": ("voltage_command",), "force": ("force",), "pressures": ("pressure_a", "pressure_b")}[drive]
+    used = {*driving, *(one.name for one in measured)}
+    not_examined += [f"{name}: {NOT_COMPARED[name]}" for name in channels if name not in used]
     position = measured[0]
     if np.ptp(position.values) < 4.0 * position.noise:
         raise RecordingError(

@@ -11,14 +11,14 @@ from typing import TypeVar
 Task = TypeVar("Task")
 Done = TypeVar("Done")
 
-_workers: ContextVar[Executor | None] = ContextVar("workers", default=None)
+_workers: ContextVar[tuple[Executor, int] | None] = ContextVar("workers", default=None)
 
 
 @contextmanager
 def side_by_side(jobs: int) -> Iterator[None]:
     """Within it, simulations that do not depend on each other run on `jobs` threads: the compiled step lets them."""
     with ThreadPoolExecutor(jobs) as pool:
-        token = _workers.set(pool)
+        token = _workers.set((pool, jobs))
         try:
             yield
         finally:
@@ -27,5 +27,11 @@ def side_by_side(jobs: int) -> Iterator[None]:
 
 def each(task: Callable[[Task], Done], over: Iterable[Task]) -> list[Done]:
     """The task done for each, on the threads there are."""
-    pool = _workers.get()
-    return list(map(task, over) if pool is None else pool.map(task, over))
+    workers = _workers.get()
+    return list(map(task, over) if workers is None else workers[0].map(task, over))
+
+
+def threads() -> int:
+    """How many threads there are."""
+    workers = _workers.get()
+    return 1 if workers is None else workers[1]

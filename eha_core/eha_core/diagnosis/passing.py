@@ -17,6 +17,7 @@ import numpy as np
 from eha_core.diagnosis.fit import Fit, fit, fit_in_stages, refit_states
 from eha_core.diagnosis.freedom import effect_freedom, span_freedom
 from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.parallel import each
 from eha_core.diagnosis.problem import Problem
@@ -53,14 +54,14 @@ def passing_effects(
     always = max([0.0, *(one.gain for one in promises if one.windows is None)])
     best = max((one for one in promises if one.windows is not None), key=lambda one: one.gain, default=None)
     if best is None or best.gain < least + 2.0 * log(problem.count()) or best.gain < OUTSTANDING * always:
-        return []
+        return {}
     assert best.windows is not None
     outside = _fitted_outside(problem, calibrated, best.windows)
     progress("looking when an effect acts")
     chosen = _one_each(screen_spells(problem, outside, beginnings))
     begun = [_of_fixed_span(problem, outside, promise) for promise in chosen]
     instants = _located(problem, min(begun, key=lambda one: one.objective))
-    found: Found = []
+    found: Found = {}
     reached = calibrated.objective
     for promise, beginning in zip(chosen, begun, strict=True):
         effect = promise.start.effect
@@ -69,9 +70,9 @@ def passing_effects(
         free = (*outside.free, *effect_freedom(effect, values), *span_freedom(instants.values, instants.bounds))
         result = fit(problem, values, free, instants.states, iterations=25, give_up_above=reached + OUT_OF_REACH)
         reached = min(reached, result.objective)
-        found.append(((effect,), result))
+        found[NOTHING.with_effects([effect], limited=True)] = result
     crossed = cross(problem, settle(problem, found, progress))
-    return [(effects, _sharpened(problem, result)) for effects, result in crossed]
+    return {hypothesis: _sharpened(problem, result) for hypothesis, result in crossed.items()}
 
 
 def _fitted_outside(problem: Problem, nominal: Fit, windows: tuple[int, int]) -> Fit:

@@ -15,9 +15,9 @@ from eha_core.diagnosis.hypotheses import candidates
 from eha_core.diagnosis.joint import join
 from eha_core.diagnosis.locate import locate
 from eha_core.diagnosis.observation import observe, reaching
-from eha_core.diagnosis.pairs import second_effects
 from eha_core.diagnosis.parallel import side_by_side
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.diagnosis.sets import with_sets
 from eha_core.diagnosis.tournament import compete, from_every_start
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
@@ -38,10 +38,10 @@ def examine(recording: Recording, nominal: Mapping[str, float], progress: Progre
     equations = least(alternatives)
     able = candidates(observation)
     tournament = compete(calibration.problem, calibration.fitted, able, facts, progress)
-    tournament = second_effects(calibration.problem, tournament, able, facts, progress)
+    calibration, tournament = with_sets(calibration, tournament, able, facts, progress)
     restarted = from_every_start(calibration.problem, tournament, progress)
     if restarted is not tournament:
-        tournament = second_effects(calibration.problem, restarted, able, facts, progress)
+        calibration, tournament = with_sets(calibration, restarted, able, facts, progress)
     recovery = recover(calibration.problem, tournament, facts, progress)
     decision = decide(calibration, nominal, tournament, recovery)
     location = locate(calibration, tournament.nominal.fit, facts, tournament, equations)

@@ -12,10 +12,12 @@ from functools import cached_property
 
 import numpy as np
 
+from eha_core.compiled import compiled
 from eha_core.diagnosis.freedom import Free
 from eha_core.diagnosis.numbers import Array, Flags, Integers
-from eha_core.diagnosis.parallel import each
+from eha_core.diagnosis.parallel import each, threads
 from eha_core.diagnosis.shooting import SLOPE_STEP, STATE_SIZE, Shooting, coarser
+from eha_core.plant.lane_rows import LANES, REGISTER
 
 LINK = np.array([3e-5, 3e-3, 3e4, 3e4])
 """How well a window's end meets the next one's start: m, m/s, Pa, Pa."""
@@ -23,6 +25,10 @@ LINK = np.array([3e-5, 3e-3, 3e4, 3e4])
 STATE_STEP = np.array([1e-6, 1e-4, 1e3, 1e3])
 STATE_TRUST = np.array([1.0, 10.0, 3e6, 3e6])
 """A weak prior on the starts, which matters only where a pressure was not measured."""
+
+
+Point = tuple[Mapping[str, float], Array]
+"""Every parameter of the plant, and the windows' states (windows, 4)."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +68,12 @@ class Problem:
         window = np.concatenate([one.window[flags] for one, flags in zip(self.shooting.samplings, keep, strict=True)])
         order = np.argsort(window, kind="stable")
         return order, window[order], keep
+
+    @cached_property
+    def places(self) -> list[Integers]:
+        """Where `flat` puts each sample in use, channel by channel."""
+        order, _, keep = self.order
+        return np.split(np.argsort(order, kind="stable"), np.cumsum([flags.sum() for flags in keep])[:-1])
 
     def flat(self, samples: Iterable[Array]) -> Array:
         """One value a sample of each channel, over the noise: the samples in use as one vector, sorted by window."""
@@ -132,43 +144,85 @@ def linearise(
     q: Array,
     states: Array,
     steps: Array | None = None,
+    simulated: tuple[Array, Array] | None = None,
 ) -> Linearised:
-    """Residuals and their derivatives by one-sided differences, `steps` of each coordinate (1e-3 unless given)."""
-    shooting, coarse = problem.shooting, problem.slopes
+    """Residuals and their derivatives by one-sided differences, `steps` of each coordinate (1e-3 unless given).
+
+    `simulated`: rows and ends of this very point, where they are known.
+    """
+    shooting = problem.shooting
     steps = np.maximum(1e-3, [one.resolution for one in free]) if steps is None else steps
-    rows, ends = simulate(shooting, values, free, q, states)
+    rows, ends = simulated or simulate(shooting, values, free, q, states)
     base = shooting.sample(rows)
-    coarse_rows, coarse_ends = simulate(coarse, values, free, q, states)
-
-    def by_parameter(place: int) -> tuple[Array, Array]:
-        moved, step = q.copy(), float(steps[place])
+    here = values_at(values, free, q)
+    moves, moved = [], []
+    for place, one in enumerate(free):
+        there, move = q.copy(), float(steps[place])
         # step inwards where a step outwards would meet the bound
-        if free[place].value(float(q[place]) + step) == free[place].value(float(q[place])):
-            step = -step
-        moved[place] += step
-        return differences(*simulate(coarse, values, free, moved, states), step)
-
-    def by_state(place: int) -> tuple[Array, Array]:
-        moved, step = states.copy(), float(STATE_STEP[place])
-        moved[:, place] += step
-        return differences(*simulate(coarse, values, free, q, moved), step)
-
-    def differences(new_rows: Array, new_ends: Array, step: float) -> tuple[Array, Array]:
-        return problem.flat(coarse.sample((new_rows - coarse_rows) / step)), (new_ends - coarse_ends) / step
-
-    columns = each(by_parameter, range(len(free)))
-    state_columns = each(by_state, range(shooting.free_states))
-    window = problem.order[1]
+        if one.value(float(q[place]) + move) == one.value(float(q[place])):
+            move = -move
+        there[place] += move
+        moves.append(move)
+        moved.append((values_at(values, free, there), states))
+    for place in range(shooting.free_states):
+        shifted = states.copy()
+        shifted[:, place] += STATE_STEP[place]
+        moves.append(float(STATE_STEP[place]))
+        moved.append((here, shifted))
+    columns, ends_by = changes(problem, (here, states), moved, moves)
     return Linearised(
         base,
         problem.flat(one.values - at for one, at in zip(shooting.samplings, base, strict=True)),
-        np.stack([column for column, _ in columns], axis=1) if columns else np.zeros((len(window), 0)),
-        np.stack([column for column, _ in state_columns], axis=1),
-        window,
+        np.ascontiguousarray(columns[:, : len(free)]),
+        np.ascontiguousarray(columns[:, len(free) :]),
+        problem.order[1],
         ends,
-        np.stack([end for _, end in columns], axis=2) if columns else np.zeros((*ends.shape, 0)),
-        np.stack([end for _, end in state_columns], axis=2),
+        ends_by[:, :, : len(free)],
+        ends_by[:, :, len(free) :],
     )
+
+
+def changes(
+    problem: Problem, base: Point, moved: Sequence[Point], moves: Sequence[float] | None = None
+) -> tuple[Array, Array]:
+    """How the channels change from `base` to each of `moved`, at the step of the derivatives; over `moves`, if given.
+
+    The samples in use over the noise (samples, moved), and the windows' end states (windows, 4, moved). Each block of
+    the lock-step has `base` in its first lane.
+    """
+    coarse = problem.slopes
+    blocks = max(1, -(-len(moved) // (LANES - 1)), min(threads(), len(moved) // REGISTER))
+    room = max(1, -(-len(moved) // blocks))
+    over = np.ones(len(moved)) if moves is None else np.asarray(moves)
+    columns = np.empty((problem.count(), len(moved)))
+    ends_by = np.empty((coarse.windows, STATE_SIZE, len(moved)))
+
+    def fill(place: int) -> None:
+        block = slice(place, place + room)
+        rows, ends = coarse.simulate_many([base, *moved[block]])
+        ends_by[:, :, block] = (ends[:, :, 1:] - ends[:, :, :1]) / over[block]
+        for one, used, to in zip(coarse.samplings, problem.order[2], problem.places, strict=True):
+            _sample_changes(
+                rows, over[block], one.row[used], one.late[used], one.column, one.noise, to, place, columns
+            )
+
+    each(fill, range(0, len(moved), room))
+    return columns, ends_by
+
+
+@compiled
+def _sample_changes(
+    rows: Array, over: Array, row: Integers, late: Array, column: int, noise: float, to: Integers, place: int,
+    columns: Array,
+) -> None:  # fmt: skip
+    """Sample how a block's sets depart from its first: sample k of a channel fills row to[k] of `columns`, from `place`
+    on."""
+    for k in range(len(row)):
+        here, after = rows[row[k], column], rows[row[k] + 1, column]
+        for lane in range(len(over)):
+            change = (1.0 - late[k]) * ((here[lane + 1] - here[0]) / over[lane])
+            change += late[k] * ((after[lane + 1] - after[0]) / over[lane])
+            columns[to[k], place + lane] = change / noise
 
 
 def normal_equations(

@@ -14,6 +14,7 @@ import numpy as np
 from eha_core.diagnosis.fit import Fit, fit, fit_in_stages
 from eha_core.diagnosis.freedom import LATE, Free, effect_freedom
 from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
 from eha_core.effects import Effect
@@ -53,7 +54,8 @@ NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 SHARED_NAMES = NOMINAL_NAMES | {row.name for row in ACTING}
 
 Progress = Callable[[str], None]
-Found = list[tuple[tuple[Effect, ...], Fit]]
+Found = dict[Hypothesis, Fit]
+"""The best fit so far of each hypothesis."""
 
 
 def with_dynamics_as_given(problem: Problem, calibrated: Fit) -> Fit | None:
@@ -77,14 +79,15 @@ def _set_free(held: Fit, free: tuple[Free, ...]) -> Fit:
     return replace(held, free=free, q=np.array([one.coordinate(held.values[one.name]) for one in free]))
 
 
-def keep_better(found: Found, effects: tuple[Effect, ...], result: Fit) -> None:
+def keep_better(found: Found, hypothesis: Hypothesis, result: Fit) -> None:
     """Add a fitted hypothesis, or let it take the place of a worse fit of the same one."""
-    for place, (there, other) in enumerate(found):
-        if there == effects:
-            if result.objective < other.objective:
-                found[place] = (effects, result)
-            return
-    found.append((effects, result))
+    if hypothesis not in found or result.objective < found[hypothesis].objective:
+        found[hypothesis] = result
+
+
+def best_first(found: Found) -> list[Hypothesis]:
+    """The hypotheses in the order of their objectives, the lowest first."""
+    return sorted(found, key=lambda one: found[one].objective)
 
 
 @dataclass(frozen=True)
@@ -151,15 +154,14 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
 
     A search from a calibration that is far off can leave the nominal parameters in a valley of their own.
     """
-    order = sorted(range(len(found)), key=lambda place: found[place][1].objective)
     exact = replace(problem, slope_step=problem.shooting.step_size)
     best = np.inf
-    settled = list(found)
-    for place in order[:SETTLED_LEADERS]:
-        effects, result = found[place]
+    settled = dict(found)
+    for hypothesis in best_first(found)[:SETTLED_LEADERS]:
+        result = found[hypothesis]
         if result.objective > best + 0.5 * max(best - problem.count(), 0.0) + SETTLE_REACH:
             continue
-        progress(f"settling {' and '.join(effect.id for effect in effects)}")
+        progress(f"settling {' and '.join(hypothesis.ids)}")
         result = fit(exact, result.values, result.free, result.states, iterations=30)
         if result.data > NOT_EXPLAINED * result.count:
             untouched = {one.name: one.reference for one in result.free if one.name in NOMINAL_NAMES}
@@ -173,7 +175,7 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
         result = _other_instants(problem, exact, result)
         best = min(best, result.objective)
-        settled[place] = (effects, result)
+        settled[hypothesis] = result
     return settled
 
 
@@ -185,18 +187,17 @@ def cross(problem: Problem, found: Found) -> Found:
     """
     if len(found) < 2:
         return found
-    order = sorted(range(len(found)), key=lambda place: found[place][1].objective)
-    leading, best = found[order[0]]
-    crossed = list(found)
-    for place in order[1 : CROSSED + 1]:
-        effects, result = found[place]
+    leading, *others = best_first(found)
+    best = found[leading]
+    crossed = dict(found)
+    for hypothesis in others[:CROSSED]:
+        result = found[hypothesis]
         shared = {one.name: best.values[one.name] for one in result.free if one.name in SHARED_NAMES}
-        kindred = _of_the_same_kind(effects, leading, best.values)
+        kindred = _of_the_same_kind(hypothesis.effects, leading.effects, best.values)
         for own in (kindred, {}) if kindred else ({},):
             values, worse = {**result.values, **shared, **own}, best.objective + OUT_OF_REACH
             again = fit(problem, values, result.free, best.states, iterations=15, give_up_above=worse)
-            if again.objective < crossed[place][1].objective:
-                crossed[place] = (effects, again)
+            keep_better(crossed, hypothesis, again)
     return crossed
 
 

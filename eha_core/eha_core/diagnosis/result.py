@@ -24,7 +24,8 @@ class Location:
 
 @dataclass(frozen=True)
 class FittedParameter:
-    """A nominal parameter after calibration, with its standard deviation; `changed` if it left its nominal value."""
+    """A nominal parameter after calibration, with its standard deviation; `changed` if it left its nominal value,
+    `at_bound` if the fit would have taken it further than it is believed to go."""
 
     name: str
     nominal: float
@@ -33,6 +34,7 @@ class FittedParameter:
     unit: str
     changed: bool
     note: str = ""
+    at_bound: bool = False
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,12 @@ class FittedValue:
 
 @dataclass(frozen=True)
 class NamedEffect:
-    """A physical effect that the recording shows. `evidence` is its gain in chi^2 less what its freedom costs."""
+    """A physical effect that the recording shows.
+
+    `evidence` is what it gains in chi^2, less what its parameters cost; of one of several effects, what the fit would
+    lose without it. `active` is the interval in which it acts [s], None where it always does; `kind` the kind of law
+    that it is a form of, if the catalogue has several.
+    """
 
     id: str
     site: str
@@ -54,6 +61,35 @@ class NamedEffect:
     parameters: Mapping[str, FittedValue]
     evidence: float
     statement: str
+    active: tuple[float, float] | None = None
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class Explained:
+    """How much the fitted model explains, and what is left.
+
+    `share` is the part of the recalibrated nominal model's squared error beyond noise that it takes away, `times_noise`
+    the RMS of what is left in each channel over that channel's noise. `complete` says that what is left has the size of
+    noise and is white; where it is not, `left_over` says where and when it sits.
+    """
+
+    share: float
+    times_noise: Mapping[str, float]
+    complete: bool
+    left_over: tuple[Location, ...] = ()
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """RMSE [the channel's unit] of the fitted model where no state was fitted.
+
+    `ahead`: by the seconds that it runs on from states that were measured; `free_running`: over the whole record from
+    its first state.
+    """
+
+    ahead: Mapping[float, float]
+    free_running: float
 
 
 @dataclass(frozen=True)
@@ -129,7 +165,8 @@ class Diagnosis:
 
     `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
     calibrated model, less the cost of its freedom. `whiteness` is each channel's largest autocorrelation in units of
-    the deviation that white noise has. `start_stamp` is the instant [ns] of time zero.
+    the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
+    what, when, as text.
     """
 
     path: str
@@ -153,6 +190,9 @@ class Diagnosis:
     fitted_values: Mapping[str, float]
     pictures: Pictures
     start_stamp: int = 0
+    explained: Explained = field(default_factory=lambda: Explained(1.0, {}, True))
+    prediction: Mapping[str, Prediction] = field(default_factory=dict)
+    provenance: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def bent(self) -> bool:

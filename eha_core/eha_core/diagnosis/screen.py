@@ -16,7 +16,7 @@ from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.parallel import each
-from eha_core.diagnosis.problem import LINK, Linearised, Problem, linearise, normal_equations
+from eha_core.diagnosis.problem import LINK, Linearised, Problem, changes, linearise, normal_equations
 from eha_core.diagnosis.shooting import STATE_SIZE
 
 
@@ -42,19 +42,18 @@ def screen_spells(problem: Problem, calibrated: Fit, starts: Sequence[Start]) ->
     normal, gradient = normal_equations(problem, calibrated.free, calibrated.q, calibrated.states, linear)
     factor = cho_factor(normal + 1e-9 * np.diag(np.diag(normal)))
     towards = np.asarray(cho_solve(factor, gradient))
-    coarse = problem.slopes
-    unchanged = coarse.simulate(calibrated.values, calibrated.states)
+    at = calibrated.values, calibrated.states
+    columns, shifts = changes(problem, at, [({**at[0], **start.values}, at[1]) for start in starts])
 
-    def promises(start: Start) -> list[Promise]:
-        rows, ends = coarse.simulate({**calibrated.values, **start.values}, calibrated.states)
-        change = problem.flat(coarse.sample(rows - unchanged[0]))
+    def promises(place: int) -> list[Promise]:
+        start, change = starts[place], columns[:, place]
         if not np.all(np.isfinite(change)):
             return [Promise(start, 0.0, 0.0)]
-        energy, along, overlap = _by_window(problem, calibrated, linear, change, ends - unchanged[1])
+        energy, along, overlap = _by_window(problem, calibrated, linear, change, shifts[:, :, place])
         solved = np.asarray(cho_solve(factor, overlap))
         return _best_spells(start, energy, along - towards @ overlap, overlap.T @ solved)
 
-    found = [one for several in each(promises, starts) for one in several]
+    found = [one for several in each(promises, range(len(starts))) for one in several]
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
@@ -134,10 +133,14 @@ def _reversible(start: Start) -> bool:
 
 def scaled(promise: Promise) -> dict[str, float]:
     """The start's values with the sizes that switch the effect scaled as promised, within a decade and the bounds."""
-    factor = float(np.sign(promise.factor) * np.clip(abs(promise.factor), 0.1, 10.0))
+    return sized(promise.start, float(np.sign(promise.factor) * np.clip(abs(promise.factor), 0.1, 10.0)))
+
+
+def sized(start: Start, factor: float) -> dict[str, float]:
+    """The start's values with the sizes that switch the effect at so many times what they are, within their bounds."""
     values: dict[str, float] = {}
-    for name, row in zip(promise.start.effect.parameter_names(), promise.start.effect.parameters, strict=True):
-        value = promise.start.values[name]
+    for name, row in zip(start.effect.parameter_names(), start.effect.parameters, strict=True):
+        value = start.values[name]
         if row.switches:
             value = min(max(row.nominal + factor * (value - row.nominal), row.lower), row.upper)
         values[name] = value

@@ -17,8 +17,10 @@ from eha_core.diagnosis.numbers import Array, Integers
 from eha_core.diagnosis.observation import Measured, Observation
 from eha_core.effects import effects
 from eha_core.plant.composite import compiled_step
+from eha_core.plant.lockstep import LockStep
 from eha_core.plant.simulator import LONGEST_DELAY, pack
 from eha_core.plant.spells import span, spells
+from eha_core.plant.state import AT, COLUMNS, PISTON, SEEN, Places
 
 STATE_SIZE = 4
 """Free at a window's start: position, velocity, pressure A, pressure B."""
@@ -93,28 +95,28 @@ class Shooting:
         }
         acting, none = span(values, self.step_size), (False,) * len(effects())
         steps = int(self.edges[-1])
-        rows = np.empty((steps // self.every, 22 if full else 4))
+        rows = np.empty((steps // self.every, len(COLUMNS if full else SEEN)))
         ends = np.empty((self.windows, STATE_SIZE))
         first = self.inputs[0, 0]
         current = min(
             max(first / values["coil_resistance"], -values["saturation_current"]), values["saturation_current"]
         )
-        state = np.array(
-            [0.0, current, values["supply_pressure"], values["return_pressure"], current, current, 0, 0, 0, 0, 0]
-        )
+        state = np.zeros(len(Places._fields))
+        state[[AT.target, AT.current, AT.spool_position]] = current
+        state[AT.supply_pressure], state[AT.return_pressure] = values["supply_pressure"], values["return_pressure"]
         history = np.full(int(LONGEST_DELAY / self.step_size) + 3, first)
         history[-1] = 0
         memory, sensor_slots = self._memory(current, states[0])
         for window in range(self.windows):
             begin, end = int(self.edges[window]), int(self.edges[window + 1])
             vector, active, valve = packed[float(self.leakage[window])]
-            state[0] = begin * self.step_size
-            state[7:11] = states[window]
+            state[AT.time] = begin * self.step_size
+            state[PISTON] = states[window]
             memory[sensor_slots] = self.initial_states[window, 0]
             inputs, out = self.inputs[:, begin:end], rows[begin // self.every : end // self.every]
             for spell in spells(begin, end - begin, self.every, acting):
                 if spell.acting and begin + spell.steps.start == acting[0] > 0:
-                    memory, _ = self._memory(state[4], state[7:9])
+                    memory, _ = self._memory(state[AT.current], state[PISTON])
                 effects_on, piece = active if spell.acting else none, inputs[:, spell.steps]
                 if self.drive == "voltage":
                     step.advance(
@@ -126,7 +128,29 @@ class Shooting:
                         state, memory, vector, effects_on, piece[0], piece[1], self.step_size, spell.every,
                         out[spell.rows],
                     )  # fmt: skip
-            ends[window] = state[7:11]
+            ends[window] = state[PISTON]
+        return rows, ends
+
+    def simulate_many(self, sets: Sequence[tuple[Mapping[str, float], Array]]) -> tuple[Array, Array]:
+        """`simulate` for up to LANES pairs of values and states, in lock-step and to the same digits.
+
+        Rows (steps / every, 4, lanes), the first lanes those of the sets, and the windows' end states (windows, 4,
+        sets).
+        """
+        first = self.inputs[0, 0]
+        lanes = LockStep([values for values, _ in sets], self.step_size, first)
+        starts = np.stack([states for _, states in sets])
+        rows = np.empty((int(self.edges[-1]) // self.every, STATE_SIZE, lanes.lanes))
+        ends = np.empty((self.windows, STATE_SIZE, len(sets)))
+        lanes.place(starts[:, 0])
+        lanes.start_memory()
+        for window in range(self.windows):
+            begin, end = int(self.edges[window]), int(self.edges[window + 1])
+            lanes.add_leakage(float(self.leakage[window]))
+            lanes.place(starts[:, window])
+            lanes.start_sensors(float(self.initial_states[window, 0]))
+            lanes.advance(begin, self.inputs[:, begin:end], self.every, rows[begin // self.every : end // self.every])
+            ends[window] = lanes.states()[: len(sets)].T
         return rows, ends
 
     def _memory(self, current: float, start: Array) -> tuple[Array, Integers]:
@@ -143,10 +167,11 @@ class Shooting:
         return np.array(memory or [0.0]), np.array(sensors, dtype=np.int64)
 
     def sample(self, rows: Array) -> list[Array]:
-        """The simulated value at each sample of each channel."""
+        """The simulated value at each sample of each channel: (samples,), or (samples, sets) of rows of several."""
+        late = [one.late.reshape(-1, *[1] * (rows.ndim - 2)) for one in self.samplings]
         return [
-            (1.0 - one.late) * rows[one.row, one.column] + one.late * rows[one.row + 1, one.column]
-            for one in self.samplings
+            (1.0 - share) * rows[one.row, one.column] + share * rows[one.row + 1, one.column]
+            for one, share in zip(self.samplings, late, strict=True)
         ]
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from math import log
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypotheses import starts
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.passing import passing_effects
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.refine import (
@@ -54,33 +55,39 @@ class Entry:
     """A hypothesis (no effect: the nominal model) with its fit. `score` is against the nominal model, in chi^2, its
     `cost` for parameters paid."""
 
-    effects: tuple[Effect, ...]
+    hypothesis: Hypothesis
     fit: Fit
     score: float
     cost: float = 0.0
 
     @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects, by id."""
+        return self.hypothesis.effects
+
+    @property
     def ids(self) -> tuple[str, ...]:
-        """Ids of the effects, in the catalogue's order."""
-        return tuple(effect.id for effect in self.effects)
+        """Ids of the effects, sorted."""
+        return self.hypothesis.ids
 
     @property
     def span(self) -> tuple[float, float] | None:
         """From when until when the effects act [s], where that was fitted; None where they always do."""
-        if not any(one.name == "effects_from" for one in self.fit.free):
+        if not self.hypothesis.limited:
             return None
         return self.fit.values["effects_from"], self.fit.values["effects_until"]
 
 
 @dataclass(frozen=True)
 class Tournament:
-    """All that was refitted, the best first, the nominal model among them with score 0; and the screening's
-    promises."""
+    """All that was refitted, the best first, the nominal model among them with score 0; the screening's promises; and
+    what one more effect beside the best is predicted to gain, the most of each site."""
 
     nominal: Entry
     entries: tuple[Entry, ...]
     promises: tuple[Promise, ...]
     scatter: float
+    left_over: Mapping[str, float] = field(default_factory=dict)
 
 
 def compete(
@@ -92,8 +99,8 @@ def compete(
     screened = screen_spells(problem, calibrated, beginnings)
     promises = tuple(one for one in screened if one.windows is None)
     passing = passing_effects(problem, calibrated, beginnings, screened, ENOUGH, progress)
-    found: Found = []
-    best = min([calibrated.objective, *(result.objective for _, result in passing)])
+    found: Found = {}
+    best = min([calibrated.objective, *(result.objective for result in passing.values())])
     nearly_all = problem.count() + OVER * (calibrated.objective - problem.count())
     # a share of what a hopeless calibration leaves is still far from noise
     enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_OFF * problem.count()))
@@ -103,9 +110,11 @@ def compete(
             continue
         progress(f"refitting with {effect.id}")
         result = try_effect(problem, attempt, best)
-        keep_better(found, (effect,), result)
+        keep_better(found, NOTHING.with_effects([effect]), result)
         best = min(best, result.objective)
-    return _ranked(problem, calibrated, [*passing, *cross(problem, settle(problem, found, progress))], promises)
+    if best < FAR_OFF * problem.count() or passing:  # single effects that are far off are not worth their last digits
+        found = cross(problem, settle(problem, found, progress))
+    return _ranked(problem, calibrated, {**passing, **found}, promises)
 
 
 def from_every_start(problem: Problem, tournament: Tournament, progress: Progress = lambda _: None) -> Tournament:
@@ -118,13 +127,13 @@ def from_every_start(problem: Problem, tournament: Tournament, progress: Progres
     best = min([nominal, *(entry.fit for entry in tournament.entries)], key=lambda one: one.objective)
     if best.data < FAR_OFF * best.count:
         return tournament
-    found: Found = [(entry.effects, entry.fit) for entry in tournament.entries]
+    found: Found = {entry.hypothesis: entry.fit for entry in tournament.entries}
     lowest = best.objective
     for promise in tournament.promises:
         effect = promise.start.effect
         progress(f"refitting with {effect.id} from every start")
         result = try_effect(problem, Attempt(nominal, promise, afresh=True), lowest)
-        keep_better(found, (effect,), result)
+        keep_better(found, NOTHING.with_effects([effect]), result)
         lowest = min(lowest, result.objective)
     if lowest > best.objective - ENOUGH:
         return tournament
@@ -132,9 +141,9 @@ def from_every_start(problem: Problem, tournament: Tournament, progress: Progres
 
 
 def _ranked(problem: Problem, calibrated: Fit, found: Found, promises: tuple[Promise, ...]) -> Tournament:
-    nominal = back_fit(problem, calibrated, [result for _, result in found])
+    nominal = back_fit(problem, calibrated, list(found.values()))
     entries = rank(problem, nominal, found)
-    return Tournament(Entry((), nominal, 0.0), entries, promises, scatter(nominal, entries))
+    return Tournament(Entry(NOTHING, nominal, 0.0), entries, promises, scatter(nominal, entries))
 
 
 def scatter(nominal: Fit, entries: Sequence[Entry]) -> float:
@@ -148,15 +157,15 @@ def parameter_cost(count: int, left_over: float) -> float:
     return log(count) + DEAR * count * max(0.0, 1.0 - ADEQUATE / left_over)
 
 
-def rank(problem: Problem, nominal: Fit, found: Sequence[tuple[tuple[Effect, ...], Fit]]) -> tuple[Entry, ...]:
+def rank(problem: Problem, nominal: Fit, found: Found) -> tuple[Entry, ...]:
     """Scores: the gain over the nominal model in units of the residual's variance, less the cost of its parameters."""
-    best = min([nominal, *(result for _, result in found)], key=lambda one: one.objective)
+    best = min([nominal, *found.values()], key=lambda one: one.objective)
     variance = max(1.0, best.data / best.count)
     entries = []
-    for effects, result in found:
+    for hypothesis, result in found.items():
         cost = (len(result.free) - len(nominal.free)) * parameter_cost(problem.count(), variance)
         gain = (nominal.objective - result.objective) / variance
-        entries.append(Entry(effects, result, gain - cost, cost))
+        entries.append(Entry(hypothesis, result, gain - cost, cost))
     return tuple(sorted(entries, key=lambda entry: -entry.score))
 
 

@@ -10,7 +10,9 @@ import numpy as np
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import Calibration, has_changed
+from eha_core.diagnosis.criteria import COHERENT
 from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.noise import NORMAL_MEDIAN
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.refine import FAR_OFF
@@ -38,10 +40,7 @@ class Decision:
 
 
 UNFITTED = 1.3
-"""Chi^2 a sample above which a model is held to leave physics over ..."""
-
-COHERENT = 1.5
-"""... if its residual, smoothed, is so many times what white noise would leave: an outlier or two is no physics ..."""
+"""Chi^2 a sample above which a model is held to leave physics over, if its residual is coherent ..."""
 
 PARTLY = 0.2
 """... and more than this share of what the nominal equations leave over: a name must explain most of what is there."""
@@ -89,7 +88,9 @@ def _unnamed(calibration: Calibration, tournament: Tournament, recovery: Recover
     """Something is missing that no name fits: with the recovered curve, if one explains anything."""
     entry = tournament.nominal
     if recovery is not None and recovery.score > ENOUGH:
-        entry = Entry((recovery.effect,), recovery.fit, recovery.score)
+        law = (recovery.effect.id, recovery.variable)
+        curve = Hypothesis((Member(recovery.effect.id, effect=recovery.effect),), law)
+        entry = Entry(curve, recovery.fit, recovery.score)
     judged = judge(calibration.shooting, tournament.nominal.fit)
     after = judge(calibration.shooting, entry.fit) if entry.effects else judged
     return Decision("unknown_physics", entry, (), judged, after)

@@ -1,0 +1,50 @@
+"""Every threshold that decides which effects are named: its meaning and where it comes from.
+
+What a hypothesis gains is told in chi^2, the squared residual in units of the noise's variance. `tests/diagnosis/
+test_criteria.py` fails when one of them moves.
+"""
+
+from __future__ import annotations
+
+FAR_FROM_NOISE = 5.0
+"""Chi^2 a sample beyond which a fit's parameter values mean little, and its residual says little of the noise. Assumed;
+a residual of twice the noise's size beside the noise."""
+
+NEAR_NOISE = 1.03
+"""Chi^2 a sample below which no member of a set is put up for exchange. Tuned on development cases (seed 9001)."""
+
+MOST_EFFECTS = 8
+"""Members that a set may have: more than a rig of every kind of wear has at once (assumed)."""
+
+CHANCE = 25.0
+"""Chi^2 that the best of many hypotheses may gain by chance. Of a thousand hypotheses of one parameter the best
+gains 2 ln 1000 = 14 in the mean; the rest is for parameters that come with it."""
+
+OF_SAMPLES = 0.001
+OF_SAMPLES_BESIDE_A_FORM = 0.004
+"""Chi^2 a sample that another step of integration leaves, and the timing of a break-away beside a law that the
+literature writes in several forms. Measured on development cases of the exam (seeds up to 2027)."""
+
+OF_ITS_FORM = 6e-4
+"""Share of what a law of several forms explains that it may leave over for its form. Measured as above."""
+
+CONVINCING = 0.4
+"""A member must be worth this share of what the set leaves without it. Of false members it was 0.42 of what is left
+with them at most, of true ones 19 and more but for one of 0.74 (nine rigs of four to six effects)."""
+
+WORTH_ADDING = 0.1
+"""Share of what is left over that an effect must explain to be added: the first of several does, and it ends a
+search that only bends what is there (assumed)."""
+
+
+LEFT_IN_A_CHANNEL = 1.2
+"""RMS of what is left in a channel, over its noise, from which an explanation is not complete. Estimates of the noise
+are good to a few per cent; at 1.5 half of what is left would be no noise (assumed)."""
+
+COHERENT = 1.5
+"""The same of a residual averaged over blocks: outliers are not coherent, physics is (assumed)."""
+
+
+def chance_gain(samples: int, times_noise: float) -> float:
+    """Chi^2 that one more effect must gain to be looked at, where the model leaves `times_noise` chi^2 a sample."""
+    return (CHANCE + OF_SAMPLES * samples) * max(1.0, times_noise)

@@ -1,0 +1,64 @@
+"""Stage 5, what is left: how much the fitted model explains, where the rest sits, and how far it predicts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eha_core.diagnosis.criteria import COHERENT, LEFT_IN_A_CHANNEL
+from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.fit import Fit, with_noise
+from eha_core.diagnosis.locate import whereabouts
+from eha_core.diagnosis.result import Explained, Location, Prediction
+from eha_core.diagnosis.shooting import cut
+from eha_core.diagnosis.verdict import coherence
+
+AHEAD = (0.25, 1.0)
+"""s; how far the model is run on from measured states."""
+
+
+def explained(evidence: Evidence, final: Fit) -> Explained:
+    """What the final fit takes away of the recalibrated nominal model's error, and what is left."""
+    names = evidence.calibration.shooting.names
+    left = {name: float(np.sqrt(np.mean(one**2))) for name, one in zip(names, final.residuals, strict=True)}
+    white = all(coherence(residual) < COHERENT for residual in final.residuals)
+    complete = max(left.values()) < LEFT_IN_A_CHANNEL and white
+    before = evidence.tournament.nominal.fit
+    missing = max(before.data - before.count, 0.0)
+    # the same model in the final fit's noise: both are compared as shares of what was there
+    rest = max(evidence.decision.winner.fit.data - before.count, 0.0)
+    share = 1.0 - rest / missing if missing > 0.0 else 1.0
+    return Explained(max(share, 0.0), left, complete, () if complete else _left_over(evidence))
+
+
+def _left_over(evidence: Evidence) -> tuple[Location, ...]:
+    """Where and when the rest sits; at the site at which one more effect would explain most of it, as far as a score
+    test tells."""
+    winner = evidence.decision.winner
+    where, when = whereabouts(evidence.calibration.shooting, winner.fit, evidence.facts)
+    sites = evidence.tournament.left_over
+    total = sum(sites.values())
+    ranked = sorted(sites.items(), key=lambda item: -item[1])[:3]
+    return tuple(Location(site, gain / total, where, when, "") for site, gain in ranked if gain > 0.05 * total)
+
+
+def predictions(evidence: Evidence, final: Fit) -> Mapping[str, Prediction]:
+    """How far each channel is predicted from measured states alone, and over the whole record."""
+    shooting, observation = evidence.calibration.shooting, evidence.observation
+    names = shooting.names
+    ahead = {seconds: _errors(evidence, final, seconds) for seconds in AHEAD if seconds < observation.duration}
+    running = _errors(evidence, final, 2.0 * observation.duration)
+    return {
+        name: Prediction({seconds: errors[place] for seconds, errors in ahead.items()}, running[place])
+        for place, name in enumerate(names)
+    }
+
+
+def _errors(evidence: Evidence, final: Fit, seconds: float) -> list[float]:
+    """RMSE of every channel, restarted from the measured states every so many seconds."""
+    shooting = cut(evidence.observation, final.values, evidence.calibration.shooting.step_size, seconds)
+    shooting = with_noise(shooting, [1.0] * len(shooting.samplings))
+    rows, _ = shooting.simulate(final.values, shooting.initial_states)
+    pairs = zip(shooting.samplings, shooting.sample(rows), strict=True)
+    return [float(np.sqrt(np.mean((one.values - model) ** 2))) for one, model in pairs]

@@ -1,0 +1,78 @@
+"""A hypothesis: the set of effects that a model holds beyond the nominal equations, and at most one recovered law.
+
+It is a value, and the same hypothesis wherever it comes from: fits of it replace each other, scores of it add up over
+recordings, and nothing else tells two hypotheses apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from eha_core.effects import Effect
+
+LIMITED = "effects_from", "effects_until"
+"""The parameters that say from when until when time-limited effects act."""
+
+
+@dataclass(frozen=True, order=True)
+class Member:
+    """One effect of a hypothesis, by its id; `limited` where it acts in an interval only, which is then fitted."""
+
+    id: str
+    limited: bool = False
+    effect: Effect = field(compare=False, kw_only=True)
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A set of effects, each acting always or in an interval, and the (effect id, variable) of a recovered law."""
+
+    members: tuple[Member, ...] = ()
+    law: tuple[str, str] | None = None
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects, by id."""
+        return tuple(member.effect for member in self.members)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The effects' ids, sorted."""
+        return tuple(member.id for member in self.members)
+
+    @property
+    def limited(self) -> bool:
+        """Whether its effects act in an interval only."""
+        return any(member.limited for member in self.members)
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        """The kinds of law that it holds a form of."""
+        return frozenset(effect.kind for effect in self.effects if effect.kind)
+
+    def admits(self, effect: Effect) -> bool:
+        """Whether an effect can be added: not there yet, and no other form of a law that is."""
+        return effect.id not in self.ids and effect.kind not in self.kinds
+
+    def with_effects(self, effects: Iterable[Effect], limited: bool = False) -> Hypothesis:
+        """The set with more effects in it."""
+        more = (Member(effect.id, limited, effect=effect) for effect in effects)
+        return Hypothesis(tuple(sorted({*self.members, *more})), self.law)
+
+    def without(self, member: Member) -> Hypothesis:
+        """The set without one of its members."""
+        return Hypothesis(tuple(one for one in self.members if one != member), self.law)
+
+    def holds(self, other: Hypothesis) -> bool:
+        """Whether it says all that another says, or more."""
+        return set(other.members) <= set(self.members) and other.law in (None, self.law)
+
+
+NOTHING = Hypothesis()
+"""The nominal equations alone."""
+
+
+def neutral(effect: Effect) -> Mapping[str, float]:
+    """The values (full names) at which an effect is off."""
+    return {name: row.nominal for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}

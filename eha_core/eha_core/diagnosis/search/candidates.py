@@ -1,0 +1,134 @@
+"""What a search has fitted so far: the best fit of each hypothesis."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.fit import Fit, fit, fit_in_stages, with_noise
+from eha_core.diagnosis.freedom import Free, effect_freedom
+from eha_core.diagnosis.hypothesis import Hypothesis, neutral
+from eha_core.diagnosis.noise import residual_noise
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.observation import RESOLVED
+from eha_core.diagnosis.problem import Problem
+from eha_core.diagnosis.shooting import Shooting
+from eha_core.effects import Effect
+
+Progress = Callable[[str], None]
+
+SAME_NOISE = 0.02
+"""Share by which a channel's noise may seem to change before everything is weighed anew."""
+
+
+@dataclass(frozen=True)
+class Guess:
+    """Where a fit of a hypothesis begins: every value of the plant, what is free, and the windows' starts (None: those
+    measured). `predicted` is the gain in chi^2 that a score test gives it. `in_stages`: the valve's dynamics stay
+    where they are until the rest has converged."""
+
+    hypothesis: Hypothesis
+    values: Mapping[str, float]
+    free: tuple[Free, ...]
+    states: Array | None
+    predicted: float = 0.0
+    in_stages: bool = False
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A hypothesis and the best fit of it so far."""
+
+    hypothesis: Hypothesis
+    fit: Fit
+
+    @property
+    def times_noise(self) -> float:
+        """Chi^2 a sample: 1 where only noise is left."""
+        return self.fit.data / self.fit.count
+
+
+@dataclass
+class Search:
+    """What is searched, and all that was fitted on the way, by hypothesis."""
+
+    problem: Problem
+    able: Sequence[Effect]
+    facts: Facts
+    progress: Progress = lambda _: None
+    found: dict[Hypothesis, Fit] = field(default_factory=dict)
+
+    def keep(self, hypothesis: Hypothesis, result: Fit) -> Candidate:
+        """Keep a fit if it is the best of its hypothesis; the hypothesis with its best fit."""
+        known = self.found.get(hypothesis)
+        if known is None or result.objective < known.objective:
+            self.found[hypothesis] = result
+        return Candidate(hypothesis, self.found[hypothesis])
+
+    def try_guess(self, guess: Guess, iterations: int, give_up_above: float = float("inf")) -> Candidate:
+        """Fit a hypothesis from a guess, and keep what is better than before."""
+        run = fit_in_stages if guess.in_stages else fit
+        result = run(
+            self.problem, guess.values, guess.free, guess.states, iterations=iterations, give_up_above=give_up_above
+        )
+        return self.keep(guess.hypothesis, result)
+
+    def go_on(self, candidate: Candidate, iterations: int, give_up_above: float = float("inf")) -> Candidate:
+        """Fit a hypothesis further from where it stands."""
+        at = candidate.fit
+        result = fit(self.problem, at.values, at.free, at.states, iterations=iterations, give_up_above=give_up_above)
+        return self.keep(candidate.hypothesis, result)
+
+    def measure_noise(self, at: Candidate) -> None:
+        """Take each channel's noise from what a candidate leaves over, and every fit so far with it.
+
+        A model that is far off leaves a rough residual, and the noise seems larger than it is.
+        """
+        samplings = self.problem.shooting.samplings
+        changes = [float(np.clip(residual_noise(residual), 0.5, 2.0)) for residual in at.fit.residuals]
+        floors = [RESOLVED["Pa" if one.column > 1 else "m"] / one.noise for one in samplings]
+        changes = [max(change, floor) for change, floor in zip(changes, floors, strict=True)]
+        if max(abs(change - 1.0) for change in changes) < SAME_NOISE:
+            return
+        noise = [change * one.noise for change, one in zip(changes, samplings, strict=True)]
+        before = self.problem.shooting
+        self.problem = replace(self.problem, shooting=with_noise(before, noise))
+        for hypothesis, result in self.found.items():
+            self.found[hypothesis] = in_noise_of(self.problem, before, result)
+
+    def again(self, candidate: Candidate) -> Candidate:
+        """A hypothesis with what is now its best fit."""
+        return Candidate(candidate.hypothesis, self.found[candidate.hypothesis])
+
+    def report(self, best: Candidate) -> None:
+        """Tell what is best so far."""
+        self.progress(f"{' + '.join(best.hypothesis.ids)}: {best.times_noise:.3g} times the noise's energy")
+
+    def __iter__(self) -> Iterator[Candidate]:
+        return (Candidate(hypothesis, result) for hypothesis, result in self.found.items())
+
+
+def in_noise_of(problem: Problem, before: Shooting, result: Fit) -> Fit:
+    """A fit as it is in the noise of another problem: the same model, another chi^2."""
+    used = problem.used()
+    pairs = zip(problem.shooting.samplings, before.samplings, result.residuals, strict=True)
+    residuals = tuple(residual * (then.noise / now.noise) for now, then, residual in pairs)
+    kept = zip(problem.shooting.samplings, residuals, strict=True)
+    data = sum(float(np.sum(residual[used[one.window]] ** 2)) for one, residual in kept)
+    return replace(result, residuals=residuals, data=data, objective=result.objective - result.data + data)
+
+
+def with_effects(free: Sequence[Free], effects: Sequence[Effect], values: Mapping[str, float]) -> tuple[Free, ...]:
+    """The free parameters with those of more effects, which are free about where `values` has them."""
+    extra = [one for effect in effects for one in effect_freedom(effect, values)]
+    names = {one.name for one in extra}
+    return (*(one for one in free if one.name not in names), *extra)
+
+
+def without_effect(result: Fit, effect: Effect) -> tuple[dict[str, float], tuple[Free, ...]]:
+    """A fit's values with one effect off, and what is then free."""
+    off = neutral(effect)
+    return {**result.values, **off}, tuple(one for one in result.free if one.name not in off)

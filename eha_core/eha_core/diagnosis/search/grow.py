@@ -1,0 +1,45 @@
+"""Grow: add to the best set what explains most, until nothing explains much or only noise is left."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, WORTH_ADDING, chance_gain
+from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
+from eha_core.diagnosis.search.proposals import proposals
+from eha_core.diagnosis.search.prune import look_back
+
+LEGS = ((3, 4), (4, 2), (10, 1))
+"""A race: so many iterations for every guess, and so many then go on. The right ones lead after two or three."""
+
+
+def grow(search: Search, best: Candidate) -> Candidate:
+    """The best set that adding to `best` leads to; every set that was fitted stays with the search."""
+    while not best.hypothesis.limited and len(best.hypothesis.members) < MOST_EFFECTS:
+        race(search, proposals(search, best, chance_gain(search.problem.count(), best.times_noise)))
+        reached = min(search, key=lambda one: one.fit.objective)
+        if reached.times_noise < FAR_FROM_NOISE:
+            search.measure_noise(reached)
+            reached, best = search.again(reached), search.again(best)
+        gain = best.fit.objective - reached.fit.objective
+        left = max(0.0, best.fit.data - best.fit.count)
+        needed = chance_gain(search.problem.count(), reached.times_noise)
+        if gain < max(needed, WORTH_ADDING * left):
+            break
+        best = look_back(search, reached, needed)
+        search.report(best)
+    return best
+
+
+def race(search: Search, guesses: Iterable[Guess]) -> None:
+    """Fit every guess a little, and the better ones further."""
+    runners: dict[object, Candidate] = {}
+    for iterations, kept in LEGS:
+        if runners:
+            runners = {name: search.go_on(one, iterations) for name, one in runners.items()}
+        else:
+            for guess in guesses:
+                search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
+                runners[guess.hypothesis] = search.try_guess(guess, iterations)
+        ahead = sorted(runners.items(), key=lambda pair: pair[1].fit.objective)[:kept]
+        runners = dict(ahead)

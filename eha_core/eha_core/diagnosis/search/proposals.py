@@ -1,0 +1,110 @@
+"""Initial guesses: which effects to add to a set, and from where to fit them.
+
+A score test says how much of what a fit leaves unexplained an effect could explain (`diagnosis.screen`). It is linear,
+so it is asked where the effects show best: at the fit itself; where that is far from the noise, at the nominal values,
+which nothing has biased; and with the valve's dynamics held, which would imitate a delay or a lag.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.freedom import LATE
+from eha_core.diagnosis.hypotheses import Start, starts
+from eha_core.diagnosis.hypothesis import Member
+from eha_core.diagnosis.refine import _set_free, as_given, with_dynamics_as_given
+from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
+from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects, without_effect
+
+AT_THE_FIT = 8
+AT_NOMINAL_VALUES = 6
+WITH_DYNAMICS_HELD = 2
+"""How many effects are taken from each score test."""
+
+HELD_SHARE = 0.25
+"""With the dynamics held an effect is proposed where it predicts this share of what others must."""
+
+
+def proposals(search: Search, base: Candidate, least: float) -> list[Guess]:
+    """Guesses of the base's set with one effect more, the largest predicted gain first, of those above `least`."""
+    begin = _begin(search, base)
+    guesses = [
+        guess
+        for strategy in (_at_the_fit, _at_nominal_values, _with_dynamics_held)
+        for guess in strategy(search, base, begin)
+    ]
+    # where only noise is left no other form can be better
+    forms = in_another_form(search, base) if base.times_noise > NEAR_NOISE else ()
+    new_forms = [one for one in forms if one.hypothesis not in search.found]
+    return [*new_forms, *(one for one in guesses if one.predicted > least)]
+
+
+def at_the_fit(search: Search, base: Candidate, most: int) -> list[Guess]:
+    """Guesses of the base's set with one effect more, as a score test at its fit ranks them."""
+    promises = one_each(screen(search.problem, base.fit, _begin(search, base)), most)
+    return [_guess(base, base.fit, promise) for promise in promises]
+
+
+def _begin(search: Search, base: Candidate) -> list[Start]:
+    able = [effect for effect in search.able if base.hypothesis.admits(effect)]
+    return [start for effect in able for start in starts(effect, search.facts)]
+
+
+def _at_the_fit(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
+    for promise in one_each(screen(search.problem, base.fit, begin), AT_THE_FIT):
+        yield _guess(base, base.fit, promise)
+
+
+def _at_nominal_values(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
+    if base.fit.data <= FAR_FROM_NOISE * base.fit.count:
+        return
+    nominal = as_given(search.problem, base.fit)
+    for promise in one_each(screen(search.problem, nominal, begin), AT_NOMINAL_VALUES):
+        yield _guess(base, nominal, promise, in_stages=True)
+
+
+def _with_dynamics_held(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
+    held = with_dynamics_as_given(search.problem, base.fit)
+    if held is None:
+        return
+    # what the dynamics could imitate shows only while they are held
+    at = _set_free(held, tuple(one for one in base.fit.free if one.name not in LATE))
+    for promise in one_each(screen(search.problem, at, begin), WITH_DYNAMICS_HELD):
+        guess = _guess(base, held, promise, in_stages=True)
+        yield Guess(guess.hypothesis, guess.values, guess.free, guess.states, guess.predicted / HELD_SHARE, True)
+
+
+def _guess(base: Candidate, at: Fit, promise: Promise, in_stages: bool = False) -> Guess:
+    effect = promise.start.effect
+    values: Mapping[str, float] = {**at.values, **scaled(promise)}
+    free = with_effects(base.fit.free, [effect], values)
+    return Guess(base.hypothesis.with_effects([effect]), values, free, at.states, promise.gain, in_stages)
+
+
+def in_another_form(search: Search, base: Candidate) -> Iterator[Guess]:
+    """The set with another form of a member's law, from its own values where they share a parameter."""
+    for member in base.hypothesis.members:
+        rest = base.hypothesis.without(member)
+        values, free = without_effect(base.fit, member.effect)
+        forms = [effect for effect in search.able if member.effect.kind and effect.kind == member.effect.kind]
+        for effect in (one for one in forms if one.id != member.id):
+            for start in starts(effect, search.facts):
+                begun = {**values, **_as_large(start, member, base.fit)}
+                yield Guess(rest.with_effects([effect]), begun, with_effects(free, [effect], begun), base.fit.states)
+
+
+def _as_large(start: Start, member: Member, result: Fit) -> dict[str, float]:
+    """A start of one form of a law with another form's values where both have the parameter, and its other sizes in
+    proportion to the first size that both have."""
+    sizes = [row.name for row in start.effect.parameters if row.switches]
+    common = next((name for name in sizes if f"{member.id}.{name}" in result.values), None)
+    if common is None:
+        return dict(start.values)
+    share = result.values[f"{member.id}.{common}"] / start.values[f"{start.effect.id}.{common}"]
+    found = {}
+    for name, value in start.values.items():
+        own = name.rsplit(".", 1)[1]
+        found[name] = result.values.get(f"{member.id}.{own}", share * value if own in sizes else value)
+    return found

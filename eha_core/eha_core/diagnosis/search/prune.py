@@ -1,0 +1,90 @@
+"""Prune: drop what does not earn its place beside the other members."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eha_core.diagnosis.criteria import CHANCE, CONVINCING, OF_ITS_FORM, OF_SAMPLES, OF_SAMPLES_BESIDE_A_FORM
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.hypothesis import NOTHING, Member, neutral
+from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, without_effect
+from eha_core.effects import Effect
+
+REFITTED = 8
+"""Iterations of a fit without a member."""
+
+LOOKED_AT = 4.0
+"""A member is tried to be dropped where the curvature says that it costs no more than this many times what it must be
+worth."""
+
+
+def wald(result: Fit, effect: Effect) -> float:
+    """What dropping an effect would cost in chi^2, as the curvature at the fit has it."""
+    off = neutral(effect)
+    switches = {f"{effect.id}.{row.name}" for row in effect.parameters if row.switches}
+    places = [place for place, one in enumerate(result.free) if one.name in switches]
+    if not places:
+        return 0.0
+    away = np.array([result.free[p].slope(result.values[result.free[p].name]) for p in places])
+    distance = np.array([result.values[result.free[p].name] - off[result.free[p].name] for p in places]) / away
+    block = result.covariance[np.ix_(places, places)]
+    return float(distance @ np.linalg.pinv(block, hermitian=True) @ distance)
+
+
+def refit_without(search: Search, candidate: Candidate, member: Member, iterations: int = REFITTED) -> Candidate:
+    """The set without one member, fitted from where the whole set stands."""
+    values, free = without_effect(candidate.fit, member.effect)
+    return search.try_guess(Guess(candidate.hypothesis.without(member), values, free, candidate.fit.states), iterations)
+
+
+def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
+    """The set without the members that have become of no use, as far as the curvature tells and a refit confirms."""
+    while len(candidate.hypothesis.members) > 1:
+        costs = {member: wald(candidate.fit, member.effect) for member in candidate.hypothesis.members}
+        least = min(costs, key=lambda member: costs[member])
+        if costs[least] > LOOKED_AT * needed:
+            break
+        simpler = refit_without(search, candidate, least)
+        if simpler.fit.objective - candidate.fit.objective > needed:
+            break
+        candidate = simpler
+    return candidate
+
+
+def prune(search: Search, best: Candidate) -> Candidate:
+    """The set without the members that do not earn their place beside the others."""
+    while len(best.hypothesis.members) > 1:
+        simpler = {member: refit_without(search, best, member) for member in best.hypothesis.members}
+        worth = {member: worth_of(member, one, best) for member, one in simpler.items()}
+        explained = search.found[NOTHING].objective - best.fit.objective
+        asked = {member: asked_of(member, worth, best, explained) for member in worth}
+        least = min(worth, key=lambda member: worth[member] / asked[member])
+        search.progress(f"worth in chi^2: {', '.join(f'{one.id} {gain:.3g}' for one, gain in worth.items())}")
+        if worth[least] > asked[least]:
+            break
+        best = simpler[least]
+    return best
+
+
+def worth_of(member: Member, without: Candidate, best: Candidate) -> float:
+    """Chi^2 that a member is worth: what a refit without it loses, and no more than the curvature says.
+
+    Where friction sticks a refit can rest above its optimum, and a member that does nothing would seem to be needed.
+    """
+    return min(without.fit.objective - best.fit.objective, wald(best.fit, member.effect))
+
+
+def asked_of(member: Member, worth: Mapping[Member, float], best: Candidate, explained: float) -> float:
+    """Chi^2 that a member must be worth beside the others, which are worth so much each, and `explained` together.
+
+    It rises with what the set leaves unexplained: a law of another form always leaves something for others.
+    """
+    others = [other for other in worth if other != member]
+    forms = [worth[other] for other in others if other.effect.approximate]
+    of_samples = OF_SAMPLES_BESIDE_A_FORM if forms else OF_SAMPLES
+    chance = max(1.0, best.times_noise) * (CHANCE + of_samples * best.fit.count)
+    left = max(best.fit.data - best.fit.count, 0.0)
+    their_forms = OF_ITS_FORM * min(sum(max(gain, 0.0) for gain in forms), max(explained, 0.0))
+    return max(chance + their_forms, CONVINCING / (1.0 - CONVINCING) * left)

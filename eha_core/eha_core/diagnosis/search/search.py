@@ -1,0 +1,35 @@
+"""The search's course: from the best single effects to the set of which every member earns its place."""
+
+from __future__ import annotations
+
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
+from eha_core.diagnosis.search.candidates import Candidate, Search
+from eha_core.diagnosis.search.exchange import exchange
+from eha_core.diagnosis.search.grow import grow
+from eha_core.diagnosis.search.joint_start import joint_start
+from eha_core.diagnosis.search.prune import prune
+
+ROUNDS = 8
+"""Exchanges at most; each has to make the fit better by more than chance would."""
+
+
+def search_sets(search: Search, nominal: Candidate) -> Candidate:
+    """The set of effects that explains the recording best and of which every member earns its place.
+
+    Begins at the best that is there; where that is far from the noise, at what stands out of a joint fit, too.
+    """
+    best = min(search, key=lambda one: one.fit.objective)
+    if best.hypothesis.limited:
+        return best
+    if best.times_noise > FAR_FROM_NOISE:
+        best = min(best, joint_start(search, nominal), key=lambda one: one.fit.objective)
+    best = grow(search, best)
+    for _ in range(ROUNDS):
+        if best.times_noise < NEAR_NOISE or len(best.hypothesis.members) < 2:
+            break
+        better = exchange(search, best)
+        if better.hypothesis == best.hypothesis:
+            break
+        search.report(better)
+        best = grow(search, better)
+    return prune(search, best)

@@ -1,0 +1,97 @@
+"""Stage 4b, any number of effects: the single effects' comparison carried on to sets.
+
+The search works in the noise that its best set shows; what the calibration and the single effects left is weighed anew
+in that noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from eha_core.diagnosis.calibrate import Calibration
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE
+from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.refine import Found, Progress, back_fit, cross, settle
+from eha_core.diagnosis.search.candidates import Candidate, Search, in_noise_of
+from eha_core.diagnosis.search.exchange import rivals_for
+from eha_core.diagnosis.search.proposals import at_the_fit, in_another_form
+from eha_core.diagnosis.search.search import search_sets
+from eha_core.diagnosis.tournament import Entry, Tournament, parameter_cost, rank, scatter
+from eha_core.effects import Effect
+
+CLOSE = 100.0
+"""Chi^2 by which a set may lie behind the best and still be fitted to its end."""
+
+
+def with_sets(
+    calibration: Calibration,
+    tournament: Tournament,
+    able: Sequence[Effect],
+    facts: Facts,
+    progress: Progress = lambda _: None,
+) -> tuple[Calibration, Tournament]:
+    """The comparison with the best set in it and whatever comes near that, and the calibration in the noise found."""
+    singles = {entry.hypothesis: entry.fit for entry in tournament.entries}
+    search = Search(calibration.problem, able, facts, progress, {**singles, NOTHING: tournament.nominal.fit})
+    best = search_sets(search, search.again(Candidate(NOTHING, tournament.nominal.fit)))
+    calibration = _in_noise_of(search, calibration)
+    found: Found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
+    if len(best.hypothesis.members) > 1:
+        # a set that stopped short would make any other form of a law look better
+        settled = settle(search.problem, {best.hypothesis: best.fit}, progress)
+        best = search.keep(best.hypothesis, settled[best.hypothesis])
+        best = _against_its_rivals(search, best)
+        size = len(best.hypothesis.members)
+        near = [one for one in search if one.fit.objective < best.fit.objective + CLOSE * max(1.0, best.times_noise)]
+        for one in near:
+            if len(one.hypothesis.members) == size or one.hypothesis == best.hypothesis:
+                found[one.hypothesis] = one.fit
+        sets = {hypothesis: result for hypothesis, result in found.items() if len(hypothesis.members) == size}
+        found = {**found, **cross(search.problem, settle(search.problem, sets, progress))}
+        worse = [hypothesis for hypothesis in singles if best.hypothesis.holds(hypothesis)]
+        found = {hypothesis: result for hypothesis, result in found.items() if hypothesis not in worse}
+    elif best.times_noise > FAR_FROM_NOISE and not best.hypothesis.limited:
+        # no set came near either: the single effects are worth their last digits after all
+        found = cross(search.problem, settle(search.problem, found, progress))
+    nominal = back_fit(search.problem, search.found[NOTHING], list(found.values()))
+    entries = rank(search.problem, nominal, found)
+    left_over = {} if best.hypothesis.limited else _left_over(search, best)
+    nothing, spread = Entry(NOTHING, nominal, 0.0), scatter(nominal, entries)
+    return calibration, Tournament(nothing, entries, tournament.promises, spread, left_over)
+
+
+def _left_over(search: Search, best: Candidate) -> dict[str, float]:
+    """What one more effect beside the best is predicted to gain, the most of each site."""
+    gains: dict[str, float] = {}
+    for guess in at_the_fit(search, search.again(best), len(search.able)):
+        added = next(one for one in guess.hypothesis.members if one not in best.hypothesis.members)
+        gains[added.effect.site] = max(guess.predicted, gains.get(added.effect.site, 0.0))
+    return gains
+
+
+def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
+    """The best set when everything that promises most in a member's place was fitted to where it can be told."""
+    for member in best.hypothesis.members:
+        for guess in rivals_for(search, best, member):
+            if guess.hypothesis not in search.found:
+                search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
+                search.try_guess(guess, 15, give_up_above=best.fit.objective + CLOSE)
+    for guess in in_another_form(search, best):
+        search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
+        search.try_guess(guess, 20, give_up_above=best.fit.objective + CLOSE)
+    size = len(best.hypothesis.members)
+    of_size = [one for one in search if len(one.hypothesis.members) == size]
+    dear = parameter_cost(search.problem.count(), max(1.0, best.times_noise))
+    return min(of_size, key=lambda one: one.fit.objective + dear * len(one.fit.free))
+
+
+def _in_noise_of(search: Search, calibration: Calibration) -> Calibration:
+    return replace(
+        calibration,
+        shooting=search.problem.shooting,
+        problem=search.problem,
+        nominal=in_noise_of(search.problem, calibration.shooting, calibration.nominal),
+        fitted=in_noise_of(search.problem, calibration.shooting, calibration.fitted),
+    )

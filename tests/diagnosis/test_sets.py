@@ -1,0 +1,117 @@
+"""Sets of effects: found together, thinned out to what earns its place, and honest about what is left."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made import recorded
+
+from eha_core.diagnosis import diagnose
+from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.facts import gather
+from eha_core.diagnosis.fit import fit
+from eha_core.diagnosis.hypotheses import candidates
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.observation import observe
+from eha_core.diagnosis.search.candidates import Guess, Search, with_effects
+from eha_core.diagnosis.search.prune import asked_of, prune, refit_without, wald
+from eha_core.diagnosis.verdict import coherence
+from eha_core.effects import effects
+from eha_core.exam.drawing import draw_case
+from eha_core.exam.measuring import measure, simulate_case
+from eha_core.parameters import nominal_values
+from eha_core.recording import Channel, Recording
+
+LAWS = {effect.id: effect for effect in effects()}
+PLANTED = {"constant_load.force": 300.0, "valve_deadband.half_width": 1e-4}
+
+
+@pytest.fixture(scope="module")
+def search():
+    """A search on a rig with a load and an overlap, the fit of both and of a third that is not there."""
+    observation = observe(recorded(PLANTED, duration=6.0))
+    calibration = calibrate(observation, nominal_values(), 2e-4)
+    facts = gather(observation, calibration.shooting, calibration.fitted)
+    made = Search(calibration.problem, candidates(observation), facts)
+    made.keep(NOTHING, calibration.fitted)
+    return made
+
+
+def fitted(search, names, values):
+    chosen = [LAWS[name] for name in names]
+    begun = {**nominal_values(), **values}
+    free = with_effects(search.found[NOTHING].free, chosen, begun)
+    return search.try_guess(Guess(NOTHING.with_effects(chosen), begun, free, None), 15)
+
+
+@pytest.fixture(scope="module")
+def three(search):
+    names = ("constant_load", "valve_deadband", "hardening_spring")
+    return fitted(search, names, {**PLANTED, "hardening_spring.coefficient": 1e6})
+
+
+def test_what_dropping_a_member_costs_is_what_a_refit_finds(search, three):
+    load, spring, _ = three.hypothesis.members
+    assert (load.id, spring.id) == ("constant_load", "hardening_spring")
+    false = refit_without(search, three, spring).fit.objective - three.fit.objective
+    assert wald(three.fit, spring.effect) == pytest.approx(false, abs=2.0)
+    assert wald(three.fit, load.effect) > 1e3
+
+
+def test_what_earns_nothing_beside_the_others_is_dropped(search, three):
+    assert prune(search, three).hypothesis.ids == ("constant_load", "valve_deadband")
+
+
+def test_what_a_member_must_be_worth_rises_with_what_is_left(three):
+    spring = three.hypothesis.members[1]
+    worth = dict.fromkeys(three.hypothesis.members, 100000.0)
+    at_the_noise = asked_of(spring, worth, three, 1e6)
+    far = replace(three, fit=replace(three.fit, data=3.0 * three.fit.count))
+    assert asked_of(spring, worth, far, 1e6) == pytest.approx(2.0 / 3.0 * 2.0 * three.fit.count)
+    assert asked_of(spring, worth, three, 0.0) < at_the_noise  # the overlap's law has other forms
+    assert at_the_noise < 0.02 * asked_of(spring, worth, far, 1e6)
+
+
+def test_a_fit_in_another_noise_is_the_same_model(search):
+    best = fitted(search, ("constant_load", "valve_deadband"), PLANTED)
+    again = Search(search.problem, search.able, search.facts, found=dict(search.found))
+    louder = replace(best, fit=replace(best.fit, residuals=tuple(2.0 * one for one in best.fit.residuals)))
+    again.measure_noise(louder)
+    noises = zip(again.problem.shooting.samplings, search.problem.shooting.samplings, strict=True)
+    assert all(now.noise == pytest.approx(2.0 * then.noise, rel=0.1) for now, then in noises)
+    weighed = again.found[best.hypothesis]
+    anew = fit(again.problem, best.fit.values, best.fit.free, best.fit.states, iterations=0)
+    assert weighed.objective == pytest.approx(anew.objective, rel=1e-9)
+    assert weighed.data == pytest.approx(anew.data, rel=1e-9)
+
+
+@pytest.mark.timeout(400)
+def test_three_effects_of_another_plant_are_named_and_nothing_else():
+    """By the exam's truth, which shares neither equations nor integrator with the plant."""
+    case = replace(
+        draw_case("rig", 3, 9001),
+        duration=8.0, rate=500.0, noise=1.0, position_step=0.0, pressure_step=0.0, jitter=0.0, dropout=0.0,
+    )  # fmt: skip
+    names = ("coulomb_friction", "supply_pressure_droop", "constant_load")
+    case = replace(case, effects=tuple(one for one in case.effects if one[0] in names))
+    units = {"voltage_command": "V", "position": "m", "pressure_a": "Pa", "pressure_b": "Pa"}
+    channels = {
+        name: Channel(name, time, values, units[name], name, "made")
+        for name, (time, values) in measure(case, simulate_case(case)).items()
+    }
+    recording = Recording("made.mcap", channels, 0, case.duration, {}, (), None, ())
+    result = diagnose(recording, {**nominal_values(), **case.nominal})
+    assert result.verdict == "missing_physics"
+    assert sorted(effect.id for effect in result.effects) == sorted(names)
+    truth = dict(case.effects)
+    load = next(effect for effect in result.effects if effect.id == "constant_load").parameters["force"]
+    assert abs(load.value - float(truth["constant_load"]["force"])) < max(4.0 * load.std, 0.01 * abs(load.value))
+    assert result.explained.complete
+    assert max(result.explained.times_noise.values()) < 1.1
+    assert all(result.prediction[name].ahead[0.25] < 1.5 * fit.noise for name, fit in result.held_out.items())
+
+
+def test_noise_is_not_coherent_and_a_slow_rest_is():
+    noise = np.random.default_rng(1).standard_normal(20_000)
+    assert coherence(noise) == pytest.approx(1.0, abs=0.1)
+    assert coherence(noise + np.sin(np.arange(20_000) / 500.0)) > 2.0
