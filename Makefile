@@ -6,12 +6,17 @@ PYTHON ?= $(shell test -x $(RUN)/python && echo $(RUN)/python || echo python3)
 WITH_PATH := PATH="$(CURDIR)/$(RUN):$$PATH"
 # A sourced ROS 2 brings pytest plugins that are not made for this pytest.
 PYTEST_OPTIONS := $(if $(ROS_DISTRO),-p no:launch_testing -p no:launch_ros)
+# The community's rclpy on PyPI is built for this one.
+PYTHON_OF_RCLPY ?= python3.12
+# How long each trial of `make hostile` goes on, and what it is drawn from.
+HOSTILE_SECONDS := 20
+HOSTILE_SEED := 1
 # What the diagnosis scored in the small exam when its answers last changed: raise it with the score.
 EXAM_MARK := 0.9
 TYPED := eha_core/eha_core eha_sim_node/eha_sim_node rclpy_dds/rclpy_dds tools
 
 .DEFAULT_GOAL := help
-.PHONY: help env test lint demo demo-realtime bench exam
+.PHONY: help env test lint demo demo-realtime controllers contract bench docs wheels exam hostile
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 24
@@ -27,6 +32,14 @@ lint: env  ## style, types and the walls between the packages
 	$(RUN)/mypy $(TYPED)
 	$(RUN)/lint-imports --no-cache
 
+contract: env  ## the compatibility layer beside a real rclpy from PyPI (x86_64, Python 3.12), in .venv-rclpy/
+	test -x .venv-rclpy/bin/pytest || { $(PYTHON_OF_RCLPY) -m venv .venv-rclpy && \
+	    .venv-rclpy/bin/pip install --quiet setuptools==79.0.1 && \
+	    .venv-rclpy/bin/pip install --quiet --requirement requirements/rclpy.txt; }
+	.venv-rclpy/bin/python -m pytest rclpy_dds/tests/contract -p no:launch_testing -p no:cacheprovider \
+	    -W ignore::DeprecationWarning
+	$(WITH_PATH) $(RUN)/python -m pytest rclpy_dds/tests/peers
+
 demo: env  ## the paper's experiment over DDS, then a rig with concealed physics diagnosed; all in out/demo/
 	$(WITH_PATH) $(RUN)/python examples/paper_demo.py
 	$(WITH_PATH) $(RUN)/python examples/concealed_demo.py
@@ -34,9 +47,22 @@ demo: env  ## the paper's experiment over DDS, then a rig with concealed physics
 demo-realtime: env  ## the same against the wall clock
 	$(WITH_PATH) $(RUN)/python examples/paper_demo.py --realtime
 
-bench: env  ## speed as ratios to named peers
-	$(WITH_PATH) $(RUN)/eha bench
+controllers: env  ## every controller over leakage and concealed friction, on the nodes; all in out/controllers/
+	$(WITH_PATH) $(RUN)/python examples/compare_controllers.py
+
+bench: env  ## speed as ratios to named peers; BENCHMARKS="layer node" for some
+	$(WITH_PATH) $(RUN)/python -m benchmarks $(BENCHMARKS)
+
+docs: env  ## the documentation's site in out/docs/, its links checked
+	$(RUN)/pip install --quiet --disable-pip-version-check --requirement requirements/docs.txt
+	NO_MKDOCS_2_WARNING=1 $(RUN)/mkdocs build --strict --quiet
+
+wheels: env  ## build wheels in out/wheels, install them into a clean environment, and use them there
+	$(RUN)/python tools/check_wheels.py out/wheels
 
 exam: env  ## a small fixed exam of the diagnosis, which fails when fewer cases than its mark are right
 	rm -rf out/exam_mark
 	$(WITH_PATH) $(RUN)/eha exam --cases 10 --seed 2026 --jobs 2 --out out/exam_mark --require $(EXAM_MARK)
+
+hostile: env  ## mutated files, killed recorders, hostile commands and nodes under attack; fails where one does harm
+	$(WITH_PATH) $(RUN)/python -m tools.hostile --seconds $(HOSTILE_SECONDS) --seed $(HOSTILE_SEED)

@@ -1,1 +1,1 @@
-"""What the project's speed is measured against. `eha bench` runs every benchmark and prints one table."""
+"""What the project's speed is measured against. `make bench` runs every benchmark and prints one table."""

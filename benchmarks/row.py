@@ -1,4 +1,4 @@
-"""One line of the table that `eha bench` prints."""
+"""One line of the table that `make bench` prints."""
 
 from __future__ import annotations
 

@@ -3,15 +3,60 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+import eha_core
 from eha_core.cli import main, verbs
 
+ROOT = Path(__file__).resolve().parents[2]
 
-@pytest.mark.parametrize("words", [[], ["diagnos"]])
+
+def test_says_which_version_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert (ended.value.code, capsys.readouterr().out) == (0, f"eha {eha_core.__version__}\n")
+
+
+def test_the_actuator_s_packages_bear_one_version() -> None:
+    here = eha_core.__version__
+    for path in ROOT.glob("*/package.xml"):
+        assert f"<version>{here}</version>" in path.read_text(), path
+    for path in ("eha_sim_node/setup.py", "eha_interfaces/setup.py"):  # rclpy_dds is released on its own
+        assert re.search(rf'^\s*version ?= ?"{re.escape(here)}"', (ROOT / path).read_text(), re.MULTILINE), path
+
+
+def test_a_word_that_is_nearly_a_verb_is_answered_with_it(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["diagnos"])
+    assert "did you mean diagnose?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [("eha ", set(verbs())), ("eha diagn", {"diagnose"}), ("eha simulate --instr", {"--instruments-only"})],
+)
+def test_a_shell_completes_verbs_and_options(typed: str, offered: set[str], tmp_path: Path) -> None:
+    answer = tmp_path / "completions"
+    environment = {
+        **os.environ,
+        "_ARGCOMPLETE": "1",
+        "_ARGCOMPLETE_IFS": "\n",
+        "_ARGCOMPLETE_STDOUT_FILENAME": str(answer),
+        "COMP_LINE": typed,
+        "COMP_POINT": str(len(typed)),
+    }
+    subprocess.run([sys.executable, "-m", "eha_core.cli"], env=environment, timeout=60, check=False)
+    words = {word.strip() for word in answer.read_text().splitlines()}
+    assert offered <= words
+    assert typed == "eha " or words == offered
+
+
+@pytest.mark.parametrize("words", [[], ["paint"]])
 def test_no_verb_is_answered_in_one_line_that_names_them_all(
     words: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from eha_core.cli import main
+from eha_core.cli.simulate import COMMAND_LIMIT
 from eha_core.recording import read_recording
 
 SINE = "sine:amplitude=8.4e-3,frequency=1"
@@ -73,9 +74,10 @@ def test_the_same_words_give_the_same_bytes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--command", "sinus:amplitude=1"], "--command sinus:amplitude=1: neither a file nor a signal"),
-        (["--command", "sine:height=1"], "signal sine has no parameter 'height'"),
-        (["--command", "absent.mcap"], "--command absent.mcap: neither a file nor a signal; signals are chirp"),
+        (["--command", "sinus:amplitude=1"], "neither a file nor a signal; did you mean sine?"),
+        (["--command", "sine:height=1"], "signal sine has no parameter 'height'; it has amplitude"),
+        (["--command", "sine:amplitud=1"], "signal sine has no parameter 'amplitud'; did you mean amplitude?"),
+        (["--command", "absent.mcap"], "--command absent.mcap: neither a file nor a signal; choose chirp"),
         (["--command", SINE, "--set", "moving_mas=1"], "no parameter named moving_mas; did you mean moving_mass?"),
         (["--command", SINE, "--set", "moving_mass=nan"], "moving_mass = nan is not finite"),
         (["--command", SINE, "--set", "moving_mass"], "--set 'moving_mass' is no NAME=VALUE"),
@@ -85,7 +87,7 @@ def test_the_same_words_give_the_same_bytes(tmp_path: Path) -> None:
         (["--command", SINE, "--rate", "nan"], "--rate nan is out of range"),
         (["--command", SINE, "--step", "1"], "step_size = 1 s is out of range"),
         (["--command", SINE, "--duration", "-1"], "--duration -1 is out of range"),
-        (["--command", SINE, "--nominal", "absent.yaml"], "absent.yaml: cannot read"),
+        (["--command", SINE, "--nominal", "absent.yaml"], "absent.yaml: cannot be read"),
         (["--command", SINE, "--initial-position", "5"], "initial_position = 5 m is outside the stroke"),
     ],
 )
@@ -104,6 +106,37 @@ def test_a_recording_without_a_command_is_refused(tmp_path: Path, capsys: pytest
     assert "no voltage_command was recorded" in capsys.readouterr().err
 
 
+def test_a_table_reads_back_as_the_recording(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for ending in ("mcap", "csv"):
+        assert simulate(tmp_path / f"run.{ending}", SINE, "--duration", "1", "--noise", "1") == 0
+    assert "1 s in 501 rows" in capsys.readouterr().out
+    bag, table = (read_recording(tmp_path / f"run.{ending}").channels for ending in ("mcap", "csv"))
+    for name in ("position", "velocity", "pressure_a", "pressure_b"):
+        np.testing.assert_allclose(table[name].values, bag[name].values, rtol=1e-9, atol=1e-4)
+    assert {"spool", "flow_a"} <= set(table)
+    words = ("--duration", "0.1", "--instruments-only")
+    assert simulate(tmp_path / "rig.csv", SINE, *words) == 0
+    header = (tmp_path / "rig.csv").read_text().partition("\n")[0]
+    assert set(header.split(",")) == {"time", "voltage_command", "position", "velocity", "pressure_a", "pressure_b"}
+    assert simulate(tmp_path / "run.csv", SINE, "--duration", "0.1") == 2
+    assert "exists already" in capsys.readouterr().err
+
+
+def test_a_command_that_the_node_would_clamp_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert simulate(tmp_path / "run.mcap", "sine:amplitude=12,frequency=5", "--duration", "0.2") == 0
+    assert "reaches 12 V; the simulator node would clamp it" in capsys.readouterr().err
+    source = (Path(__file__).parents[2] / "eha_sim_node" / "eha_sim_node" / "sim.py").read_text()
+    assert f'Row("command_limit", {COMMAND_LIMIT},' in source
+    assert simulate(tmp_path / "mild.mcap", SINE, "--duration", "0.2") == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_another_ending_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert simulate(tmp_path / "run.bag", SINE, "--duration", "0.1") == 2
+    assert "run.bag: a recording is written as .mcap or .csv" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_an_existing_file_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "run.mcap").write_text("mine")
     assert simulate(tmp_path / "run.mcap", SINE, "--duration", "0.1") == 2
@@ -118,3 +151,49 @@ def test_arguments_that_do_not_parse_take_one_line() -> None:
         )
         assert result.returncode == 2
         assert result.stderr.startswith("eha") and result.stderr.count("\n") == 1, result.stderr
+
+
+def test_a_sweep_is_the_simulations_one_by_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("--duration", "1", "--noise", "1", "--set", "coulomb_friction.force=100")
+    assert simulate(tmp_path / "rig.mcap", SINE, *words, "--sweep", "internal_leakage=1e-12:1e-10:3log") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines[1:4]] == ["1e-12", "1e-11", "1e-10"]
+    for number, value in enumerate((1e-12, 1e-11, 1e-10), start=1):
+        alone = tmp_path / f"alone-{number}.mcap"
+        assert simulate(alone, SINE, *words, "--set", f"internal_leakage={value!r}") == 0
+        one, other = (read_recording(path) for path in (alone, tmp_path / f"rig-{number}.mcap"))
+        assert one.parameters == other.parameters
+        for name, channel in one.channels.items():
+            np.testing.assert_array_equal(channel.values, other.channels[name].values)
+
+
+@pytest.mark.parametrize(
+    ("sweep", "said"),
+    [
+        ("moving_mass=1:2", "NAME=A:B:N"),
+        ("moving_mass=0:2:3log", "of one sign"),
+        ("moving_mass=1:2:100000", "N from 2 to 1000"),
+        ("mass=1:2:3", "no parameter named mass"),
+        ("moving_mass=1:9e9:3", "moving_mass = 4.5e+09 kg is out of range"),
+    ],
+)
+def test_a_sweep_that_makes_no_plants_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], sweep: str, said: str
+) -> None:
+    assert simulate(tmp_path / "rig.mcap", SINE, "--sweep", sweep) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert said in message
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_sweep_overwrites_nothing_and_changes_nothing_on_its_way(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "rig-2.mcap").write_text("mine")
+    assert simulate(tmp_path / "rig.mcap", SINE, "--sweep", "moving_mass=5:9:2") == 2
+    assert "rig-2.mcap: the file exists already" in capsys.readouterr().err
+    assert (tmp_path / "rig-2.mcap").read_text() == "mine"
+    assert not (tmp_path / "rig-1.mcap").exists()
+    assert simulate(tmp_path / "new.mcap", SINE, "--sweep", "moving_mass=5:9:2", "--set", "moving_mass=7@0.5") == 2
+    assert "without @S" in capsys.readouterr().err

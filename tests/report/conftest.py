@@ -130,7 +130,10 @@ def consistent(friction: Diagnosis, simulated: SimpleNamespace) -> Diagnosis:
     """The same rig against a model that has its friction."""
     after = simulated.models[2]
     fits = _fits(simulated.measured, [after] * 3)
-    pictures = replace(friction.pictures, before=after, calibrated=after, after=after)
+    (force, _) = friction.pictures.equations["force"]
+    noise = np.random.default_rng(2).standard_normal(len(force))
+    models = {"before": after, "calibrated": after, "after": after}
+    pictures = replace(friction.pictures, **models, equations={"force": (force, noise)})
     return replace(
         friction, verdict="consistent", summary="Nothing is missing.", location=(), effects=(), rivals=(),
         training=fits, held_out=fits, pictures=pictures,

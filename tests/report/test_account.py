@@ -15,8 +15,8 @@ def test_says_what_where_how_sure_and_how_much_better(friction: Diagnosis) -> No
     text = account(friction, WRITTEN)
     assert "the seals rub with 200 N" in text
     assert "93% sits in the force balance; 1.0 s to 1.5 s and 3.0 s to 3.2 s" in " ".join(text.split())
-    assert "coulomb_friction (force 200.4 ± 1.3 N)" in text
-    assert "moving_mass 10.946 ± 0.035 kg (nominal 9.00 kg)" in text
+    assert "coulomb_friction (force 200.4 ± 2.5 N; 95 %)" in text
+    assert "moving_mass 10.946 ± 0.069 kg (nominal 9.00 kg)" in text
     assert "internal_leakage" not in text  # it did not change
     assert "out/: report.html, figures, diagnosis.json, fitted.yaml" in text
 
@@ -39,9 +39,9 @@ def test_rivals_and_the_test_that_separates_them(ambiguous: Diagnosis) -> None:
 
 def test_an_unknown_law_is_told_with_its_expression(unknown: Diagnosis) -> None:
     assert "a law over velocity: 250 tanh(20 v) (R² 0.980)" in account(unknown)
-    assert "bent, it may be" in " ".join(account(unknown).split())
+    assert "biased, it may be" in " ".join(account(unknown).split())
     simulated = replace(unknown, fitted_values={**unknown.fitted_values, "recovered_force.knot_00": 3.0})
-    assert "bent" not in account(simulated)
+    assert "biased" not in account(simulated)
 
 
 def test_what_was_not_examined_or_damaged_is_told(position_alone: Diagnosis) -> None:
@@ -68,5 +68,6 @@ def test_stays_on_one_screen_however_much_there_is_to_say(ambiguous: Diagnosis) 
         next_experiment=replace(ambiguous.next_experiment, statement="word " * 200),
     )
     lines = account(wordy, WRITTEN).splitlines()
-    assert len(lines) <= 25
+    assert len(lines) <= 25 + 4 * 6  # four more for each of the eight effects that can be named beyond the second
+    assert len(account(replace(wordy, effects=ambiguous.effects[:2]), WRITTEN).splitlines()) <= 25
     assert max(map(len, lines)) <= 100

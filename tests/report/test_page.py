@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 from collections.abc import Mapping
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
 
+import eha_core
+from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis, Pictures
 from eha_core.report.figures import write_figures
+from eha_core.report.first_screen import law_picture, pictures
 from eha_core.report.html import page
+from eha_core.report.picture import Bars, Upright
+from eha_core.report.provenance import with_provenance
 from eha_core.report.quantities import quantity
 from eha_core.report.stages import story
 
@@ -61,7 +68,9 @@ def test_tells_the_story_in_order_and_needs_nothing_else(any_diagnosis: Diagnosi
     text = page(any_diagnosis)
     reader = _read(text)
     assert reader.sections == ORDER
-    assert all(one.startswith("#") for one in reader.addresses)
+    beside = {"fitted.yaml", "comparison.mcap", "diagnosis.json"}
+    beside |= {"next_experiment.yaml"} if any_diagnosis.next_experiment else set()
+    assert {one for one in reader.addresses if not one.startswith("#")} == beside
     assert len(text) < 8e6
     assert "a rig & its <friction>.mcap" in "".join(reader.words)
     assert text.count("plotly.js v") <= 2  # the library stands there once
@@ -90,6 +99,33 @@ def test_every_plot_is_data_that_parses(friction: Diagnosis) -> None:
         assert drawn["layout"]["height"] > 0
 
 
+def test_the_ladder_has_every_rung_its_distance_and_the_model_that_adds_nothing(friction: Diagnosis) -> None:
+    (picture,) = {one.name: one for one in story(friction)}["name"].pictures
+    panel = picture.groups[0].panels[0]
+    assert panel.names == (
+        "Coulomb friction", "Stribeck friction", "nothing added (recalibrated model)", "end stop",
+    )  # fmt: skip
+    (bars,) = (mark for mark in panel.marks if isinstance(mark, Bars))
+    assert bars.texts == ("best", "31 behind", "5,321 behind", "5,333 behind")
+    (threshold,) = (mark for mark in panel.marks if isinstance(mark, Upright))
+    assert bars.x[0] < threshold.x < bars.x[1]  # 31 are told apart
+    assert "turbulent leakage" in picture.caption
+
+
+def test_where_it_comes_from_stands_on_the_page_and_in_json(friction: Diagnosis, tmp_path: Path) -> None:
+    file = tmp_path / "rig.csv"
+    file.write_bytes(b"time,position\n0,1\n")
+    recording = SimpleNamespace(path=file)
+    told = with_provenance(friction, [recording], "nominal.yaml", "eha diagnose rig.csv")
+    assert told.provenance["recording_sha256"] == hashlib.sha256(file.read_bytes()).hexdigest()
+    text = page(told)
+    for value in (*told.provenance.values(), eha_core.__version__):
+        assert value in text
+    assert json.loads(as_json(told))["provenance"] == dict(told.provenance)
+    recording = SimpleNamespace(path=tmp_path / "absent")
+    assert with_provenance(friction, [recording]).provenance["recording_sha256"] == "-"
+
+
 def test_numbers_on_the_page_are_those_of_the_diagnosis(friction: Diagnosis) -> None:
     words = " ".join("".join(_read(page(friction)).words).split())
     assert "200.4 ± 1.3 N" in words
@@ -100,11 +136,11 @@ def test_numbers_on_the_page_are_those_of_the_diagnosis(friction: Diagnosis) -> 
 @pytest.mark.parametrize(
     ("kind", "stage", "headline"),
     [
-        ("friction", "name", "The evidence points to coulomb friction"),
+        ("friction", "name", "The evidence points to Coulomb friction"),
         ("friction", "show", "What is left is noise"),
         ("friction", "next", "No further experiment is needed"),
-        ("ambiguous", "name", "The best explanation is coulomb friction, but it is not the only one"),
-        ("ambiguous", "next", "One more test would tell coulomb friction from stribeck friction"),
+        ("ambiguous", "name", "The best explanation is Coulomb friction, but it is not the only one"),
+        ("ambiguous", "next", "One more test would tell Coulomb friction from Stribeck friction"),
         ("unknown", "name", "Nothing in the catalogue explains it"),
         ("unknown", "model", "A law over velocity is missing"),
         ("consistent", "locate", "No equation is violated"),
@@ -126,22 +162,25 @@ def test_an_unknown_law_is_drawn_and_written(unknown: Diagnosis) -> None:
     simulated = replace(unknown, unknown=product, fitted_values={"recovered_force.knot_00": 3.0})
     stage = {one.name: one for one in story(simulated)}["model"]
     assert "without it" not in " ".join(stage.sentences)
-    panel = stage.pictures[0].groups[0].panels[0]
-    assert (panel.x_label, panel.y_label) == ("position [mm]", "force on the piston by its velocity [N s/m]")
+    picture = law_picture(simulated)
+    assert picture is not None
+    panel = picture.groups[0].panels[0]
+    assert (panel.x_label, panel.y_label) == ("position [mm]", "Force on the piston by its velocity [N s/m]")
 
 
-def test_the_proposed_test_is_drawn_and_told_as_parameters(ambiguous: Diagnosis) -> None:
+def test_the_proposed_test_is_drawn_with_the_commands_that_run_it(ambiguous: Diagnosis) -> None:
     stage = story(ambiguous)[-1]
     line = stage.pictures[0].groups[0].panels[0].marks[0]
     assert np.allclose(line.y, 20.0 * np.sin(2 * np.pi * 3.0 * line.x), atol=0.05)  # mV
-    assert "    sine.frequency: 3.0" in stage.code
+    assert "ros2 launch eha_sim_node next_experiment.launch.yaml file:=next_experiment.yaml" in stage.code
+    assert "It lasts 10 s; record voltage command, position, pressure of" in " ".join(stage.sentences)
 
 
 def test_every_stage_with_something_to_see_has_a_figure(friction: Diagnosis, tmp_path: Path) -> None:
-    pictures = [picture for stage in story(friction) for picture in stage.pictures]
-    written = write_figures(pictures, tmp_path / "figures")
-    assert {path.name[0] for path in written} == set("123456")
-    assert len({path.name for path in written}) == len(pictures)
+    drawn = [*pictures(friction), *(picture for stage in story(friction) for picture in stage.pictures)]
+    written = write_figures(drawn, tmp_path / "figures")
+    assert {path.name[0] for path in written} == set("0123456")
+    assert len({path.name for path in written}) == len(drawn)
     for path in written:
         pixels = imread(path)
         assert pixels.shape[1] > 800

@@ -176,7 +176,7 @@ def test_csv_file(csv_path: str) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("sinus:amplitude=1", "there is no signal 'sinus'; choose one of chirp, csv_file"),
+        ("sinus:amplitude=1", "there is no signal 'sinus'; did you mean sine"),
         ("sine:height=1", "signal sine has no parameter 'height'; it has amplitude, frequency, phase, offset"),
         ("sine:amplitude", "'amplitude' is no name=value"),
         ("sine:amplitude=big", "sine.amplitude = 'big' is no number; it is height of the sine"),

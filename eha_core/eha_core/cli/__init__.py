@@ -1,3 +1,4 @@
+# PYTHON_ARGCOMPLETE_OK
 """The command line `eha`: one verb, one file in this folder, no list of them.
 
 A verb's module offers `add_parser(subparsers)`, which adds the verb under the module's name, and
@@ -14,7 +15,8 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
 
-from eha_core.errors import EhaError
+from eha_core.errors import EhaError, remedy
+from eha_core.version import __version__
 
 UNUSABLE = 2
 """Exit status where the input or the arguments cannot be used."""
@@ -38,16 +40,25 @@ def verbs() -> list[str]:
 def main(words: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status; `words` defaults to those of the process."""
     words = sys.argv[1:] if words is None else words
-    parser = _Parser(prog="eha", description="The virtual electro-hydraulic actuator and what it is compared with.")
     known = verbs()
-    if not words or not (words[0].startswith("-") or words[0] in known):
-        parser.error(f"{words[0]!r} is no verb; choose {', '.join(known)}" if words else f"choose {', '.join(known)}")
+    description = "Simulates an electro-hydraulic actuator, and says what a model leaves out of a recording."
+    parser = _Parser(prog="eha", description=description)
+    parser.add_argument("--version", action="version", version=f"eha {__version__}")
+    completing = "_ARGCOMPLETE" in os.environ
+    if not completing and (not words or not (words[0].startswith("-") or words[0] in known)):
+        choice = f"choose {', '.join(known)}"
+        parser.error(f"{words[0]!r} is no verb; {remedy(words[0], known, choice)}" if words else choice)
     # A verb that is named is the only one imported: others may load compilers and plotting.
-    wanted = [words[0]] if words[0] in known else known
+    typed = os.environ.get("COMP_LINE", "").split()[1:2] if completing else words[:1]
+    wanted = typed if typed and typed[0] in known else known
     subparsers = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     modules = {verb: import_module(f"{__name__}.{verb}") for verb in wanted}
     for module in modules.values():
         module.add_parser(subparsers)
+    if completing:
+        from argcomplete import autocomplete
+
+        autocomplete(parser)
     arguments = parser.parse_args(words)
     try:
         status: int = modules[arguments.verb].run(arguments)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 
+from eha_core.api import nominal_model
 from eha_core.errors import EhaError
-from eha_core.parameters import NOMINAL, changed, load_parameters, nominal_values
-from eha_core.recording import Recording, read_recording
+from eha_core.recording import read_recording
 from eha_core.workers import Workers
 
 UNUSABLE = 2
@@ -30,6 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help=".mcap, rosbag2 folder, .db3 or .csv")
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
+    add("--as-recorded", action="store_true", help="go on where a recording cannot be right, and warn of it")
     add("--out", type=Path, metavar="DIR", help="folder for the report (default out/diagnosis/<recording>)")
     add("--json", metavar="FILE|-", help="write diagnosis.json there (- is standard output) and no report")
     add("--jobs", type=int, default=2, metavar="N", help="threads, with --each processes, side by side (default 2)")
@@ -46,15 +47,22 @@ def run(arguments: argparse.Namespace) -> int:
         return _run_each(arguments)
     if arguments.dask is not None:
         raise EhaError("--dask spreads recordings that are diagnosed on their own; give --each too")
+    from eha_core.plausibility import admit
+
     recordings = [read_recording(path, arguments.topics) for path in arguments.recordings]
-    nominal = _nominal(arguments.nominal, recordings[0])
+    nominal = nominal_model(arguments.nominal, recordings[0])
+    recordings = [admit(recording, nominal, arguments.as_recorded) for recording in recordings]
+    for warning in (remark for recording in recordings for remark in recording.remarks if remark.startswith("warning")):
+        print(f"eha diagnose: {warning}", file=sys.stderr)
     # compilers and plotting load slowly; bad input should be told at once
     from eha_core.diagnosis import diagnose_together
     from eha_core.diagnosis.document import as_json
     from eha_core.report.account import account
     from eha_core.report.files import write_report
+    from eha_core.report.provenance import with_provenance
 
     diagnosis = diagnose_together(recordings, nominal, progress=_progress(), jobs=arguments.jobs)
+    diagnosis = with_provenance(diagnosis, recordings, arguments.nominal)
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:
         folder = arguments.out or Path("out") / "diagnosis" / arguments.recordings[0].stem
@@ -77,7 +85,7 @@ def _run_each(arguments: argparse.Namespace) -> int:
     if doubled is not None:
         raise EhaError(f"two recordings would both write to {doubled}; rename one, or diagnose them apart")
     calls = [
-        (path.absolute(), arguments.nominal, arguments.topics, folder.absolute())
+        (path.absolute(), arguments.nominal, arguments.topics, folder.absolute(), arguments.as_recorded)
         for path, folder in zip(arguments.recordings, folders, strict=True)
     ]
     statuses = set()
@@ -87,25 +95,24 @@ def _run_each(arguments: argparse.Namespace) -> int:
     return next((status for status in (UNUSABLE, DAMAGED) if status in statuses), 0)
 
 
-def diagnose_alone(path: Path, nominal: Path | None, topics: Path | None, folder: Path) -> tuple[Path, int, str]:
+def diagnose_alone(
+    path: Path, nominal: Path | None, topics: Path | None, folder: Path, as_recorded: bool = False
+) -> tuple[Path, int, str]:
     """Diagnose one recording into `folder`: its path, its exit status, and the verdict or what is wrong, in a line."""
     from eha_core.diagnosis import diagnose_together
+    from eha_core.plausibility import admit
     from eha_core.report.files import write_report
+    from eha_core.report.provenance import with_provenance
 
     try:
         recording = read_recording(path, topics)
-        diagnosis = diagnose_together([recording], _nominal(nominal, recording), jobs=1)
+        values = nominal_model(nominal, recording)
+        recording = admit(recording, values, as_recorded)
+        diagnosis = with_provenance(diagnose_together([recording], values, jobs=1), [recording], nominal)
         write_report(diagnosis, folder)
     except EhaError as error:
         return path, UNUSABLE, str(error)
     return path, DAMAGED if recording.damaged else 0, diagnosis.summary
-
-
-def _nominal(path: Path | None, recording: Recording) -> Mapping[str, float]:
-    if path is not None:
-        return changed(nominal_values(), load_parameters(path))
-    names = {row.name for row in NOMINAL}
-    return changed(nominal_values(), {name: value for name, value in recording.parameters.items() if name in names})
 
 
 def _write(path: Path, text: str) -> Path:

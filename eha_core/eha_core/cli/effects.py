@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import argparse
 import inspect
-from difflib import get_close_matches
 from importlib import import_module
 
-from eha_core.effects import effects
-from eha_core.effects.declaration import SITES, Effect
-from eha_core.errors import ParameterError
+from eha_core.effects import SITES, Effect, effects
+from eha_core.errors import ParameterError, remedy
 from eha_core.parameter import Parameter
 from eha_core.parameters import catalogue
 
@@ -19,7 +17,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "effects",
         help="list the physical effects that the simulator can add",
-        description="Lists the catalogue of physical effects by where in the actuator they sit, or shows one in full.",
+        description="Lists the catalogue of physical effects by where in the actuator they act, or shows one in full.",
     )
     parser.add_argument("id", nargs="?", help="show this effect: what it does, its equation, its parameters")
     parser.add_argument("--parameters", action="store_true", help="list every parameter, the nominal plant's first")
@@ -74,7 +72,6 @@ def _of_curve(name: str) -> bool:
 def _find(identifier: str) -> Effect:
     known = {effect.id: effect for effect in effects()}
     if identifier not in known:
-        near = get_close_matches(identifier, known, n=1)
-        remedy = f"did you mean {near[0]}?" if near else "`eha effects` lists them"
-        raise ParameterError(f"there is no effect named {identifier}; {remedy}")
+        what_to_do = remedy(identifier, known, "`eha effects` lists them")
+        raise ParameterError(f"there is no effect named {identifier}; {what_to_do}")
     return known[identifier]

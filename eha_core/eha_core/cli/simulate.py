@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
-from eha_core.errors import EhaError, ParameterError, RecordingError
+from eha_core.errors import EhaError, ParameterError, RecordingError, remedy
 from eha_core.parameters import load_parameters
 from eha_core.recording import read_recording
 from eha_core.recording.recording import FloatArray
-from eha_core.recording.simulated import Experiment, simulate, write_simulated
+from eha_core.recording.simulated import Experiment, Simulated, simulate, simulate_sweep, write_simulated
+from eha_core.recording.simulated_table import write_csv
 from eha_core.signals import from_text, signals
 
 _SIGNAL_DURATION = 10.0
+MCAP, CSV = ".mcap", ".csv"
+COMMAND_LIMIT = 10.0
+"""V; what the simulator node's parameter command_limit is by default."""
+
+MOST_IN_A_SWEEP = 1000
+"""Recordings that one command writes (assumed: a folder that can still be listed)."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -32,7 +40,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help=f"voltages of a recording or a CSV file, or a signal such as sine:amplitude=8.4e-3,frequency=1"
         f" (signals: {', '.join(signals())})",
     )
-    parser.add_argument("--out", required=True, type=Path, metavar="FILE.mcap", help="the recording to write")
+    parser.add_argument(
+        "--out", required=True, type=Path, metavar="FILE", help=f"the recording to write, {MCAP} or {CSV}"
+    )
     parser.add_argument("--duration", type=float, metavar="S", help="simulated time (default: the command's, or 10 s)")
     parser.add_argument("--nominal", type=Path, metavar="FILE", help="parameters file in ROS 2's YAML form")
     parser.add_argument(
@@ -41,6 +51,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         default=[],
         metavar="NAME=VALUE[@S]",
         help="a parameter's value, from the start or from an instant on; may be given again",
+    )
+    parser.add_argument(
+        "--sweep",
+        metavar="NAME=A:B:N",
+        help="simulate N plants whose parameter NAME runs from A to B, evenly (by equal factors with A:B:Nlog); --out"
+        " FILE.mcap then writes FILE-1.mcap and so on",
     )
     parser.add_argument(
         "--topics", type=Path, metavar="FILE", help="topics file that says where the voltage is recorded"
@@ -64,18 +80,80 @@ def run(arguments: argparse.Namespace) -> int:
     start, changes = _settings(arguments.set)
     parameters = {**(load_parameters(arguments.nominal) if arguments.nominal else {}), **start}
     times, voltages, duration = _command(arguments)
+    _warn_of_limit(voltages)
     experiment = Experiment(
         times, voltages, duration, parameters, changes, arguments.step, arguments.rate, arguments.noise,
         arguments.seed, arguments.initial_position,
     )  # fmt: skip
+    if arguments.sweep:
+        return _sweep(experiment, arguments)
     record = simulate(experiment)
-    count = write_simulated(arguments.out, record, arguments.instruments_only)
+    written = _write(arguments.out, record, arguments.instruments_only)
     took = perf_counter() - started
-    print(f"{arguments.out}: {duration:g} s in {count} messages, simulated and written in {took:.2f} s")
+    print(f"{arguments.out}: {duration:g} s in {written}, simulated and written in {took:.2f} s")
     return 0
 
 
+def _write(path: Path, record: Simulated, instruments_only: bool) -> str:
+    """Write in the form that the ending asks for; return how much that is."""
+    if path.suffix.lower() == CSV:
+        return f"{write_csv(path, record, instruments_only)} rows"
+    return f"{write_simulated(path, record, instruments_only)} messages"
+
+
+def _sweep(experiment: Experiment, arguments: argparse.Namespace) -> int:
+    """Simulate and record one plant for each value of a parameter; print a line for each."""
+    started = perf_counter()
+    name, values = _swept(arguments.sweep)
+    width = len(str(len(values)))
+    out: Path = arguments.out
+    paths = [out.with_name(f"{out.stem}-{k:0{width}d}{out.suffix}") for k in range(1, len(values) + 1)]
+    for path in paths:
+        if path.exists():
+            raise RecordingError(f"{path}: the file exists already; choose another name, or remove it")
+    records = simulate_sweep(experiment, name, values)
+    print(f"{name:>24}  final position  largest pressure  recording")
+    for value, path, record in zip(values, paths, records, strict=True):
+        _write(path, record, arguments.instruments_only)
+        position = 1e3 * record.column("position")[-1]
+        pressure = 1e-6 * max(record.column("pressure_a").max(), record.column("pressure_b").max())
+        print(f"{value:24.6g}  {position:11.3f} mm  {pressure:12.3f} MPa  {path}")
+    print(f"{len(values)} x {experiment.duration:g} s simulated and written in {perf_counter() - started:.2f} s")
+    return 0
+
+
+def _swept(words: str) -> tuple[str, list[float]]:
+    """The parameter and its values."""
+    name, _, rest = words.partition("=")
+    try:
+        first, last, count = rest.split(":")
+        logarithmic = count.endswith("log")
+        number = int(count.removesuffix("log"))
+        if not 2 <= number <= MOST_IN_A_SWEEP:
+            raise ValueError
+        spread = np.geomspace if logarithmic else np.linspace
+        return name, spread(float(first), float(last), number).tolist()
+    except ValueError:
+        raise ParameterError(
+            f"--sweep {words!r} is no NAME=A:B:N or NAME=A:B:Nlog with N from 2 to {MOST_IN_A_SWEEP}; "
+            "equal factors (log) need A and B of one sign"
+        ) from None
+
+
+def _warn_of_limit(voltages: FloatArray) -> None:
+    """Say where the simulator node would clamp what is simulated here as it is."""
+    largest = float(np.max(np.abs(voltages), initial=0.0))
+    if largest > COMMAND_LIMIT:
+        print(
+            f"eha simulate: the command reaches {largest:g} V; the simulator node would clamp it at {COMMAND_LIMIT:g} V"
+            " (command_limit)",
+            file=sys.stderr,
+        )
+
+
 def _check(arguments: argparse.Namespace) -> None:
+    if arguments.out.suffix.lower() not in (MCAP, CSV):
+        raise EhaError(f"--out {arguments.out}: a recording is written as {MCAP} or {CSV}; give one of these endings")
     for name, lower, upper in (("duration", 1e-3, 3600.0), ("rate", 0.1, 1e4), ("noise", 0.0, 1e6), ("seed", 0, 2**63)):
         value = getattr(arguments, name)
         if value is not None and not lower <= value <= upper:
@@ -112,7 +190,8 @@ def _command(arguments: argparse.Namespace) -> tuple[FloatArray, FloatArray, flo
         times = np.arange(round(duration * arguments.rate)) / arguments.rate
         return times, signal.value(times), duration
     if not Path(words).exists():
-        raise EhaError(f"--command {words}: neither a file nor a signal; signals are {', '.join(signals())}")
+        shape = words.partition(":")[0]
+        raise EhaError(f"--command {words}: neither a file nor a signal; {remedy(shape, signals())}")
     channel = read_recording(words, arguments.topics).channels.get("voltage_command")
     if channel is None:
         raise RecordingError(f"{words}: no voltage_command was recorded; a topics file (--topics) can name the topic")

@@ -8,18 +8,23 @@ from textwrap import wrap
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, Location, NamedEffect
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import quantity, scale_for, short, with_deviation
+from eha_core.report.quantities import quantity, scale_for, short, within
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
 _INDENT = 13
-_LONGEST = {"Recording": 2, "Verdict": 3, "Located": 2, "Named": 4, "Recovered": 2, "Parameters": 2, "Next test": 3}
+_LONGEST = {"Recording": 2, "Verdict": 3, "Located": 2, "Named": 2, "Recovered": 2, "Parameters": 2, "Next test": 3}
+_MOST_EFFECTS = 8
 
 
 def account(diagnosis: Diagnosis, written: Sequence[Path] = (), width: int = 100) -> str:
-    """Say in at most 25 lines what was found, how sure it is, what it improves, and where the files are."""
+    """Say what was found, how sure it is, what it improves, and where the files are.
+
+    It takes 25 lines at most, and four more for each effect beyond the second.
+    """
     lines: list[str] = []
     for label, text in _findings(diagnosis):
-        lines += _section(label, text, width)
+        beyond_two = max(0, len(diagnosis.effects[:_MOST_EFFECTS]) - 2)
+        lines += _section(label, text, width, 2 * beyond_two if label == "Verdict" else 0)
     lines += _improvement(diagnosis)
     lines += _section("Next test", diagnosis.next_experiment.statement if diagnosis.next_experiment else "", width)
     lines += _section("Note", "; ".join(_notes(diagnosis)), width)
@@ -35,24 +40,25 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
     yield "Verdict", diagnosis.summary
     for location in diagnosis.location[:1]:
         yield "Located", _located(location)
-    yield "Named", "; ".join(_named(effect) for effect in diagnosis.effects)
+    for place, effect in enumerate(diagnosis.effects[:_MOST_EFFECTS]):
+        yield "" if place else "Named", _named(effect)
     if diagnosis.unknown:
         law = diagnosis.unknown
         expression = f": {law.expression}" if law.expression else ""
         yield "Recovered", f"a law over {law.function_of}{expression} (R² {law.r_squared:.3f})"
     changed = "; ".join(_changed(one) for one in diagnosis.parameters if one.changed)
-    yield "Parameters", f"{changed}: bent, it may be, by what is missing" if changed and diagnosis.bent else changed
+    yield "Parameters", f"{changed}: biased, it may be, by what is missing" if changed and diagnosis.bent else changed
     rivals = [f"{' + '.join(one.effects)} (evidence {one.evidence_gap:.1f} less)" for one in diagnosis.alternatives]
     yield "Not told", f"from {', nor from '.join(rivals)}" if rivals else ""
 
 
 def _named(effect: NamedEffect) -> str:
-    values = [f"{name} {with_deviation(one.value, one.std, one.unit)}" for name, one in effect.parameters.items()]
-    return f"{effect.id} ({', '.join(values)})"
+    values = [f"{name} {within(one.value, one.std, one.unit)}" for name, one in effect.parameters.items()]
+    return f"{effect.id} ({', '.join(values)}; 95 %)"
 
 
 def _changed(one: FittedParameter) -> str:
-    return f"{one.name} {with_deviation(one.fitted, one.std, one.unit)} (nominal {quantity(one.nominal, one.unit)})"
+    return f"{one.name} {within(one.fitted, one.std, one.unit)} (nominal {quantity(one.nominal, one.unit)})"
 
 
 def _located(location: Location) -> str:
@@ -66,12 +72,12 @@ def _improvement(diagnosis: Diagnosis) -> list[str]:
     if not fits:
         return []
     heading = f"{'RMSE on held-out data' if diagnosis.held_out else 'RMSE':30}"
-    lines = [heading + "".join(f"{column:>12}" for column in ("as given", "calibrated", "after", "noise"))]
+    lines = [heading + "".join(f"{column:>13}" for column in ("nominal", "recalibrated", "augmented", "noise"))]
     for name, fit in list(fits.items())[:4]:
         values = (fit.rmse_before, fit.rmse_calibrated, fit.rmse_after, fit.noise)
         scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
         title = f"{channel_title(name)} [{scale.unit}]"
-        lines.append(f"  {title:28}" + "".join(f"{short(value / scale.factor):>12}" for value in values))
+        lines.append(f"  {title:28}" + "".join(f"{short(value / scale.factor):>13}" for value in values))
     return lines
 
 
@@ -82,12 +88,13 @@ def _notes(diagnosis: Diagnosis) -> Iterator[str]:
     yield from diagnosis.remarks
 
 
-def _section(label: str, text: str, width: int) -> list[str]:
-    """The text under its label, cut short where it would fill the screen; the report has it all."""
+def _section(label: str, text: str, width: int, more: int = 0) -> list[str]:
+    """The text under its label, cut short where it would fill the screen; the report has it all. It may take so many
+    lines `more` than usual."""
     if not text:
         return []
     wrapped = wrap(text, width - _INDENT)
-    longest = _LONGEST.get(label, 1)
+    longest = _LONGEST.get(label or "Named", 1) + more
     if len(wrapped) > longest:
         wrapped = [*wrapped[: longest - 1], wrapped[longest - 1][: width - _INDENT - 2] + " …"]
     return [f"{'' if row else label:{_INDENT}}{line}" for row, line in enumerate(wrapped)]

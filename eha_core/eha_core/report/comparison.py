@@ -23,7 +23,8 @@ Message = tuple[int, str, str, bytes]
 
 
 def write_comparison(diagnosis: Diagnosis, path: Path) -> int:
-    """Write /measured, /nominal and /augmented with the simulator's topics below each; return the number of messages.
+    """Write /measured, /nominal, /recalibrated and /augmented with the simulator's topics below each, and /residual
+    with measured less augmented as plain numbers; return the number of messages.
 
     Stamps are the recording's own, so the file lies beside it on one time axis. Pressures are absolute, as their
     message defines them.
@@ -33,12 +34,18 @@ def write_comparison(diagnosis: Diagnosis, path: Path) -> int:
     """
     pictures = diagnosis.pictures
     atmosphere = {**nominal_values(), **diagnosis.fitted_values}["atmospheric_pressure"]
-    sources = {"measured": pictures.measured, "nominal": pictures.before, "augmented": pictures.after}
+    sources = {
+        "measured": pictures.measured,
+        "nominal": pictures.before,
+        "recalibrated": pictures.calibrated,
+        "augmented": pictures.after,
+    }
     topics = [
         topic
         for source, series in sources.items()
         for topic in _topics(f"/{source}", series, pictures.time, diagnosis.start_stamp, atmosphere)
     ]
+    topics += list(_residuals(pictures.measured, pictures.after, pictures.time, diagnosis.start_stamp))
     with RecordingWriter(path, diagnosis.fitted_values, flush_period=inf) as writer:
         for stamp, topic, type_name, data in merge(*topics):
             writer.write(topic, type_name, data, stamp)
@@ -61,6 +68,15 @@ def _topics(
             yield _messages(f"{source}/{_PRESSURE_TOPICS[name]}", PRESSURE, stamps, data)
         elif name != "velocity":
             yield _messages(f"{source}/{name}", FLOAT, stamps, encode_rows(FLOAT, {"data": values}))
+
+
+def _residuals(
+    measured: Mapping[str, Array], modelled: Mapping[str, Array], time: Mapping[str, Array], start: int
+) -> Iterator[Iterator[Message]]:
+    for name, values in modelled.items():
+        stamps = start + np.round(1e9 * time[name]).astype(np.int64)
+        rows = encode_rows(FLOAT, {"data": measured[name] - values})
+        yield _messages(f"/residual/{name}", FLOAT, stamps, rows)
 
 
 def _messages(topic: str, type_name: str, stamps: Integers, data: list[bytes]) -> Iterator[Message]:

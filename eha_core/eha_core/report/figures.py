@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from io import BytesIO
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from eha_core.report.picture import (
     COLOURS,
     NOISE_SHADE,
     SHADE,
+    TRANSLUCENT,
     Band,
     Bars,
     Dots,
@@ -24,17 +26,31 @@ from eha_core.report.picture import (
     Mark,
     Panel,
     Picture,
+    Ribbon,
     Spans,
+    Upright,
 )
 
 RESOLUTION = 120
 """Pixels an inch in the files."""
+
+SHOWN = 75
+"""Pixels an inch in a notebook."""
 
 PIXELS_PER_INCH = 100.0
 WIDTH = 11.0
 GAP = 62
 """Pixels for a panel's title and labels."""
 LEGEND_ROW = 0.3  # inches
+
+
+class Drawn(Figure):
+    """A figure that a notebook shows, whatever plotting backend it has."""
+
+    def _repr_png_(self) -> bytes:
+        stream = BytesIO()
+        self.savefig(stream, dpi=SHOWN, format="png")
+        return stream.getvalue()
 
 
 def write_figures(pictures: Iterable[Picture], folder: Path) -> tuple[Path, ...]:
@@ -48,12 +64,12 @@ def write_figures(pictures: Iterable[Picture], folder: Path) -> tuple[Path, ...]
     return tuple(written)
 
 
-def drawn(picture: Picture) -> Figure:
+def drawn(picture: Picture) -> Drawn:
     """The picture as a figure."""
     columns = len(picture.columns)
     rows = [picture.groups[start : start + columns] for start in range(0, len(picture.groups), columns)]
     heights = [max(sum(panel.height + GAP for panel in group.panels) for group in row) for row in rows]
-    figure = Figure(figsize=(WIDTH, (sum(heights) + 70) / PIXELS_PER_INCH), layout="constrained")
+    figure = Drawn(figsize=(WIDTH, (sum(heights) + 70) / PIXELS_PER_INCH), layout="constrained")
     grid = figure.add_gridspec(len(rows), columns, width_ratios=picture.columns, height_ratios=heights)
     for row, groups in enumerate(rows):
         for column, group in enumerate(groups):
@@ -99,11 +115,21 @@ def _draw(axes: Any, panel: Panel, last: bool) -> None:
         axes.set_xlim(*panel.x_range)
     if panel.y_range:
         axes.set_ylim(*panel.y_range)
+    if panel.x_ticks:
+        axes.set_xticks([place for place, _ in panel.x_ticks], [text for _, text in panel.x_ticks])
 
 
 def _mark(axes: Any, mark: Mark) -> None:
     if isinstance(mark, Line):
-        axes.plot(mark.x, mark.y, color=COLOURS[mark.role], linewidth=0.7 * mark.width)
+        style = "--" if mark.dashed else "-"
+        axes.plot(mark.x, mark.y, style, color=COLOURS[mark.role], linewidth=0.7 * mark.width)
+    elif isinstance(mark, Ribbon):
+        colour = COLOURS[mark.role]
+        axes.fill_between(mark.x, mark.low, mark.high, color=colour, alpha=TRANSLUCENT, linewidth=0)
+    elif isinstance(mark, Upright):
+        axes.axvline(mark.x, color=COLOURS["measured"], linewidth=0.9, linestyle=":")
+        axes.annotate(mark.label, (mark.x, 1.0), (3, -2), xycoords=("data", "axes fraction"),
+                      textcoords="offset points", va="top", fontsize=8, color="#5c6b78")  # fmt: skip
     elif isinstance(mark, Dots):
         axes.plot(
             mark.x, mark.y, ".", color=COLOURS[mark.role], markersize=0.75 * mark.size, alpha=0.5, markeredgewidth=0

@@ -9,33 +9,41 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.errors import EhaError
 from eha_core.parameters import dump_parameters
 from eha_core.report.comparison import write_comparison
+from eha_core.report.experiment_file import FILE, experiment_file
 from eha_core.report.figures import write_figures
+from eha_core.report.first_screen import pictures as first_screen
 from eha_core.report.html import write_page
 from eha_core.report.stages import story
 
 
 def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
-    """Write report.html, figures/, diagnosis.json, fitted.yaml and comparison.mcap; files of an earlier run go.
+    """Write report.html, figures/, diagnosis.json, fitted.yaml, comparison.mcap and, where a test is proposed,
+    next_experiment.yaml; files of an earlier run go.
 
     Returns what was written, most readable first. Raises EhaError where the folder cannot be written to.
     """
     page, document, fitted = folder / "report.html", folder / "diagnosis.json", folder / "fitted.yaml"
-    comparison = folder / "comparison.mcap"
+    comparison, experiment = folder / "comparison.mcap", folder / FILE
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for old in (folder / "figures").glob("[1-7]-*.png"):
+        for old in (folder / "figures").glob("[0-7]-*.png"):
             old.unlink()
         comparison.unlink(missing_ok=True)
         document.write_text(as_json(diagnosis), encoding="utf-8")
         fitted.write_text(dump_parameters(diagnosis.fitted_values, _heading(diagnosis)), encoding="utf-8")
         write_comparison(diagnosis, comparison)
-        write_figures([picture for stage in story(diagnosis) for picture in stage.pictures], folder / "figures")
+        told = [picture for stage in story(diagnosis) for picture in stage.pictures]
+        write_figures([*first_screen(diagnosis), *told], folder / "figures")
+        experiment.unlink(missing_ok=True)
+        if diagnosis.next_experiment is not None:
+            experiment.write_text(experiment_file(diagnosis, diagnosis.next_experiment), encoding="utf-8")
         write_page(diagnosis, page)
     except OSError as error:
         raise EhaError(
             f"{error.filename or folder}: cannot be written ({error.strerror}); choose another --out"
         ) from error
-    return (page, folder / "figures", document, fitted, comparison)
+    proposed = (experiment,) if diagnosis.next_experiment is not None else ()
+    return (page, folder / "figures", document, fitted, comparison, *proposed)
 
 
 def _heading(diagnosis: Diagnosis) -> str:

@@ -12,12 +12,15 @@ from string import Template
 from plotly.offline import get_plotlyjs
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.experiment_file import FILE
+from eha_core.report.finding import headline, supporting
+from eha_core.report.first_screen import pictures as first_screen
 from eha_core.report.picture import Picture
 from eha_core.report.plotly_drawing import figure
+from eha_core.report.stage import Stage, Table
 from eha_core.report.stages import story
 from eha_core.report.stages.show import error_table
-from eha_core.report.stages.stage import Stage, Table
-from eha_core.report.wording import VERDICT_TITLES, sentence
+from eha_core.report.wording import VERDICT_TITLES, words
 
 
 def page(diagnosis: Diagnosis) -> str:
@@ -32,8 +35,13 @@ def page(diagnosis: Diagnosis) -> str:
         recording=escape(Path(diagnosis.path).name),
         verdict=diagnosis.verdict,
         verdict_title=escape(VERDICT_TITLES[diagnosis.verdict]),
-        summary=escape(_summary(diagnosis)),
+        headline=escape(headline(diagnosis)),
+        supporting="".join(f"<li>{escape(one)}</li>" for one in supporting(diagnosis)),
+        proof="".join(_picture(one) for one in first_screen(diagnosis)),
+        errors_title=escape(error_table(diagnosis).title),
         errors=_table(error_table(diagnosis), folded=False),
+        files=_files(diagnosis),
+        provenance=_provenance(diagnosis),
         steps="".join(
             f'<a href="#{one.name}"><span>{number}</span>{escape(one.title)}</a>'
             for number, one in enumerate(stages, start=1)
@@ -47,9 +55,24 @@ def write_page(diagnosis: Diagnosis, path: Path) -> None:
     path.write_text(page(diagnosis), encoding="utf-8")
 
 
-def _summary(diagnosis: Diagnosis) -> str:
-    """The summary without the verdict, which stands above it."""
-    return sentence(diagnosis.summary.removeprefix(f"{VERDICT_TITLES[diagnosis.verdict]}: "))
+FILES = {
+    "fitted.yaml": "starts the simulator with what was found",
+    "comparison.mcap": "measured, nominal, recalibrated and augmented model and residuals, for PlotJuggler or Foxglove",
+    "diagnosis.json": "the result for programs",
+}
+
+
+def _files(diagnosis: Diagnosis) -> str:
+    """Links to what lies beside the page."""
+    proposed = {FILE: "the next experiment, for the reference node"} if diagnosis.next_experiment else {}
+    rows = (f'<li><a href="{name}">{name}</a>: {escape(what)}</li>' for name, what in {**FILES, **proposed}.items())
+    return "".join(rows)
+
+
+def _provenance(diagnosis: Diagnosis) -> str:
+    """Where the page comes from, as a list; empty where the diagnosis does not say."""
+    rows = (f"<dt>{escape(words(name))}</dt><dd>{escape(text)}</dd>" for name, text in diagnosis.provenance.items())
+    return "".join(rows)
 
 
 def _stage(number: int, stage: Stage) -> str:
@@ -81,16 +104,25 @@ def _picture(picture: Picture) -> str:
             f'<div class="plot" style="height:{height}px"><script type="application/json">{data}</script></div>'
         )
     columns = " ".join(f"{width}fr" for width in picture.columns)
+    save = '<span class="save"><button type="button" data-as="svg">SVG</button>'
+    save += '<button type="button" data-as="png">PNG</button></span>'
     return (
-        f'<figure>{title}<div class="legend">{chips}</div>'
+        f'<figure data-name="{picture.name}">{title}<div class="legend">{chips}{save}</div>'
         f'<div class="plots" style="--columns:{columns}">{"".join(plots)}</div>'
         f"<figcaption>{escape(picture.caption)}</figcaption></figure>"
     )
 
 
+def _cells(headings: tuple[str, ...], row: tuple[str, ...]) -> str:
+    """Cells that name their column, as a phone shows them below each other."""
+    return "".join(
+        f'<td data-label="{escape(heading)}">{escape(cell)}</td>' for heading, cell in zip(headings, row, strict=True)
+    )
+
+
 def _table(table: Table, folded: bool = True) -> str:
     head = "".join(f"<th>{escape(one)}</th>" for one in table.headings)
-    body = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    body = "".join(f"<tr>{_cells(table.headings, row)}</tr>" for row in table.rows)
     content = f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
     if not folded:
         return content

@@ -27,6 +27,32 @@ for (const button of document.querySelectorAll(".legend button")) {
   });
 }
 
+// Plots over time show the same span.
+const timed = plots.filter((place) => JSON.stringify(place.layout.xaxis.title || "").includes("time [s]") ||
+  Object.keys(place.layout).some((key) => key.startsWith("xaxis") && (place.layout[key].title || {}).text === "time [s]"));
+let following = false;
+for (const place of timed) {
+  place.on("plotly_relayout", (change) => {
+    const low = change["xaxis.range[0]"], all = change["xaxis.autorange"];
+    if (following || (low === undefined && !all)) return;
+    following = true;
+    const update = all ? { "xaxis.autorange": true } : { "xaxis.range": [low, change["xaxis.range[1]"]] };
+    Promise.all(timed.filter((one) => one !== place).map((one) => Plotly.relayout(one, update))).then(() => {
+      following = false;
+    });
+  });
+}
+
+for (const button of document.querySelectorAll(".save button")) {
+  button.addEventListener("click", () => {
+    const figure = button.closest("figure");
+    [...figure.querySelectorAll(".plot")].forEach((place, index) => {
+      const size = { width: place.clientWidth, height: place.clientHeight, scale: button.dataset.as === "png" ? 2 : 1 };
+      Plotly.downloadImage(place, { ...size, format: button.dataset.as, filename: `${figure.dataset.name}-${index + 1}` });
+    });
+  });
+}
+
 function fit(printing) {
   document.body.classList.toggle("printing", printing);
   // at once, for the browser lays out the paper as soon as this returns

@@ -18,14 +18,17 @@ COLOURS = {
 
 FEW_DOTS = 500
 
+TRANSLUCENT = 0.22
+"""Opacity of a ribbon."""
+
 SHADE = "#e9e2d4"
 NOISE_SHADE = "#d5dde3"
 
 LABELS = {
     "measured": "measured",
-    "before": "model as given",
-    "calibrated": "model calibrated",
-    "after": "with what was found",
+    "before": "nominal model",
+    "calibrated": "recalibrated",
+    "after": "augmented",
     "other": "not decisive",
 }
 
@@ -39,21 +42,42 @@ class Line:
     role: str
     label: str = ""
     width: float = 1.4
+    dashed: bool = False
+
+
+@dataclass(frozen=True)
+class Ribbon:
+    """The area between two curves over one axis."""
+
+    x: Array
+    low: Array
+    high: Array
+    role: str
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Upright:
+    """A vertical line that divides the axis."""
+
+    x: float
+    label: str
 
 
 @dataclass(frozen=True)
 class Dots:
-    """Many single points."""
+    """Many single points; without a `diameter` [pixels] few are drawn larger."""
 
     x: Array
     y: Array
     role: str
     label: str = ""
+    diameter: float = 0.0
 
     @property
     def size(self) -> float:
-        """Their diameter in pixels: few are drawn larger."""
-        return 3.5 if len(self.x) > FEW_DOTS else 6.0
+        """Their diameter in pixels."""
+        return self.diameter or (3.5 if len(self.x) > FEW_DOTS else 6.0)
 
 
 @dataclass(frozen=True)
@@ -94,12 +118,15 @@ class Spans:
     label: str
 
 
-Mark = Line | Dots | Intervals | Bars | Band | Spans
+Mark = Line | Dots | Ribbon | Upright | Intervals | Bars | Band | Spans
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes; `height` in the page's pixels; ranges where not all should be seen at first."""
+    """One pair of axes; `height` in the page's pixels; ranges where not all should be seen at first.
+
+    `x_ticks` are places with their labels, where the axis is no plain number.
+    """
 
     marks: tuple[Mark, ...]
     x_label: str = ""
@@ -108,6 +135,7 @@ class Panel:
     height: int = 190
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
+    x_ticks: tuple[tuple[float, str], ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -144,7 +172,7 @@ class Picture:
 
 
 def _legend(mark: Mark) -> Sequence[tuple[str, str]]:
-    if isinstance(mark, (Line, Dots)):
+    if isinstance(mark, (Line, Dots, Ribbon)):
         return [(mark.label, COLOURS[mark.role])] if mark.label else []
     if isinstance(mark, (Band, Spans)):
         return [(mark.label, NOISE_SHADE if isinstance(mark, Band) else SHADE)]

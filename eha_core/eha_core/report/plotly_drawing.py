@@ -17,6 +17,7 @@ from eha_core.report.picture import (
     COLOURS,
     NOISE_SHADE,
     SHADE,
+    TRANSLUCENT,
     Band,
     Bars,
     Dots,
@@ -25,7 +26,9 @@ from eha_core.report.picture import (
     Line,
     Mark,
     Panel,
+    Ribbon,
     Spans,
+    Upright,
 )
 
 FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, Helvetica, Arial, sans-serif"
@@ -87,6 +90,12 @@ def _across(panel: Panel, suffix: str, last: bool) -> Drawing:
         axis["matches"] = "x"
     if panel.x_range:
         axis["range"] = panel.x_range
+    if panel.x_ticks:
+        axis |= {
+            "tickvals": [place for place, _ in panel.x_ticks],
+            "ticktext": [text for _, text in panel.x_ticks],
+            "zeroline": False,
+        }
     return axis
 
 
@@ -135,6 +144,18 @@ def _traces(mark: Mark, unit: str) -> Iterator[Drawing]:
             "hovertemplate": f"%{{y:.5g}} {unit}<br>at %{{x:.4g}}<extra>{mark.label}</extra>",
             **_style(mark),
         }
+    elif isinstance(mark, Ribbon):
+        yield {
+            "type": "scatter",
+            "x": _packed(np.concatenate([mark.x, mark.x[::-1]])),
+            "y": _packed(np.concatenate([mark.high, mark.low[::-1]])),
+            "name": mark.label,
+            "fill": "toself",
+            "fillcolor": _translucent(COLOURS[mark.role]),
+            "line": {"width": 0},
+            "mode": "lines",
+            "hoverinfo": "skip",
+        }
     elif isinstance(mark, Intervals):
         for row, (name, text, role) in enumerate(zip(mark.names, mark.texts, mark.roles, strict=True)):
             reach = {"type": "data", "array": [float(mark.reach[row])], "thickness": 2, "width": 4}
@@ -163,8 +184,14 @@ def _traces(mark: Mark, unit: str) -> Iterator[Drawing]:
 
 def _style(mark: Line | Dots) -> Drawing:
     if isinstance(mark, Line):
-        return {"mode": "lines", "line": {"color": COLOURS[mark.role], "width": mark.width}}
+        line = {"color": COLOURS[mark.role], "width": mark.width, "dash": "dash" if mark.dashed else "solid"}
+        return {"mode": "lines", "line": line}
     return {"mode": "markers", "marker": {"color": COLOURS[mark.role], "size": mark.size, "opacity": 0.45}}
+
+
+def _translucent(colour: str) -> str:
+    red, green, blue = (int(colour[place : place + 2], 16) for place in (1, 3, 5))
+    return f"rgba({red},{green},{blue},{TRANSLUCENT})"
 
 
 def _shapes(mark: Mark, suffix: str) -> Iterator[Drawing]:
@@ -172,6 +199,11 @@ def _shapes(mark: Mark, suffix: str) -> Iterator[Drawing]:
     if isinstance(mark, Band):
         place = {"xref": f"x{suffix} domain", "yref": f"y{suffix}", "x0": 0, "x1": 1, "y0": mark.low, "y1": mark.high}
         yield {**common, **place, "fillcolor": NOISE_SHADE, "name": mark.label}
+    elif isinstance(mark, Upright):
+        place = {"xref": f"x{suffix}", "yref": f"y{suffix} domain", "x0": mark.x, "x1": mark.x, "y0": 0, "y1": 1}
+        line = {"width": 1.2, "dash": "dot", "color": INK}
+        label = {"text": mark.label, "textposition": "end", "textangle": 0, "xanchor": "left", "yanchor": "top"}
+        yield {**place, "type": "line", "line": line, "label": {**label, "font": {"size": 11, "color": QUIET}}}
     elif isinstance(mark, Spans):
         for start, end in mark.spans:
             place = {"xref": f"x{suffix}", "yref": f"y{suffix} domain", "x0": start, "x1": end, "y0": 0, "y1": 1}

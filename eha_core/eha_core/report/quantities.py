@@ -66,7 +66,30 @@ def with_deviation(value: float, deviation: float, unit: str) -> str:
     decimals = max(0, 1 - floor(log10(deviation / scale.factor)))
     if decimals > 6:
         return quantity(value, unit, 7)
-    numbers = f"{value / scale.factor:.{decimals}f} ± {deviation / scale.factor:.{decimals}f}"
+    return _in_unit(f"{value / scale.factor:.{decimals}f} ± {deviation / scale.factor:.{decimals}f}", scale)
+
+
+def interval(value: float, deviation: float, unit: str, sure: float = 1.96) -> str:
+    """Both ends of a 95 % interval, with digits as the deviation deserves: "312.37 to 313.27 N"."""
+    if not (isfinite(deviation) and deviation > 0.0 and isfinite(value)):
+        return "not known"
+    scale, decimals = _resolution(value, deviation, unit)
+    low, high = ((value + side * sure * deviation) / scale.factor for side in (-1.0, 1.0))
+    return _in_unit(f"{low:.{decimals}f} to {high:.{decimals}f}", scale)
+
+
+def within(value: float, deviation: float, unit: str, sure: float = 1.96) -> str:
+    """A value with half its 95 % interval: "312.82 ± 0.45 N"."""
+    return with_deviation(value, sure * deviation, unit)
+
+
+def _resolution(value: float, deviation: float, unit: str) -> tuple[Scale, int]:
+    """The scale of a value, and the decimals in it that its deviation leaves worth showing."""
+    scale = scale_for(unit, max(abs(value), deviation))
+    return scale, min(6, max(0, 1 - floor(log10(deviation / scale.factor))))
+
+
+def _in_unit(numbers: str, scale: Scale) -> str:
     return f"({numbers}) {scale.unit}" if scale.unit.startswith("×") else f"{numbers}{scale.suffix}"
 
 

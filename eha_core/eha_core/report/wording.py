@@ -22,10 +22,10 @@ _CHANNEL_TITLES = {
     "voltage_command": "voltage command",
     "current": "coil current",
     "spool": "spool position",
-    "flow_a": "flow into chamber 1",
-    "flow_b": "flow out of chamber 2",
-    "pressure_a": "pressure of chamber 1",
-    "pressure_b": "pressure of chamber 2",
+    "flow_a": "flow into chamber A",
+    "flow_b": "flow out of chamber B",
+    "pressure_a": "pressure of chamber A",
+    "pressure_b": "pressure of chamber B",
     "supply_pressure": "supply pressure",
     "position": "position",
     "velocity": "velocity",
@@ -34,19 +34,8 @@ _CHANNEL_TITLES = {
 
 EQUATION_TITLES = {
     "force": "Force balance of the piston",
-    "continuity_a": "Continuity of chamber 1",
-    "continuity_b": "Continuity of chamber 2",
-}
-
-SITE_TITLES = {
-    "command": "between command and coil",
-    "spool": "between coil current and spool",
-    "orifice": "in the valve's flow",
-    "supply": "in the supply or return line",
-    "chamber": "in the chambers' continuity",
-    "force": "in the piston's force balance",
-    "sensor": "in a sensor",
-    "schedule": "in a parameter that changes in time",
+    "continuity_a": "Continuity of chamber A",
+    "continuity_b": "Continuity of chamber B",
 }
 
 VARIABLE_UNITS = {
@@ -66,10 +55,23 @@ LAW_AXES = {
     ("force", "position, times direction of motion"): ("force on the piston by its direction", "N", "m"),
     ("force", "pressure difference, times direction of motion"): ("force on the piston by its direction", "N", "Pa"),
     ("orifice", "spool position"): ("opening beyond the spool's position", "A", "A"),
-    ("chamber", "pressure difference"): ("flow from chamber 1 to 2", "m^3/s", "Pa"),
-    ("chamber", "position, times pressure difference"): ("conductance from chamber 1 to 2", "m^3/(s Pa)", "m"),
+    ("chamber", "pressure difference"): ("flow from chamber A to B", "m^3/s", "Pa"),
+    ("chamber", "position, times pressure difference"): ("conductance from chamber A to B", "m^3/(s Pa)", "m"),
 }
 """What a recovered law gives, its unit, and the unit of what it is over."""
+
+
+_PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck"}
+
+
+def effect_title(name: str) -> str:
+    """An effect's id as words, with people's names in capitals."""
+    return " ".join(_PROPER.get(word, word) for word in name.split("_"))
+
+
+def capital(text: str) -> str:
+    """Text with a capital first letter, the rest as it is."""
+    return text[:1].upper() + text[1:]
 
 
 def channel_title(name: str) -> str:
@@ -117,7 +119,7 @@ def span(seconds: tuple[float, float]) -> str:
 
 def sentence(text: str) -> str:
     """Text with a capital letter and a full stop."""
-    return f"{text[:1].upper()}{text[1:]}{'' if text.endswith(('.', '!', '?')) else '.'}" if text else ""
+    return f"{capital(text)}{'' if text.endswith(('.', '!', '?')) else '.'}" if text else ""
 
 
 def told_errors(diagnosis: Diagnosis, first: str, second: str, means: str) -> str:

@@ -8,7 +8,7 @@ from functools import cache
 from importlib import import_module
 from types import MappingProxyType
 
-from eha_core.errors import ParameterError
+from eha_core.errors import ParameterError, remedy
 from eha_core.signals.signal import Signal, SignalParameter
 
 __all__ = ["Signal", "SignalParameter", "from_text", "make_signal", "signals"]
@@ -36,12 +36,13 @@ def make_signal(name: str, parameters: Mapping[str, object] | None = None) -> Si
         ParameterError: unknown name or parameter, or a value out of its range.
     """
     if name not in signals():
-        raise ParameterError(f"there is no signal {name!r}; choose one of {', '.join(signals())}")
+        raise ParameterError(f"there is no signal {name!r}; {remedy(name, signals())}")
     signal = signals()[name]
     known = [row.name for row in signal.parameters()]
     for parameter in parameters or {}:
         if parameter not in known:
-            raise ParameterError(f"signal {name} has no parameter {parameter!r}; it has {', '.join(known)}")
+            what_to_do = remedy(parameter, known, f"it has {', '.join(known)}")
+            raise ParameterError(f"signal {name} has no parameter {parameter!r}; {what_to_do}")
     return signal(**dict(parameters or {}))  # type: ignore[arg-type]
 
 

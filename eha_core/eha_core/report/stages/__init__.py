@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.stage import Stage
 from eha_core.report.stages import calibrate, locate, model, name, next_experiment, read, show
-from eha_core.report.stages.stage import Stage
 
 _ORDER = (read, calibrate, locate, name, model, show, next_experiment)
 

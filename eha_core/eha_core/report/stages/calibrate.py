@@ -7,11 +7,8 @@ import numpy as np
 from eha_core.diagnosis.result import Diagnosis, FittedParameter
 from eha_core.report.picture import Group, Intervals, Panel, Picture
 from eha_core.report.quantities import quantity, with_deviation
-from eha_core.report.stages.stage import Stage, Table
+from eha_core.report.stage import SURE, Stage, Table
 from eha_core.report.wording import listed, sentence, told_errors, words
-
-SURE = 1.96
-"""Standard deviations to either side that make a 95 % interval."""
 
 MOST_NAMED = 4
 """Changed parameters that the headline names; more are counted."""

@@ -8,14 +8,17 @@ import numpy as np
 
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.effects import SITES
+from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.claims import equations_hold
 from eha_core.report.picture import Band, Dots, Group, Line, Mark, Panel, Picture
-from eha_core.report.quantities import scale_for
+from eha_core.report.quantities import quantity, scale_for
 from eha_core.report.series import spread, strongest_dependence, thinned
-from eha_core.report.stages.stage import Stage, Table, violated
+from eha_core.report.stage import Stage, Table, violated
 from eha_core.report.wording import (
     EQUATION_TITLES,
-    SITE_TITLES,
     VARIABLE_UNITS,
+    capital,
     channel_title,
     listed,
     span,
@@ -34,7 +37,8 @@ SIGNIFICANT_SHARE = 0.03
 def stage(diagnosis: Diagnosis) -> Stage:
     """What calibration leaves, by equation and by channel, over time and over what it depends on most."""
     if not diagnosis.location:
-        headline = "No equation is violated"
+        holds = equations_hold(diagnosis)
+        headline = "No equation is violated" if holds else "No mismatch is left that an effect would explain"
         sentences = ["What calibration leaves is examined for structure, in time and over every state of the actuator."]
     else:
         headline = diagnosis.location[0].statement[:1].upper() + diagnosis.location[0].statement[1:]
@@ -55,7 +59,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
 def _others(diagnosis: Diagnosis) -> str:
     """What effects of other sites could take away: the sites overlap, so the shares do not add up to one."""
     others = [
-        f"{SITE_TITLES[one.site]} ({one.share:.0%})" for one in diagnosis.location[1:] if one.share > MENTIONED_SHARE
+        f"{SITES[one.site].words} ({one.share:.0%})" for one in diagnosis.location[1:] if one.share > MENTIONED_SHARE
     ]
     if not others:
         return ""
@@ -70,8 +74,9 @@ def _equations(diagnosis: Diagnosis) -> Iterator[tuple[str, Array, Array]]:
 def _channels(diagnosis: Diagnosis) -> Iterator[tuple[str, Array, Array]]:
     pictures, fits = diagnosis.pictures, diagnosis.held_out or diagnosis.training
     for name, modelled in pictures.calibrated.items():
+        noise = quantity(fits[name].noise, CHANNEL_KINDS[name].unit)
         yield (
-            channel_title(name).capitalize(),
+            f"{capital(channel_title(name))} (noise {noise})",
             pictures.time[name],
             (pictures.measured[name] - modelled) / fits[name].noise,
         )

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from eha_core.curve import KNOTS
-from eha_core.diagnosis.result import Diagnosis, UnknownLaw
-from eha_core.report.picture import LABELS, Dots, Group, Intervals, Line, Panel, Picture
-from eha_core.report.quantities import quantity, scale_for, with_deviation
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.effects import SITES
+from eha_core.report.finding import effects_listed
+from eha_core.report.picture import LABELS, Dots, Group, Intervals, Panel, Picture
+from eha_core.report.quantities import interval, scale_for, with_deviation
 from eha_core.report.series import spread, strongest_dependence
-from eha_core.report.stages.calibrate import SURE
+from eha_core.report.stage import SURE, Stage, Table
 from eha_core.report.stages.locate import NOISE
-from eha_core.report.stages.stage import Stage, Table
 from eha_core.report.wording import (
-    LAW_AXES,
-    SITE_TITLES,
     VARIABLE_UNITS,
+    capital,
     channel_title,
+    effect_title,
     sentence,
     variable_title,
     words,
@@ -35,33 +35,18 @@ def stage(diagnosis: Diagnosis) -> Stage:
             "As a formula, it reads:" if law.expression else "No simple formula follows its curve.",
         )
         headline = f"A law over {law.function_of} is missing"
-        return Stage("model", "Model", headline, told, (_curve(law),), code=law.expression)
+        return Stage("model", "Model", headline, told, code=law.expression)
     if not diagnosis.effects:
         ending = "with the fitted parameters" if diagnosis.verdict == "parameters" else "as it was given"
         return Stage("model", "Model", f"The model stands {ending}", ("No physics was added.",))
-    headline = "; ".join(one.statement for one in diagnosis.effects)
     sentences = (
+        *(sentence(one.statement) for one in diagnosis.effects),
         "Started with fitted.yaml, the simulator has this physics.",
-        *(f"{words(one.id).capitalize()} sits {SITE_TITLES[one.site]}." for one in diagnosis.effects),
+        *(f"{capital(effect_title(one.id))} acts {SITES[one.site].words}." for one in diagnosis.effects),
     )
     code = "\n".join(one.equation for one in diagnosis.effects)
     pictures = tuple(one for one in (_collapse(diagnosis), _intervals(diagnosis)) if one)
-    return Stage("model", "Model", sentence(headline).rstrip("."), sentences, pictures, (_table(diagnosis),), code)
-
-
-def _curve(law: UnknownLaw) -> Picture:
-    x, y = (np.array([one[place] for one in law.samples]) for place in (0, 1))
-    y_title, y_unit, x_unit = LAW_AXES.get((law.site, law.function_of), ("law", "-", "-"))
-    across = scale_for(x_unit, float(np.abs(x).max(initial=0.0)))
-    up = scale_for(y_unit, float(np.abs(y).max(initial=0.0)))
-    line = Line(x / across.factor, y / up.factor, "after", "recovered law", 2.2)
-    knots = Dots(x / across.factor, y / up.factor, "after")
-    marks = (line, knots) if len(x) <= KNOTS else (line,)
-    variable = law.function_of.partition(",")[0]
-    panel = Panel(marks, f"{variable} [{across.unit or '-'}]", f"{y_title} [{up.unit or '-'}]", height=340)
-    return Picture(
-        "5-model", (Group((panel,)),), caption="The recovered law, where the recording says something about it."
-    )
+    return Stage("model", "Model", capital(effects_listed(diagnosis)), sentences, pictures, (_table(diagnosis),), code)
 
 
 def _collapse(diagnosis: Diagnosis) -> Picture | None:
@@ -88,7 +73,7 @@ def _collapse(diagnosis: Diagnosis) -> Picture | None:
 
 def _intervals(diagnosis: Diagnosis) -> Picture | None:
     rows = [
-        (f"{words(effect.id)}: {words(name)}", one)
+        (f"{effect_title(effect.id)}: {words(name)}", one)
         for effect in diagnosis.effects
         for name, one in effect.parameters.items()
         if one.value != 0.0 and np.isfinite(one.std)
@@ -108,9 +93,8 @@ def _table(diagnosis: Diagnosis) -> Table:
     rows = []
     for effect in diagnosis.effects:
         for name, one in effect.parameters.items():
-            low, high = one.value - SURE * one.std, one.value + SURE * one.std
-            interval = f"{quantity(low, one.unit)} to {quantity(high, one.unit)}"
-            rows.append((f"{effect.id}.{name}", with_deviation(one.value, one.std, one.unit), interval))
+            deviation = with_deviation(one.value, one.std, one.unit)
+            rows.append((f"{effect.id}.{name}", deviation, interval(one.value, one.std, one.unit, SURE)))
     return Table(
         ("parameter", "value (± standard deviation)", "95 % interval"), tuple(rows), "Parameters of the added physics"
     )

@@ -1,16 +1,22 @@
-"""Stage 4, name: the tournament of hypotheses."""
+"""Stage 4, name: the hypotheses compared."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.diagnosis.tournament import ENOUGH
-from eha_core.report.picture import Bars, Group, Panel, Picture
-from eha_core.report.stages.stage import Stage, adds_physics
-from eha_core.report.wording import listed, words
+from eha_core.diagnosis.tournament import ENOUGH, TIE
+from eha_core.effects import effects
+from eha_core.report.picture import Bars, Group, Panel, Picture, Upright
+from eha_core.report.stage import Stage, adds_physics
+from eha_core.report.wording import effect_title, listed
 
 SHOWN = 12
+
+STUB = 1.6
+"""How long the bar of what is not behind at all is drawn, as a factor on the logarithmic axis."""
+
+NULL = "nothing added (recalibrated model)"
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
@@ -32,7 +38,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
 
 def named(effects: tuple[str, ...]) -> str:
     """A hypothesis by its effects."""
-    return " + ".join(words(one) for one in effects) or "nothing added"
+    return " + ".join(map(effect_title, effects)) or "nothing added"
 
 
 def _headline(diagnosis: Diagnosis) -> str:
@@ -47,27 +53,46 @@ def _headline(diagnosis: Diagnosis) -> str:
 
 
 def _picture(diagnosis: Diagnosis) -> Picture:
-    rivals = diagnosis.rivals[:SHOWN]
+    """How far each hypothesis is behind the best, on a logarithmic axis; the model that adds nothing is among them."""
+    best = float(diagnosis.rivals[0][1])
+    ranked = [(named(effects), set(effects), score) for effects, score in diagnosis.rivals[:SHOWN]]
+    if all(effects for _, effects, _ in ranked):
+        ranked.append((NULL, set(), 0.0))
+    ranked.sort(key=lambda one: -one[2])
+    top = max(best, 0.0)
+    behind = np.array([top - score for _, _, score in ranked])
     chosen = {one.id for one in diagnosis.effects}
     tied = [set(one.effects) for one in diagnosis.alternatives]
     roles = tuple(
-        "after" if chosen and set(effects) == chosen else "calibrated" if set(effects) in tied else "other"
-        for effects, _ in rivals
+        "after" if effects == chosen else "calibrated" if effects in tied else "other" for _, effects, _ in ranked
     )
-    scores = np.array([score for _, score in rivals])
-    best = float(scores[0])
-    texts = (f"{best:,.0f}".replace("-", "−"), *(f"{best - score:,.0f} behind" for score in scores[1:]))
-    # hypotheses that fit worse than nothing at all would leave no room for the others
-    limit = max(best, ENOUGH)
-    bars = Bars(tuple(named(effects) for effects, _ in rivals), np.maximum(scores, 0.0), roles, texts)
+    texts = tuple("best" if one <= 0.0 else f"{one:,.0f} behind" for one in behind)
+    rungs = Bars(tuple(name for name, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
+    decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
+    ticks = tuple((exponent + np.log10(STUB), f"{10**exponent:,}") for exponent in decades)
     panel = Panel(
-        (bars,),
-        "evidence",
-        height=50 + 36 * len(rivals),
-        x_range=(0.0, 1.4 * limit),
+        (Upright(float(np.log10(TIE * STUB)), "told apart"), rungs),
+        "evidence behind the best (log scale)",
+        height=50 + 30 * len(ranked),
+        x_range=(0.0, 1.3 * (decades[-1] + np.log10(STUB))),
+        x_ticks=ticks,
     )
     caption = (
-        "The tournament. Evidence is the gain in χ² less the cost of freedom. In blue: what was named; in ochre: rivals"
-        " that this recording does not tell from it."
+        "Evidence is the gain in χ² less the cost of freedom, here as how far each hypothesis is behind the best; left"
+        " of the dotted line it is not told apart. In blue: what was named; in ochre: what this recording does not tell"
+        f" from it. {_screened(diagnosis)}"
     )
     return Picture("4-name", (Group((panel,)),), caption=caption)
+
+
+def _screened(diagnosis: Diagnosis) -> str:
+    """Which effects were never refitted, and why."""
+    refitted = {effect for effects, _ in diagnosis.rivals for effect in effects}
+    left = [effect for effect in effects() if effect.named and effect.id not in refitted]
+    seen = {f"measured_{name}" for name in diagnosis.channels}
+    blind = [effect.id for effect in left if effect.needs and not set(effect.needs) <= seen]
+    weak = [effect.id for effect in left if effect.id not in blind]
+    told = [f"Screened out, as a score test says they would gain too little: {listed(list(map(effect_title, weak)))}."]
+    if blind:
+        told.append(f"Not tried, as their channels were not recorded: {listed(list(map(effect_title, blind)))}.")
+    return " ".join(told if weak else told[1:])

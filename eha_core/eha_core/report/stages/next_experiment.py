@@ -8,11 +8,12 @@ import numpy as np
 
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.experiment_file import FILE, channels_to_record, commands
 from eha_core.report.picture import Group, Line, Panel, Picture
 from eha_core.report.quantities import scale_for
 from eha_core.report.series import thinned
-from eha_core.report.stages.stage import Stage
-from eha_core.report.wording import sentence, words
+from eha_core.report.stage import Stage
+from eha_core.report.wording import channel_title, effect_title, listed, sentence
 from eha_core.signals import make_signal
 
 
@@ -20,20 +21,23 @@ def stage(diagnosis: Diagnosis) -> Stage:
     """The proposed test as the reference node's parameters, and its voltage."""
     experiment = diagnosis.next_experiment
     if experiment is None:
+        if diagnosis.verdict in ("ambiguous", "unknown_physics"):
+            return Stage("next", "Next experiment", "No test is proposed", ("A longer or faster test may tell more.",))
         sentences = ("No explanations are left that a further test would have to tell apart.",)
         return Stage("next", "Next experiment", "No further experiment is needed", sentences)
     reference = experiment.reference
-    code = "\n".join(["reference:", "  ros__parameters:", *(f"    {key}: {value}" for key, value in reference.items())])
+    recorded = listed([channel_title(name) for name in channels_to_record(diagnosis, experiment)])
     return Stage(
         "next",
         "Next experiment",
-        f"One more test would tell {' from '.join(words(one) for one in experiment.separates[:2])}",
+        f"One more test would tell {' from '.join(effect_title(one) for one in experiment.separates[:2])}",
         (
             sentence(experiment.statement),
-            "Give these parameters to the reference node, record, and diagnose both recordings together.",
+            f"It lasts {experiment.duration:g} s; record {recorded}.",
+            f"{FILE} beside this page holds it for the reference node. Then diagnose both recordings together:",
         ),
         (_picture(reference, experiment.duration),),
-        code=code,
+        code=commands(experiment),
     )
 
 

@@ -6,19 +6,20 @@ from pathlib import Path
 
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.claims import noise_floor
 from eha_core.report.picture import Group, Line, Mark, Panel, Picture, Spans
 from eha_core.report.quantities import quantity, scale_for
 from eha_core.report.series import thinned
-from eha_core.report.stages.stage import Stage, Table
-from eha_core.report.wording import channel_title, channels_listed, plain, sentence
+from eha_core.report.stage import Stage, Table
+from eha_core.report.wording import capital, channel_title, channels_listed, plain, sentence
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
     """What was recorded, how noisy it is, and what could not be looked at."""
     used = channels_listed(_channels(diagnosis))
     sentences = [
-        f"{Path(diagnosis.path).name} was read and its channels were put on one clock. The noise of each channel is"
-        " estimated from the data themselves; it is the floor that no model can get under.",
+        f"{Path(diagnosis.path).name} was read and its channels were put on one clock.",
+        noise_floor(diagnosis),
     ]
     if diagnosis.damaged:
         sentences.append(f"The file is damaged, and the diagnosis rests on what could be read: {diagnosis.damaged}.")
@@ -47,7 +48,7 @@ def _picture(diagnosis: Diagnosis) -> Picture:
         time, values = thinned(pictures.time[name], pictures.measured[name])
         scale = scale_for(CHANNEL_KINDS[name].unit, float(abs(values).max()))
         marks: tuple[Mark, ...] = (*shaded, Line(time, values / scale.factor, "measured", "measured", 1.1))
-        panels.append(Panel(marks, "time [s]", scale.unit, channel_title(name).capitalize(), 140))
+        panels.append(Panel(marks, "time [s]", scale.unit, capital(channel_title(name)), 140))
     return Picture(
         "1-read",
         (Group(tuple(panels)),),

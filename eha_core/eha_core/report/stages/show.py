@@ -7,30 +7,29 @@ import numpy as np
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.picture import LABELS, Band, Group, Line, Mark, Panel, Picture
-from eha_core.report.quantities import Scale, scale_for, short
-from eha_core.report.series import autocorrelation, pieces
-from eha_core.report.stages.stage import Stage, Table, adds_physics, judged_spans
-from eha_core.report.wording import channel_title, sentence, told_errors
+from eha_core.report.claims import improvement, left_over
+from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture
+from eha_core.report.quantities import Scale, quantity, scale_for, short
+from eha_core.report.series import autocorrelation, pieces, spread
+from eha_core.report.stage import Stage, Table, adds_physics, judged_spans
+from eha_core.report.wording import capital, channel_title
 
 MODELS = ("before", "calibrated", "after")
 LAGS = 60
-NOISE_ALONE = 1.1
-"""Times the noise; an error below that is taken for noise."""
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
     """Before, calibrated and after, against the noise floor; and whether what is left is noise."""
-    fits = diagnosis.held_out or diagnosis.training
-    ratios = [one.rmse_after / one.noise for one in fits.values() if np.isfinite(one.rmse_after)]
-    worst = max(ratios, default=float("nan"))
-    headline = "What is left is noise" if worst < NOISE_ALONE else f"What is left is up to {worst:.1f} times the noise"
-    sentences = (
-        "Parts of the recording were kept from the fit, and the models are judged on them.",
-        sentence(told_errors(diagnosis, "rmse_before", "rmse_after", "the final model")),
-    )
+    kept = "Parts of the recording were kept from the fit, and the models are judged on them."
+    fitted = "The models are judged on the data they were fitted to."
+    sentences = (kept if diagnosis.held_out else fitted, improvement(diagnosis))
     return Stage(
-        "show", "Show", headline, sentences, (_overlays(diagnosis), _whiteness(diagnosis)), (error_table(diagnosis),)
+        "show",
+        "Show",
+        left_over(diagnosis),
+        sentences,
+        (_overlays(diagnosis), _whiteness(diagnosis), *_over_input(diagnosis)),
+        (error_table(diagnosis), *prediction_table(diagnosis)),
     )
 
 
@@ -40,9 +39,26 @@ def error_table(diagnosis: Diagnosis) -> Table:
     for name, one in (diagnosis.held_out or diagnosis.training).items():
         scale = scale_for(CHANNEL_KINDS[name].unit, one.noise)
         values = (one.rmse_before, one.rmse_calibrated, one.rmse_after, one.noise)
-        rows.append((channel_title(name), *(f"{short(value / scale.factor)}{scale.suffix}" for value in values)))
+        cells = [f"{short(value / scale.factor)}{scale.suffix}" for value in values]
+        rows.append((channel_title(name), *cells, short(one.rmse_after / one.noise)))
     title = "RMSE on held-out data" if diagnosis.held_out else "RMSE"
-    return Table(("channel", "as given", "calibrated", "with what was found", "noise"), tuple(rows), title)
+    headings = ("channel", "nominal", "recalibrated", "augmented", "noise", "augmented / noise")
+    return Table(headings, tuple(rows), title)
+
+
+def prediction_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
+    """RMSE of the final model where no state was fitted to the data: run ahead from measured states, and freely."""
+    predictions = getattr(diagnosis, "prediction", {})
+    if not predictions:
+        return ()
+    ahead = list(next(iter(predictions.values())).ahead)
+    rows = []
+    for name, one in predictions.items():
+        unit = CHANNEL_KINDS[name].unit
+        errors = [*(one.ahead[seconds] for seconds in ahead), one.free_running]
+        rows.append((channel_title(name), *(quantity(error, unit) for error in errors)))
+    headings = ("channel", *(f"{quantity(seconds, 's')} ahead" for seconds in ahead), "free run, the whole record")
+    return (Table(headings, tuple(rows), "Prediction from measured states: RMSE of the augmented model"),)
 
 
 def _overlays(diagnosis: Diagnosis) -> Picture:
@@ -79,7 +95,7 @@ def _whole(diagnosis: Diagnosis, name: str) -> Group:
     for role, modelled in _models(diagnosis, name):
         values.append(_line(time, modelled, role, spans, scale.factor))
         left.append(_line(time, measured - modelled, role, spans, fine.factor))
-    title = channel_title(name).capitalize()
+    title = capital(channel_title(name))
     return Group(
         (
             Panel(tuple(values), "time [s]", scale.unit, title, 170),
@@ -115,7 +131,7 @@ def _whiteness(diagnosis: Diagnosis) -> Picture:
             lag, correlation = autocorrelation(time, measured - modelled, LAGS)
             marks.append(Line(1e3 * lag, correlation, role, LABELS[role], 1.8))
         groups.append(
-            Group((Panel(tuple(marks), "lag [ms]", "", channel_title(name).capitalize(), 220, y_range=(-0.4, 1.05)),))
+            Group((Panel(tuple(marks), "lag [ms]", "", capital(channel_title(name)), 220, y_range=(-0.4, 1.05)),))
         )
     return Picture(
         "6-show-whiteness",
@@ -124,3 +140,26 @@ def _whiteness(diagnosis: Diagnosis) -> Picture:
         "Is anything left to explain?",
         "Autocorrelation of the mismatch. White noise stays in the band; a mismatch with a memory is not all noise.",
     )
+
+
+def _over_input(diagnosis: Diagnosis) -> tuple[Picture, ...]:
+    """Each channel's residual over the voltage at its time; none where no voltage was recorded."""
+    pictures, groups = diagnosis.pictures, []
+    if "voltage_command" not in pictures.measured:
+        return ()
+    at, volts = pictures.time["voltage_command"], pictures.measured["voltage_command"]
+    across = scale_for("V", float(np.abs(volts).max()))
+    for name in pictures.after:
+        time, noise = pictures.time[name], (diagnosis.held_out or diagnosis.training)[name].noise
+        held = volts[np.clip(np.searchsorted(at, time, side="right") - 1, 0, None)] / across.factor
+        residuals = [(role, pictures.measured[name] - modelled) for role, modelled in _models(diagnosis, name)[1:]]
+        up = scale_for(CHANNEL_KINDS[name].unit, max(float(np.abs(one).max()) for _, one in residuals))
+        marks: list[Mark] = [Band(-2.0 * noise / up.factor, 2.0 * noise / up.factor, "noise (2 standard deviations)")]
+        for role, residual in residuals:
+            x, y = spread(held, residual / up.factor)
+            marks.append(Dots(x, y, role, LABELS[role]))
+        title = capital(channel_title(name))
+        groups.append(Group((Panel(tuple(marks), f"voltage [{across.unit}]", up.unit, title, 220),)))
+    columns = (1,) * min(3, max(1, len(groups)))
+    caption = "Measured less modelled over the voltage: what bends or leans depends on the input, and is no noise."
+    return (Picture("6-show-input", tuple(groups), columns, "Does what is left depend on the input?", caption),)

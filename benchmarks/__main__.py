@@ -1,4 +1,4 @@
-"""`eha bench`: speed as ratios to named peers, measured in one run."""
+"""`make bench`, or `python -m benchmarks` in a checkout: speed as ratios to named peers, measured in one run."""
 
 from __future__ import annotations
 
@@ -6,55 +6,58 @@ import argparse
 import os
 import platform
 import sys
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
-from eha_core.errors import EhaError
+from benchmarks.row import as_markdown
 
-_CHECKOUT = Path(__file__).resolve().parents[3]
-_BENCHMARKS = ("plant_step", "integrators", "layer", "node")
+BENCHMARKS = ("plant_step", "lockstep", "integrators", "layer", "node")
 
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the verb to the command line."""
-    parser = subparsers.add_parser(
-        "bench",
-        help="measure speed against named peers",
+def parser() -> argparse.ArgumentParser:
+    """The command's arguments."""
+    made = argparse.ArgumentParser(
+        prog="python -m benchmarks",
         description="Measures the plant's step, the integrator, the nodes' rclpy and the simulator node against their "
         "peers, in one run.",
     )
-    parser.add_argument(
-        "names", nargs="*", metavar="BENCHMARK", help=f"which of {', '.join(_BENCHMARKS)} (default: all of them)"
+    made.add_argument(
+        "names", nargs="*", metavar="BENCHMARK", help=f"which of {', '.join(BENCHMARKS)} (default: all of them)"
     )
-    parser.add_argument(
+    made.add_argument(
         "--seconds",
         type=float,
         default=60.0,
         metavar="S",
         help="length of the simulator node's run; 0 leaves it out (default: %(default)s)",
     )
+    return made
 
 
-def run(arguments: argparse.Namespace) -> int:
+def main(words: Sequence[str] | None = None) -> int:
     """Run the benchmarks and print their table."""
-    if not (_CHECKOUT / "benchmarks" / "row.py").is_file():
-        raise EhaError("the benchmarks are not installed with the package; run this in a checkout of the project")
+    arguments = parser().parse_args(words)
+    unknown = [name for name in arguments.names if name not in BENCHMARKS]
     if arguments.seconds and arguments.seconds < 30.0:
-        raise EhaError(f"--seconds {arguments.seconds:g} is too short for reports of 10 s each; give 30 or more, or 0")
-    unknown = [name for name in arguments.names if name not in _BENCHMARKS]
+        return _refuse(f"--seconds {arguments.seconds:g} is too short for reports of 10 s each; give 30 or more, or 0")
     if unknown:
-        raise EhaError(f"there is no benchmark {unknown[0]!r}; give some of {', '.join(_BENCHMARKS)}, or none for all")
-    sys.path.insert(0, str(_CHECKOUT))
+        return _refuse(f"there is no benchmark {unknown[0]!r}; give some of {', '.join(BENCHMARKS)}, or none for all")
     machine = f"{_processor()}, {os.cpu_count()} CPUs, load {os.getloadavg()[0]:.1f}"
     print(f"{machine}, Python {platform.python_version()}", flush=True)
     rows = []
-    for name in arguments.names or _BENCHMARKS:
+    for name in arguments.names or BENCHMARKS:
         options = (arguments.seconds,) if name == "node" else ()
         if options != (0.0,):
             print(f"measuring {name} ...", file=sys.stderr, flush=True)
             rows += import_module(f"benchmarks.{name}").measure(*options)
-    print(import_module("benchmarks.row").as_markdown(rows))
+    print(as_markdown(rows))
     return 0
+
+
+def _refuse(message: str) -> int:
+    print(f"benchmarks: {message}", file=sys.stderr)
+    return 2
 
 
 def _processor() -> str:
@@ -65,3 +68,7 @@ def _processor() -> str:
         return platform.machine()
     names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     return next(names, platform.machine())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -9,6 +9,9 @@ from eha_core.report.picture import Picture, Spans
 
 MOST_OF_IT = 0.9
 
+SURE = 1.96
+"""Standard deviations to either side that make a 95 % interval."""
+
 
 @dataclass(frozen=True)
 class Table:

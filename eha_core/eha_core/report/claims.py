@@ -1,0 +1,91 @@
+"""What may be claimed of the errors: a sentence stands over figures only where they bear it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eha_core.diagnosis.result import ChannelFit, Diagnosis
+from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.quantities import quantity
+from eha_core.report.wording import channel_title, listed
+
+NOISE_ALONE = 1.1
+"""Times the noise; an error below that is as small as noise: its estimate is no better than some per cent (assumed)."""
+
+WHITE = 3.5
+"""Standard deviations; the largest of 19 autocorrelations of white noise exceeds this once in a hundred channels."""
+
+VIOLATED = 1.5
+"""Mean square of an equation's residual, in units of its noise, above which the equation does not hold (assumed)."""
+
+
+def judged(diagnosis: Diagnosis) -> Mapping[str, ChannelFit]:
+    """The errors on data kept from the fit; on all data where none were kept."""
+    return diagnosis.held_out or diagnosis.training
+
+
+def largest_ratio(diagnosis: Diagnosis) -> float:
+    """The largest error of the final model, in units of its channel's noise."""
+    ratios = [one.rmse_after / one.noise for one in judged(diagnosis).values() if np.isfinite(one.rmse_after)]
+    return max(ratios, default=float("nan"))
+
+
+def coloured(diagnosis: Diagnosis) -> list[str]:
+    """The channels whose residual is not white."""
+    return [name for name, one in diagnosis.whiteness.items() if one > WHITE]
+
+
+def is_noise(diagnosis: Diagnosis) -> bool:
+    """Whether what the final model leaves is as small as the noise and as random."""
+    return largest_ratio(diagnosis) < NOISE_ALONE and not coloured(diagnosis)
+
+
+def left_over(diagnosis: Diagnosis) -> str:
+    """What the final model leaves, as a headline."""
+    ratio = largest_ratio(diagnosis)
+    if is_noise(diagnosis):
+        return "What is left is noise"
+    if not ratio >= NOISE_ALONE:
+        titles = listed([channel_title(name) for name in coloured(diagnosis)])
+        return f"What is left is as small as the noise, but not random in {titles}"
+    return f"What is left is up to {ratio:.1f} times the noise"
+
+
+def equations_hold(diagnosis: Diagnosis) -> bool:
+    """Whether every equation that was held against the measured channels leaves noise alone."""
+    residuals = [residual for _, residual in diagnosis.pictures.equations.values() if len(residual)]
+    return all(float(np.mean(residual**2)) < VIOLATED for residual in residuals)
+
+
+def improvement(diagnosis: Diagnosis) -> str:
+    """What the added physics does to the error of the position, or of the first channel there is."""
+    fits = judged(diagnosis)
+    name = "position" if "position" in fits else next(iter(fits), "")
+    if not name or not np.isfinite(fits[name].rmse_after):
+        return ""
+    fit, unit = fits[name], CHANNEL_KINDS[name].unit
+    where = "On data kept from the fit, the" if diagnosis.held_out else "The"
+    before, after = quantity(fit.rmse_before, unit), quantity(fit.rmse_after, unit)
+    noise = quantity(fit.noise, unit)
+    direction = "falls" if fit.rmse_after < fit.rmse_before else "goes"
+    ending = ": that is its noise" if _at_noise(diagnosis, name, fit) else f"; its noise is {noise}"
+    return f"{where} {channel_title(name)}'s RMS error {direction} from {before} to {after}{ending}."
+
+
+def _at_noise(diagnosis: Diagnosis, name: str, fit: ChannelFit) -> bool:
+    close = 1.0 / NOISE_ALONE < fit.rmse_after / fit.noise < NOISE_ALONE
+    return close and name not in coloured(diagnosis)
+
+
+def noise_floor(diagnosis: Diagnosis) -> str:
+    """What the estimated noise means: a floor only where no model is below it."""
+    below = [name for name, one in judged(diagnosis).items() if one.rmse_after * NOISE_ALONE < one.noise]
+    if not below:
+        return "Each channel's noise is estimated from the data themselves; no model can be expected to come closer."
+    titles = listed([channel_title(name) for name in below])
+    return (
+        "Each channel's noise is estimated from the data themselves, and not taken as less than a good sensor's;"
+        f" the final model is closer than that to {titles}."
+    )

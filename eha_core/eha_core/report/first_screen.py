@@ -1,0 +1,107 @@
+"""The pictures of the first screen: the laws, the residuals before and after, and the evidence."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.claims import judged
+from eha_core.report.laws import Law, laws
+from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture, Ribbon
+from eha_core.report.quantities import quantity, scale_for
+from eha_core.report.series import spread, thinned
+from eha_core.report.stage import adds_physics
+from eha_core.report.wording import capital, channel_title
+
+ABREAST = 3
+"""Panels beside each other."""
+
+MEASURED, FITTED, SURE_BAND = "measured channels, weak form", "fitted law", "95 % of the fitted law"
+
+DOTS = 700
+"""Most points of one law."""
+
+SURROUND = 0.12
+"""Of a law's height, that is shown above and below it; points about a reversal lie far outside."""
+
+
+def pictures(diagnosis: Diagnosis) -> tuple[Picture, ...]:
+    """The laws, if there are any, and the residuals."""
+    law = law_picture(diagnosis)
+    return (law, residual_picture(diagnosis)) if law else (residual_picture(diagnosis),)
+
+
+def law_picture(diagnosis: Diagnosis) -> Picture | None:
+    """Each missing effect as a law in SI; None where it has none."""
+    found = laws(diagnosis)
+    if not found:
+        return None
+    columns = (1,) * min(ABREAST, len(found))
+    caption = (
+        "The law as fitted, with the band of its parameters' intervals (which may be narrower than the line), beside"
+        " what the nominal model has in its place. Points: what the equation that holds the law gives when the measured"
+        " channels are put into it; those of a force where the piston neither stops nor turns."
+    )
+    return Picture("0-laws", tuple(Group((_law(one),)) for one in found), columns, "The missing physics", caption)
+
+
+def _law(law: Law) -> Panel:
+    across = scale_for(law.across.unit, float(np.abs(law.x).max(initial=0.0)))
+    up = scale_for(law.up.unit, float(np.abs(law.y).max(initial=0.0)))
+    x, marks = law.x / across.factor, list[Mark]()
+    if len(law.nominal):
+        marks.append(Line(x, law.nominal / up.factor, "before", LABELS["before"], 2.0, dashed=True))
+    if np.any(law.high > law.low):
+        marks.append(Ribbon(x, law.low / up.factor, law.high / up.factor, "after", SURE_BAND))
+    marks.append(Line(x, law.y / up.factor, "after", FITTED, 2.2))
+    if len(law.points_x):
+        points_x, points_y = spread(law.points_x / across.factor, law.points_y / up.factor, most=DOTS)
+        marks.append(Dots(points_x, points_y, "measured", MEASURED, 4.0))
+    everything = np.concatenate([law.low, law.high, law.nominal]) / up.factor
+    low, high = float(everything.min()), float(everything.max())
+    room = SURROUND * (high - low or abs(high) or 1.0)
+    return Panel(
+        tuple(marks),
+        f"{law.across.title} [{across.unit or '-'}]",
+        f"{law.up.title} [{up.unit or '-'}]",
+        law.title,
+        250,
+        y_range=(low - room, high + room),
+    )
+
+
+def residual_picture(diagnosis: Diagnosis) -> Picture:
+    """Each channel's residual over time, of the nominal model and of the final one, each on its own scale."""
+    names = list(diagnosis.pictures.after)[:ABREAST]
+    groups = tuple(_residuals(diagnosis, name) for name in names)
+    caption = (
+        "Above and below have scales of their own. Both models start anew in each window of the fit; the band is two"
+        " standard deviations of the noise."
+    )
+    columns = (1,) * max(1, len(names))
+    return Picture("0-residuals", groups, columns, "Measured less modelled, before and after", caption)
+
+
+def _residuals(diagnosis: Diagnosis, name: str) -> Group:
+    pictures, fit = diagnosis.pictures, judged(diagnosis)[name]
+    unit, time = CHANNEL_KINDS[name].unit, diagnosis.pictures.time[name]
+    last = "after" if adds_physics(diagnosis) else "calibrated"
+    title = capital(channel_title(name))
+    above = f"{title}: {quantity(fit.rmse_before, unit)} RMS"
+    below = f"{quantity(fit.rmse_after, unit)} RMS, noise {quantity(fit.noise, unit)}"
+    models = ((pictures.before, "before", above), (getattr(pictures, last), last, below))
+    return Group(
+        tuple(
+            _residual(time, pictures.measured[name] - model[name], role, unit, fit.noise, text)
+            for model, role, text in models
+        )
+    )
+
+
+def _residual(time: Array, residual: Array, role: str, unit: str, noise: float, title: str) -> Panel:
+    scale = scale_for(unit, float(np.abs(residual).max()))
+    x, y = thinned(time, residual / scale.factor, 1500)
+    band = Band(-2.0 * noise / scale.factor, 2.0 * noise / scale.factor, "noise (2 standard deviations)")
+    return Panel((band, Line(x, y, role, LABELS[role], 1.0)), "time [s]", scale.unit, title, 84)

@@ -1,0 +1,120 @@
+"""Laws in the chambers' continuity: leakage between the chambers or to the outside, and the oil's stiffness."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eha_core.diagnosis.balance import Bumps
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.result import NamedEffect
+from eha_core.report.laws.law import NOTHING, Axis, Law, band, span_of
+from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.stage import SURE
+from eha_core.report.wording import capital, effect_title
+
+DIFFERENCE = Axis("pressure difference A − B", "Pa")
+PRESSURE = Axis("chamber pressure", "Pa")
+BULK_A, CROSS, LEAK_A = 1, 5, 7
+"""Where these stand among what a contribution returns; see `eha_core.plant.hooks`."""
+
+
+def law(models: Models, effect: NamedEffect) -> Law | None:
+    """The flow over the pressure that drives it, or the bulk modulus over the pressure."""
+    a, b = models.state("pressure_a"), models.state("pressure_b")
+    if not len(a):
+        return None
+    values = {name: one.value for name, one in effect.parameters.items()}
+    title = capital(effect_title(effect.id))
+    without = [column[0] for column in quantities(models, None, {}, a[:1], b[:1])]
+    changed = [float(column[0]) for column in quantities(models, effect, values, a[:1] + 1e5, b[:1])]
+    middle = 0.5 * float(np.median(a + b))
+    if changed[BULK_A] != without[BULK_A]:
+        return _bulk(models, effect, title, span_of(np.append(a, b), False))
+    if changed[LEAK_A] != without[LEAK_A]:
+        return _outside(models, effect, title, span_of(a, False), middle)
+    return _across(models, effect, title, span_of(a - b), middle)
+
+
+def quantities(
+    models: Models, effect: NamedEffect | None, values: Mapping[str, float], a: Array, b: Array
+) -> list[Array]:
+    """What the continuity equations are made of at these pressures, with one effect or none."""
+    p = models.fitted
+    rows = []
+    for one, other in zip(a.tolist(), b.tolist(), strict=True):
+        flow = p["internal_leakage"] * (one - other)
+        head = [
+            p["piston_area_b"], p["bulk_modulus"], 0.0, p["bulk_modulus"], 0.0, flow, p["internal_leakage"],
+            p["external_leakage"], p["external_leakage"],
+        ]  # fmt: skip
+        if effect is not None:
+            call = contribution(effect)[0]
+            head = list(call(*head, one, other, p["atmospheric_pressure"], *in_order(effect, values)))
+        rows.append(head)
+    return list(np.array(rows, dtype=np.float64).T)
+
+
+def _across(models: Models, effect: NamedEffect, title: str, x: Array, middle: float) -> Law | None:
+    def evaluate(values: Mapping[str, float]) -> Array:
+        return quantities(models, effect, values, middle + 0.5 * x, middle - 0.5 * x)[CROSS]
+
+    y, low, high = band(effect, evaluate, SURE * models.deviation("internal_leakage") * x)
+    nominal = models.nominal["internal_leakage"] * x
+    if np.array_equal(y, quantities(models, None, {}, middle + 0.5 * x, middle - 0.5 * x)[CROSS]):
+        return None  # an area, say, which is no flow
+    points_x, points_y = NOTHING, NOTHING
+    if models.grid is not None and models.spool is not None:
+        _, _, a, b = models.modelled
+        points_x = models.grid.average(a - b)
+        lost = [one / models.grid.area for one in lost_flows(models, models.grid)]
+        points_y = np.interp(points_x, x, y) + 0.5 * (lost[0] - lost[1])
+    return Law(title, DIFFERENCE, Axis("Flow from A to B", "m^3/s"), x, y, low, high, nominal, points_x, points_y)
+
+
+def _outside(models: Models, effect: NamedEffect, title: str, x: Array, middle: float) -> Law:
+    def evaluate(values: Mapping[str, float]) -> Array:
+        return quantities(models, effect, values, x, 0.0 * x + middle)[LEAK_A] * x
+
+    y, low, high = band(effect, evaluate)
+    points_x, points_y = NOTHING, NOTHING
+    if models.grid is not None and models.spool is not None:
+        points_x = models.grid.average(models.modelled[2])
+        points_y = np.interp(points_x, x, y) + lost_flows(models, models.grid)[0] / models.grid.area
+    nominal = models.nominal["external_leakage"] * x
+    return Law(title, PRESSURE, Axis("Flow out of chamber A", "m^3/s"), x, y, low, high, nominal, points_x, points_y)
+
+
+def _bulk(models: Models, effect: NamedEffect, title: str, x: Array) -> Law:
+    def evaluate(values: Mapping[str, float]) -> Array:
+        return quantities(models, effect, values, x, x)[BULK_A]
+
+    y, low, high = band(effect, evaluate, SURE * models.deviation("bulk_modulus"))
+    nominal = 0.0 * x + models.nominal["bulk_modulus"]
+    return Law(title, PRESSURE, Axis("Bulk modulus", "Pa"), x, y, low, high, nominal)
+
+
+def lost_flows(models: Models, grid: Bumps) -> tuple[Array, Array]:
+    """What more leaves each chamber than the final model says, integrated under each test function [m^3]."""
+    measured = models.on_grid(models.diagnosis.pictures.measured)
+    x, _, a, b = models.modelled
+    assert models.spool is not None
+    return tuple(  # type: ignore[return-value]
+        _lost(grid, models, side, *measured) - _lost(grid, models, side, x, a, b) for side in (1.0, -1.0)
+    )
+
+
+def _lost(grid: Bumps, models: Models, side: float, x: Array, a: Array, b: Array) -> Array:
+    """What flows into a chamber (A: side 1, B: -1) by the nominal valve, less what its motion and oil take in."""
+    p, spool = models.fitted, models.spool
+    assert spool is not None
+    own, area = (a, p["piston_area"]) if side > 0.0 else (b, p["piston_area_b"])
+    filling = np.where(side * spool >= 0.0, p["supply_pressure"] - own, own - p["return_pressure"])
+    inflow = side * p["valve_gain"] * spool * np.sqrt(np.maximum(filling, 0.0))
+    volume = p["line_volume"] + area * (p["actuator_displacement"] + side * x)
+    speed = np.gradient(x, grid.step)
+    # V dP/dt integrates by parts to -(slope V + bump dV/dt) P
+    squeezed = -(grid.integrate(grid.slope, volume * own) + grid.integrate(grid.bump, side * area * speed * own))
+    swept = -side * area * grid.integrate(grid.slope, x)
+    return np.asarray(grid.integrate(grid.bump, inflow) - swept - squeezed / p["bulk_modulus"])

@@ -1,0 +1,101 @@
+"""Laws in the piston's force balance: friction over velocity, a load or a spring over position."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eha_core.diagnosis.balance import Bumps
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.result import NamedEffect
+from eha_core.report.laws.law import NOTHING, Axis, Law, band, span_of
+from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.stage import SURE
+from eha_core.report.wording import capital, effect_title
+
+STEP = 1e-4  # s
+SETTLED = 4000
+"""Most steps until an effect's own state has settled at a steady speed: 0.4 s."""
+
+VELOCITY = Axis("velocity", "m/s")
+POSITION = Axis("position", "m")
+
+
+def law(models: Models, effect: NamedEffect) -> Law | None:
+    """The force against motion, with the viscous or the spring force that the nominal model has on the same axis."""
+    velocity, position = models.state("velocity"), models.state("position")
+    if not len(velocity):
+        return None
+    over_velocity = _hangs_on_velocity(effect, velocity, position)
+    name, axis = ("damping_coefficient", VELOCITY) if over_velocity else ("spring_stiffness", POSITION)
+    x = span_of(velocity if over_velocity else position)
+
+    def evaluate(values: Mapping[str, float]) -> Array:
+        own = opposing(effect, values, *((0.0 * x, x) if over_velocity else (x, 0.0 * x)))
+        return own + models.fitted[name] * x
+
+    y, low, high = band(effect, evaluate, SURE * models.deviation(name) * x)
+    rubs = "friction" in effect.id or "damping" in effect.id
+    what = "Friction force" if rubs else "Force against extension"
+    points = _points(models, effect, over_velocity)
+    title, nominal = capital(effect_title(effect.id)), models.nominal[name] * x
+    return Law(title, axis, Axis(what, "N"), x, y, low, high, nominal, *points)
+
+
+def _hangs_on_velocity(effect: NamedEffect, velocity: Array, position: Array) -> bool:
+    """Whether the effect changes more over the speeds that were reached than over the positions."""
+    values = {name: one.value for name, one in effect.parameters.items()}
+    v, x = span_of(velocity), span_of(position)
+    over_velocity = np.ptp(opposing(effect, values, 0.0 * v, v))
+    return bool(over_velocity >= np.ptp(opposing(effect, values, x, 0.0 * x)))
+
+
+def opposing(effect: NamedEffect, values: Mapping[str, float], position: Array, velocity: Array) -> Array:
+    """The force that an effect sets against motion at steady speeds [N]."""
+    call, slots = contribution(effect)
+    parameters = in_order(effect, values)
+    found = np.empty(len(velocity))
+    for place, (x, v) in enumerate(zip(position.tolist(), velocity.tolist(), strict=True)):
+        memory, before = np.zeros(max(slots, 1)), np.inf
+        for _ in range(SETTLED if slots else 1):
+            force, damping, _, dry = call(0.0, 0.0, 0.0, 0.0, x, v, 0.0, 0.0, memory, 0, STEP, *parameters)
+            now = -force + damping * v + dry * np.sign(v)
+            if abs(now - before) <= 1e-9 * abs(now):
+                break
+            before = now
+        found[place] = now
+    return found
+
+
+def _points(models: Models, effect: NamedEffect, over_velocity: bool) -> tuple[Array, Array]:
+    grid = models.grid
+    if grid is None:
+        return NOTHING, NOTHING
+    x, v, a, b = models.modelled
+    values = {name: one.value for name, one in effect.parameters.items()}
+    own = grid.average(_along(effect, values, x, v))
+    beyond = missing_force(grid, models.fitted, *models.on_grid(models.diagnosis.pictures.measured))
+    beyond = beyond - missing_force(grid, models.fitted, x, a, b)
+    name, state = ("damping_coefficient", v) if over_velocity else ("spring_stiffness", x)
+    across = grid.average(state)
+    # where the piston stops or turns under a test function, its mean is neither the one side's friction nor the other's
+    kept = models.keeps_moving
+    return across[kept], (own + beyond + models.fitted[name] * across)[kept]
+
+
+def _along(effect: NamedEffect, values: Mapping[str, float], position: Array, velocity: Array) -> Array:
+    """The effect's force along a motion, read off its curve: what its own state lags behind stays in the residual."""
+    if np.ptp(velocity) == 0.0 or not contribution(effect)[1]:
+        return opposing(effect, values, position, velocity)
+    table = span_of(velocity)
+    return np.interp(velocity, table, opposing(effect, values, 0.0 * table, table))
+
+
+def missing_force(grid: Bumps, values: Mapping[str, float], x: Array, a: Array, b: Array) -> Array:
+    """The force against motion [N] that the nominal terms lack under each test function."""
+    pressures = grid.integrate(grid.bump, values["piston_area"] * a - values["piston_area_b"] * b)
+    inertia = values["moving_mass"] * grid.integrate(grid.curvature, x)
+    viscous = -values["damping_coefficient"] * grid.integrate(grid.slope, x)
+    spring = values["spring_stiffness"] * grid.integrate(grid.bump, x)
+    return np.asarray((pressures - inertia - viscous - spring) / grid.area)

@@ -1,0 +1,106 @@
+"""The models behind a diagnosis, and the weak form that measured channels are held against them in.
+
+Each equation is multiplied by a smooth test function in time and integrated by parts, so that no measured channel is
+differentiated (see `eha_core.diagnosis.balance`). A law's point is the law itself under that test function plus what
+the equation's residual, measured less modelled, adds to it: the component-plus-residual plot of W. A. Larsen and
+S. J. McCleary, Technometrics 14 (1972). All other terms of the equation, named effects included, cancel out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.diagnosis.balance import HOPS, Bumps, bumps
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.observation import Measured
+from eha_core.diagnosis.result import Diagnosis, NamedEffect
+from eha_core.parameters import nominal_values
+
+POINT_WIDTH = 0.02
+"""s, half the width of a point's test function: some ten samples, and short against the time between reversals."""
+
+SLOWEST = 0.2
+"""Of its mean speed; a piston that comes below that under a test function stops or turns there."""
+
+LIQUID = ("position", "pressure_a", "pressure_b")
+
+
+class Models:
+    """What the laws are made of: parameter values, and channels on one grid."""
+
+    def __init__(self, diagnosis: Diagnosis) -> None:
+        self.diagnosis = diagnosis
+        self.fitted: Mapping[str, float] = {**nominal_values(), **diagnosis.fitted_values}
+        self.nominal: Mapping[str, float] = {
+            **self.fitted,
+            **{one.name: one.nominal for one in diagnosis.parameters},
+        }
+
+    @cached_property
+    def grid(self) -> Bumps | None:
+        """The test functions; None where position or a pressure was not measured."""
+        pictures = self.diagnosis.pictures
+        if not all(name in pictures.after for name in LIQUID):
+            return None
+        channels = [Measured(name, 0, pictures.time[name], pictures.measured[name], 0.0) for name in LIQUID]
+        step = max(float(np.median(np.diff(one.time))) for one in channels)
+        return bumps(self.diagnosis.duration, step, channels, POINT_WIDTH)
+
+    def on_grid(self, source: Mapping[str, Array]) -> tuple[Array, ...]:
+        """Position and both pressures of `pictures.measured` or of a model, on the grid."""
+        assert self.grid is not None
+        return tuple(np.interp(self.grid.time, self.diagnosis.pictures.time[name], source[name]) for name in LIQUID)
+
+    @cached_property
+    def modelled(self) -> tuple[Array, Array, Array, Array]:
+        """Position, velocity and both pressures of the final model on the grid."""
+        assert self.grid is not None
+        x, a, b = self.on_grid(self.diagnosis.pictures.after)
+        return x, np.gradient(x, self.grid.step), a, b
+
+    @cached_property
+    def keeps_moving(self) -> NDArray[np.bool_]:
+        """The test functions under which the piston goes one way all the time."""
+        assert self.grid is not None
+        speed = np.abs(self.modelled[1])
+        under = np.lib.stride_tricks.sliding_window_view(speed, len(self.grid.bump))
+        under = under[:: len(self.grid.bump) // HOPS][self.grid.sound]
+        return np.asarray(under.min(axis=-1) > SLOWEST * under.mean(axis=-1))
+
+    @cached_property
+    def spool(self) -> Array | None:
+        """The nominal spool position on the grid [A]; None where no voltage was recorded."""
+        variables = self.diagnosis.pictures.variables
+        if self.grid is None or "spool_position" not in variables:
+            return None
+        return np.interp(self.grid.time, variables["time"], variables["spool_position"])
+
+    def deviation(self, name: str) -> float:
+        """Standard deviation of a fitted parameter of the nominal model; 0 where it was not fitted."""
+        found = next((one.std for one in self.diagnosis.parameters if one.name == name), 0.0)
+        return found if np.isfinite(found) else 0.0
+
+    def state(self, name: str) -> Array:
+        """The values that a state took: by the final model where it is known, else by the calibrated one, else none."""
+        known = ("position", "velocity", "pressure_a", "pressure_b")
+        if self.grid is not None and name in known:
+            return self.modelled[known.index(name)]
+        return self.diagnosis.pictures.variables.get(name, np.empty(0))
+
+
+def contribution(effect: NamedEffect) -> tuple[Any, int]:
+    """The compiled contribution of an effect, and how many memory slots it has."""
+    module = import_module(f"eha_core.effects.{effect.id}")
+    return module.contribution, len(module.EFFECT.memory)
+
+
+def in_order(effect: NamedEffect, values: Mapping[str, float]) -> list[float]:
+    """An effect's parameters in the order of its declaration."""
+    module = import_module(f"eha_core.effects.{effect.id}")
+    return [float(values[row.name]) for row in module.EFFECT.parameters]

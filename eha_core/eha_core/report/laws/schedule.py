@@ -1,0 +1,38 @@
+"""Parameters that change while a recording runs: leakage or damping over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.result import NamedEffect
+from eha_core.report.laws.law import CURVE, Axis, Law, band
+from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.wording import capital, effect_title
+
+NAMES = ("internal_leakage", "damping_coefficient")
+UPS = (Axis("Leakage coefficient", "m^3/(s Pa)"), Axis("Damping coefficient", "N s/m"))
+
+
+def law(models: Models, effect: NamedEffect) -> Law | None:
+    """The coefficient that changes most, over time."""
+    x: Array = np.linspace(0.0, models.diagnosis.duration, CURVE, dtype=np.float64)
+    values = {name: one.value for name, one in effect.parameters.items()}
+    changes = [np.ptp(one) / max(float(np.max(one)), 1e-300) for one in _over_time(models, effect, values, x)]
+    place = int(np.argmax(changes))
+
+    def evaluate(values: Mapping[str, float]) -> Array:
+        return _over_time(models, effect, values, x)[place]
+
+    y, low, high = band(effect, evaluate)
+    title = capital(effect_title(effect.id))
+    return Law(title, Axis("time", "s"), UPS[place], x, y, low, high, 0.0 * x + models.nominal[NAMES[place]])
+
+
+def _over_time(models: Models, effect: NamedEffect, values: Mapping[str, float], time: Array) -> tuple[Array, Array]:
+    call, parameters, p = contribution(effect)[0], in_order(effect, values), models.fitted
+    rows = [call(p[NAMES[0]], p[NAMES[1]], one, *parameters) for one in time.tolist()]
+    found = np.array(rows, dtype=np.float64).T
+    return found[0], found[1]

@@ -1,0 +1,57 @@
+"""Laws of the lines: the pressure at the valve's supply and return port over the flow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.result import NamedEffect
+from eha_core.report.laws.law import CURVE, Axis, Law, band
+from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.wording import capital, effect_title
+
+STEP = 1e-3  # s
+SETTLED = 5000
+
+FLOW = Axis("flow through the valve", "m^3/s")
+
+
+def law(models: Models, effect: NamedEffect) -> Law | None:
+    """The steady pressure over a steady flow. No equation of the chambers holds it alone, so it has no points."""
+    velocity = models.state("velocity")
+    if not len(velocity):
+        return None
+    p = models.fitted
+    most = float(p["piston_area"] * np.quantile(np.abs(velocity), 0.998))
+    x: Array = np.linspace(0.0, most, CURVE // 8, dtype=np.float64)
+    values = {name: one.value for name, one in effect.parameters.items()}
+    place = int(np.argmax([np.ptp(one) for one in _steady(models, effect, values, x)]))
+
+    def evaluate(values: Mapping[str, float]) -> Array:
+        return _steady(models, effect, values, x)[place]
+
+    y, low, high = band(effect, evaluate)
+    name = ("supply_pressure", "return_pressure")[place]
+    up = Axis(("Supply pressure at the valve", "Return pressure at the valve")[place], "Pa")
+    title = capital(effect_title(effect.id))
+    return Law(title, FLOW, up, x, y, low, high, 0.0 * x + models.nominal[name])
+
+
+def _steady(models: Models, effect: NamedEffect, values: Mapping[str, float], flow: Array) -> tuple[Array, Array]:
+    call, slots = contribution(effect)
+    parameters, p = in_order(effect, values), models.fitted
+    rows = []
+    for one in flow.tolist():
+        memory, before = np.zeros(max(slots, 1)), np.inf
+        for _ in range(SETTLED):
+            supply, back = call(
+                p["supply_pressure"], p["return_pressure"], one, one, memory, 0, STEP, *parameters
+            )
+            if abs(supply - back - before) < 1.0:
+                break
+            before = supply - back
+        rows.append((supply, back))
+    found = np.array(rows, dtype=np.float64).T
+    return found[0], found[1]

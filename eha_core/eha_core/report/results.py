@@ -1,0 +1,136 @@
+"""A diagnosis as a Python session or a notebook handles it: values, a summary in tables, plots, and files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from eha_core.diagnosis.document import as_json, document
+from eha_core.diagnosis.result import Alternative, Diagnosis, FittedParameter, Location, NamedEffect
+from eha_core.errors import EhaError
+from eha_core.report.figures import Drawn, drawn
+from eha_core.report.first_screen import law_picture, residual_picture
+from eha_core.report.picture import Picture
+from eha_core.report.stages import story
+from eha_core.report.summary import Summary, summarise
+
+
+class Plots:
+    """The report's pictures, one a method; each returns a matplotlib figure, which a notebook shows."""
+
+    def __init__(self, diagnosis: Diagnosis) -> None:
+        self._diagnosis = diagnosis
+        self._stages = {stage.name: stage for stage in story(diagnosis)}
+
+    def recording(self) -> Drawn:
+        """What was recorded, with the spans that were kept from the fit."""
+        return self._picture("read")
+
+    def parameters(self) -> Drawn:
+        """The fitted parameters of the nominal model beside their nominal values, with 95 % intervals."""
+        return self._picture("calibrate")
+
+    def equations(self) -> Drawn:
+        """What each equation lacks, over time and over what it depends on most."""
+        return self._picture("locate")
+
+    def evidence(self) -> Drawn:
+        """How far each hypothesis falls behind the best."""
+        return self._picture("name")
+
+    def law(self) -> Drawn:
+        """The missing physics as a law in SI units: the data, the fitted law, and the nominal model."""
+        picture = law_picture(self._diagnosis)
+        return drawn(picture) if picture else self._picture("model")
+
+    def residuals(self) -> Drawn:
+        """Measured less modelled over time, of the nominal and of the final model."""
+        return drawn(residual_picture(self._diagnosis))
+
+    def overlays(self) -> Drawn:
+        """Measured and modelled, and the difference, on the data kept from the fit."""
+        return self._picture("show")
+
+    def whiteness(self) -> Drawn:
+        """Autocorrelation of the residuals, which white noise keeps within a band."""
+        return self._picture("show", 1)
+
+    def _picture(self, stage: str, place: int = 0) -> Drawn:
+        pictures: tuple[Picture, ...] = self._stages[stage].pictures
+        if len(pictures) <= place:
+            raise EhaError(f"there is nothing to plot here: {self._stages[stage].headline.lower()}")
+        return drawn(pictures[place])
+
+
+class Results:
+    """What `diagnose` found.
+
+    Attributes:
+        diagnosis: the whole result, frozen.
+    """
+
+    def __init__(self, diagnosis: Diagnosis) -> None:
+        self.diagnosis = diagnosis
+
+    @property
+    def verdict(self) -> str:
+        """consistent, parameters, missing_physics, ambiguous or unknown_physics."""
+        return self.diagnosis.verdict
+
+    @property
+    def effects(self) -> tuple[NamedEffect, ...]:
+        """The effects that the model leaves out, each with its parameters and their standard deviations."""
+        return self.diagnosis.effects
+
+    @property
+    def parameters(self) -> tuple[FittedParameter, ...]:
+        """The parameters of the nominal model as fitted."""
+        return self.diagnosis.parameters
+
+    @property
+    def alternatives(self) -> tuple[Alternative, ...]:
+        """Other explanations that this recording cannot tell apart from `effects`."""
+        return self.diagnosis.alternatives
+
+    @property
+    def location(self) -> tuple[Location, ...]:
+        """Where and when the nominal equations fail, most important first."""
+        return self.diagnosis.location
+
+    @property
+    def fitted_values(self) -> Mapping[str, float]:
+        """Values that differ from the catalogue's nominal plant: `eha.simulate(..., parameters=...)` takes them."""
+        return self.diagnosis.fitted_values
+
+    @property
+    def plot(self) -> Plots:
+        """The pictures."""
+        return Plots(self.diagnosis)
+
+    def summary(self) -> Summary:
+        """Tables of what is missing, what changed, and how large the errors are; print it, or show it in a notebook."""
+        return summarise(self.diagnosis)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of diagnosis.json."""
+        return document(self.diagnosis)
+
+    def to_json(self, path: str | Path | None = None) -> str:
+        """The text of diagnosis.json, written to `path` too where one is given."""
+        text = as_json(self.diagnosis)
+        if path is not None:
+            Path(path).write_text(text, encoding="utf-8")
+        return text
+
+    def save(self, folder: str | Path) -> tuple[Path, ...]:
+        """Write the report, its figures, diagnosis.json, fitted.yaml and comparison.mcap; returns their paths."""
+        from eha_core.report.files import write_report
+
+        return write_report(self.diagnosis, Path(folder))
+
+    def __repr__(self) -> str:
+        return f"<Results: {self.diagnosis.summary}>"
+
+    def _repr_html_(self) -> str:
+        return self.summary()._repr_html_()

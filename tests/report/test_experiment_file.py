@@ -1,0 +1,34 @@
+"""The proposed test as a parameters file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import yaml
+
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.experiment_file import experiment_file
+from eha_core.report.files import write_report
+
+
+def test_the_file_holds_the_reference_s_parameters_in_their_own_types(ambiguous: Diagnosis) -> None:
+    assert ambiguous.next_experiment is not None
+    reference = {**ambiguous.next_experiment.reference, "sine.amplitude": 2e-5, "multisine.count": 16, "lockstep": True}
+    experiment = replace(ambiguous.next_experiment, reference=reference, duration=8, record=("pressure_a",))
+    text = experiment_file(ambiguous, experiment)
+    loaded = yaml.safe_load(text)
+    assert loaded == {"eha_reference": {"ros__parameters": {**reference, "duration": 8.0}}}
+    assert all(
+        type(loaded["eha_reference"]["ros__parameters"][name]) is type(value) for name, value in reference.items()
+    )
+    assert "Record voltage_command, position, pressure_a, pressure_b." in text
+
+
+def test_the_report_s_folder_has_it_while_there_is_one(
+    ambiguous: Diagnosis, friction: Diagnosis, tmp_path: Path
+) -> None:
+    assert tmp_path / "next_experiment.yaml" in write_report(ambiguous, tmp_path)
+    assert (tmp_path / "next_experiment.yaml").is_file()
+    assert tmp_path / "next_experiment.yaml" not in write_report(friction, tmp_path)
+    assert not (tmp_path / "next_experiment.yaml").exists()

@@ -1,0 +1,72 @@
+"""The documentation: links lead somewhere, every effect has its page, and the notebooks run."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+from matplotlib.image import imread
+from nbclient import NotebookClient
+
+from eha_core.effects import effects
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+MADE = re.compile(r"catalogue/\w+\.md")
+"""Pages that are made when the site is."""
+
+NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
+
+sys.path.insert(0, str(ROOT / "tools"))
+import effect_pages  # noqa: E402 - a tool, which no package holds
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_leads_to_a_file(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)", page.read_text()):
+        if not target.startswith("http") and not MADE.fullmatch(target):
+            assert (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("effect", effect_pages.named_effects(), ids=lambda effect: effect.id)
+def test_every_effect_has_a_page_with_all_that_its_docstring_says(effect: object) -> None:
+    page = effect_pages.page_of(effect)
+    assert effect.equation in page
+    for part in ("Signature", "Equation", "Sign", "Validity", "Source"):
+        assert f"**{part}.** " in page
+    for name in effect.parameter_names():
+        assert f"`{name}`" in page
+    assert f"({effect.id}.md)" in effect_pages.table_of_all()
+
+
+def test_the_picture_shows_what_the_effect_changes(tmp_path: Path) -> None:
+    (friction,) = (effect for effect in effects() if effect.id == "coulomb_friction")
+    (tmp_path / "page.png").write_bytes(effect_pages.picture_of(friction))
+    assert imread(tmp_path / "page.png")[..., :3].std() > 0.05
+    assert effect_pages.typical(friction) == {"coulomb_friction.force": 200.0}
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.parametrize("name", ["diagnosis", "paper"])
+def test_a_notebook_runs_to_what_it_shows(name: str) -> None:
+    path = ROOT / "docs" / "notebooks" / f"{name}.ipynb"
+    shown = nbformat.read(path, as_version=4)
+    assert path.stat().st_size < 300_000
+    executed = nbformat.read(path, as_version=4)
+    NotebookClient(executed, timeout=100, resources={"metadata": {"path": str(path.parent)}}).execute()
+    for one, other in zip(shown.cells, executed.cells, strict=True):
+        words, numbers = text_of(one)
+        words_again, numbers_again = text_of(other)
+        assert words == words_again, one.source
+        assert numbers == pytest.approx(numbers_again, rel=0.1), one.source
+
+
+def text_of(cell: nbformat.NotebookNode) -> tuple[str, list[float]]:
+    """What a cell prints: its words, and its numbers, whose last digits are another machine's or another fit's."""
+    outputs = cell.get("outputs", [])
+    text = "".join(output.get("text") or output.get("data", {}).get("text/plain", "") for output in outputs)
+    found = re.findall(NUMBER, text)
+    return " ".join(re.sub(NUMBER, "#", text).split()), [float(one) for one in found]

@@ -1,0 +1,44 @@
+"""One set of versions: the pins fit the package's bounds, and those for ROS are the same but for what numpy asks."""
+
+from __future__ import annotations
+
+import configparser
+import json
+from pathlib import Path
+
+from packaging.requirements import Requirement
+
+ROOT = Path(__file__).resolve().parent.parent
+OF_ANOTHER_NUMPY = {"pysindy", "scikit-learn"}
+
+
+def pins(name: str) -> dict[str, str]:
+    lines = (ROOT / "requirements" / name).read_text().splitlines()
+    rows = [line.partition("#")[0].strip() for line in lines]
+    return dict(row.split("==") for row in rows if row)
+
+
+def bounds() -> dict[str, Requirement]:
+    settings = configparser.ConfigParser()
+    settings.read(ROOT / "eha_core" / "setup.cfg")
+    rows = settings["options"]["install_requires"].split("\n")
+    return {one.name: one for one in map(Requirement, filter(None, rows))}
+
+
+def test_ros_machines_have_the_same_versions() -> None:
+    runtime, ros = pins("runtime.txt"), pins("ros2.txt")
+    assert {name for name in ros.keys() & runtime.keys() if ros[name] != runtime[name]} == OF_ANOTHER_NUMPY
+
+
+def test_the_package_allows_what_is_tested_and_nothing_older() -> None:
+    runtime, ros, allowed = pins("runtime.txt"), pins("ros2.txt"), bounds()
+    assert set(allowed) == set(runtime) - {"cyclonedds"}  # which is rclpy_dds's
+    for name, bound in allowed.items():
+        assert bound.specifier.contains(runtime[name])
+        if name in ros:
+            assert [one.version for one in bound.specifier] == [ros[name]], name
+
+
+def test_the_container_makes_the_environment() -> None:
+    settings = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
+    assert settings["postCreateCommand"].startswith("make ")
