@@ -10,16 +10,16 @@ LONGEST = 2e-4
 
 
 def test_a_gentle_recording_is_calibrated_at_the_longest_step():
-    calibration = calibrate_finely_enough(observe(recorded({}, duration=4.0)), nominal_values())
+    calibration = calibrate_finely_enough([observe(recorded({}, duration=4.0))], nominal_values())
     assert calibration.shooting.step_size == LONGEST
 
 
 def test_a_violent_recording_is_calibrated_at_a_shorter_one():
     observation = observe(recorded({}, duration=6.0, amplitude=2.0, sine=8.0))
-    calibration = calibrate_finely_enough(observation, nominal_values())
-    coarse = calibrate(observation, nominal_values(), LONGEST)
+    calibration = calibrate_finely_enough([observation], nominal_values())
+    coarse = calibrate([observation], nominal_values(), LONGEST)
     assert calibration.shooting.step_size < LONGEST
-    assert step_error(observation, coarse) > 10.0 * step_error(observation, calibration)
+    assert step_error([observation], coarse) > 10.0 * step_error([observation], calibration)
     # the shorter step leaves noise alone; the longer one leaves its own error, whatever the parameters do
     assert calibration.fitted.data < 1.03 * calibration.fitted.count
     assert coarse.fitted.data - calibration.fitted.data > UNNOTICED

@@ -49,9 +49,9 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     nominal = {**nominal_values(), **rig}
     other = {"moving_mass": 1.1 * nominal["moving_mass"], "damping_coefficient": 0.93 * nominal["damping_coefficient"]}
     observation = observe(recorded({**rig, **planted, **other}, seed=7, duration=DURATIONS.get(effect.id, 6.0)))
-    calibration = calibrate(observation, nominal, STEPS.get(effect.id, 2e-4))
-    facts = gather(observation, calibration.shooting, calibration.fitted)
-    tried = [start for one in candidates(observation) for start in starts(one, facts)]
+    calibration = calibrate([observation], nominal, STEPS.get(effect.id, 2e-4))
+    facts = gather([observation], calibration.shooting, calibration.fitted)
+    tried = [start for one in candidates([observation]) for start in starts(one, facts)]
     promises = screen(calibration.problem, calibration.fitted, tried)
     leading = attempts(calibration.problem, calibration.fitted, tried, promises, REFINED, ENOUGH)
     attempt = next((one for one in leading if one.promise.start.effect.id == effect.id), None)

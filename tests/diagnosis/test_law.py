@@ -129,7 +129,7 @@ def test_a_ripple_in_the_plant_itself_is_found_behind_wrong_parameters():
         {"recovered_force.lower": -reach, "recovered_force.upper": reach, "moving_mass": 11.0, **curve}
     )
     observation = observe(recording)
-    calibration = calibrate(observation, nominal_values(), 2e-4)
+    calibration = calibrate([observation], nominal_values(), 2e-4)
     models = (calibration.fitted, calibration.nominal)
     alternatives = [balances(observation, calibration.shooting, model) for model in models]
     law = weak_law(alternatives)

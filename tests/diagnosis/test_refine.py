@@ -18,7 +18,7 @@ PLANTED = {"leakage_onset.time": 4.87, "leakage_onset.internal_leakage": 1e-10}
 
 @pytest.fixture(scope="module")
 def calibration():
-    return calibrate(observe(recorded(PLANTED, duration=8.0)), nominal_values(), 2e-4)
+    return calibrate([observe(recorded(PLANTED, duration=8.0))], nominal_values(), 2e-4)
 
 
 def test_an_instant_a_second_off_is_found(calibration):

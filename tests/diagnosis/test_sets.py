@@ -30,9 +30,9 @@ PLANTED = {"constant_load.force": 300.0, "valve_deadband.half_width": 1e-4}
 def search():
     """A search on a rig with a load and an overlap, the fit of both and of a third that is not there."""
     observation = observe(recorded(PLANTED, duration=6.0))
-    calibration = calibrate(observation, nominal_values(), 2e-4)
-    facts = gather(observation, calibration.shooting, calibration.fitted)
-    made = Search(calibration.problem, candidates(observation), facts)
+    calibration = calibrate([observation], nominal_values(), 2e-4)
+    facts = gather([observation], calibration.shooting, calibration.fitted)
+    made = Search(calibration.problem, candidates([observation]), facts)
     made.keep(NOTHING, calibration.fitted)
     return made
 

@@ -23,12 +23,12 @@ PLANTED = {"leakage_onset.time": 4.87, "leakage_onset.internal_leakage": 3e-10}
 
 @pytest.fixture(scope="module")
 def calibration():
-    return calibrate(observe(recorded(PLANTED, duration=8.0)), nominal_values(), 2e-4)
+    return calibrate([observe(recorded(PLANTED, duration=8.0))], nominal_values(), 2e-4)
 
 
 @pytest.fixture(scope="module")
 def promises(calibration):
-    facts = gather(observe(recorded(PLANTED, duration=8.0)), calibration.shooting, calibration.fitted)
+    facts = gather([observe(recorded(PLANTED, duration=8.0))], calibration.shooting, calibration.fitted)
     beginnings = [start for effect in ABLE for start in starts(effect, facts)]
     return screen(calibration.problem, calibration.fitted, beginnings)
 

@@ -3,7 +3,7 @@ physics."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,8 +12,10 @@ from eha_core.diagnosis.fit import WORTH, Fit, fit, fit_in_stages, with_noise
 from eha_core.diagnosis.freedom import nominal_freedom
 from eha_core.diagnosis.noise import residual_noise
 from eha_core.diagnosis.observation import RESOLVED, SHORTEST, Observation, without_end
+from eha_core.diagnosis.per_recording import base_name
 from eha_core.diagnosis.problem import Problem, whole
-from eha_core.diagnosis.shooting import Shooting, cut
+from eha_core.diagnosis.shooting import Shooting
+from eha_core.diagnosis.together import cut_together, fit_alone, recording_alone
 from eha_core.parameters import NOMINAL
 
 STEPS = (2e-4, 1e-4, 5e-5)
@@ -47,12 +49,16 @@ class Calibration:
     fitted: Fit
 
 
-def calibrate(observation: Observation, nominal: Mapping[str, float], step_size: float) -> Calibration:
+def calibrate(
+    observations: Sequence[Observation],
+    nominal: Mapping[str, float],
+    step_size: float,
+    per_recording: Sequence[str] = (),
+) -> Calibration:
     """Fit the nominal equations; correct each channel's noise by what the residual's roughness shows; fit again."""
-    shooting = cut(observation, nominal, step_size)
-    position = observation.channel("position")
-    assert position is not None
-    free = nominal_freedom(nominal, observation.drive, float(np.max(np.abs(position.values))))
+    shooting = cut_together(observations, nominal, step_size, per_recording=per_recording)
+    positions = [channel.values for one in observations for channel in one.measured if channel.name == "position"]
+    free = nominal_freedom(nominal, shooting.drive, max(float(np.max(np.abs(values))) for values in positions))
     first = fit_in_stages(whole(shooting), nominal, free)
     shooting = with_noise(shooting, corrected_noise(shooting, first))
     problem = whole(shooting)
@@ -61,20 +67,22 @@ def calibrate(observation: Observation, nominal: Mapping[str, float], step_size:
     return Calibration(shooting, problem, as_given, fitted)
 
 
-def calibrate_finely_enough(observation: Observation, nominal: Mapping[str, float]) -> Calibration:
+def calibrate_finely_enough(
+    observations: Sequence[Observation], nominal: Mapping[str, float], per_recording: Sequence[str] = ()
+) -> Calibration:
     """Calibrate at the longest of STEPS that is short enough."""
     for step_size in STEPS:
-        calibration = calibrate(observation, nominal, step_size)
+        calibration = calibrate(observations, nominal, step_size, per_recording)
         left = calibration.fitted.objective - calibration.fitted.count
-        if step_error(observation, calibration) < max(UNNOTICED, WORTH * left):
+        if step_error(observations, calibration) < max(UNNOTICED, WORTH * left):
             break
     return calibration
 
 
-def step_error(observation: Observation, calibration: Calibration) -> float:
+def step_error(observations: Sequence[Observation], calibration: Calibration) -> float:
     """Chi^2 between the calibrated plant's response and the same at half the step, at the samples that both have."""
     coarse, fitted = calibration.shooting, calibration.fitted
-    fine = cut(observation, fitted.values, 0.5 * coarse.step_size)
+    fine = cut_together(observations, fitted.values, 0.5 * coarse.step_size)
     responses = [one.sample(one.simulate(fitted.values, fitted.states)[0]) for one in (coarse, fine)]
     total = 0.0
     for one, other, first, second in zip(coarse.samplings, fine.samplings, *responses, strict=True):
@@ -84,27 +92,34 @@ def step_error(observation: Observation, calibration: Calibration) -> float:
     return total
 
 
-def calibrate_but_for_its_end(
-    observation: Observation, nominal: Mapping[str, float]
-) -> tuple[Observation, Calibration]:
-    """Calibrate, and once more without the last window where only that departs from the model."""
-    calibration = calibrate_finely_enough(observation, nominal)
-    share, shooting = _share_of_last_window(calibration), calibration.shooting
+def calibrate_but_for_the_ends(
+    observations: Sequence[Observation], nominal: Mapping[str, float], per_recording: Sequence[str] = ()
+) -> tuple[tuple[Observation, ...], Calibration]:
+    """Calibrate, and once more without a recording's last window where only that departs from the model."""
+    calibration = calibrate_finely_enough(observations, nominal, per_recording)
+    rest = tuple(_but_for_its_end(one, calibration, number) for number, one in enumerate(observations, 1))
+    if all(one is other for one, other in zip(rest, observations, strict=True)):
+        return rest, calibration
+    return rest, calibrate(rest, nominal, calibration.shooting.step_size, per_recording)
+
+
+def _but_for_its_end(observation: Observation, calibration: Calibration, number: int) -> Observation:
+    """A recording without its last window, if what the model leaves of it sits there."""
+    shooting = recording_alone(calibration.shooting, number)
+    share = _share_of_last_window(shooting, fit_alone(calibration.shooting, calibration.fitted, number))
     last = float(shooting.edges[-1] - shooting.edges[-2]) * shooting.step_size
     if share < NOWHERE_ELSE or observation.duration < SHORTEST + last:
-        return observation, calibration
+        return observation
     why = f"{share:.0%} of what the nominal equations leave unexplained sits there, as where nodes go down"
-    rest = without_end(observation, last, why)
-    return rest, calibrate(rest, nominal, shooting.step_size)
+    return without_end(observation, last, why)
 
 
-def _share_of_last_window(calibration: Calibration) -> float:
+def _share_of_last_window(shooting: Shooting, fitted: Fit) -> float:
     """Share of what the fit leaves beyond noise that sits in the last window; 0 where that is next to nothing."""
-    shooting = calibration.shooting
     if shooting.windows < 3:
         return 0.0
     before = at_the_end = 0.0
-    for one, residual in zip(shooting.samplings, calibration.fitted.residuals, strict=True):
+    for one, residual in zip(shooting.samplings, fitted.residuals, strict=True):
         square, last = residual**2, one.window == shooting.windows - 1
         before += max(0.0, float(np.sum(square[~last] - 1.0)))
         at_the_end += float(np.sum(square[last] - min(1.0, float(square[~last].mean()))))
@@ -129,8 +144,9 @@ def has_changed(result: Fit, nominal: Mapping[str, float], name: str) -> bool:
     """Whether a fitted parameter has left its nominal value, noticeably and relevantly."""
     place = [one.name for one in result.free].index(name)
     one = result.free[place]
-    departure = abs(result.values[name] - nominal[name])
-    relevant = RELEVANT * (abs(nominal[name]) if one.logarithmic else max(abs(nominal[name]), one.scale))
+    given = nominal[base_name(name)]
+    departure = abs(result.values[name] - given)
+    relevant = RELEVANT * (abs(given) if one.logarithmic else max(abs(given), one.scale))
     return departure > NOTICEABLE * result.deviation(name) and departure > relevant
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from eha_core.diagnosis.calibrate import UNITS, corrected_noise, has_changed, identifiable
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEFT_IN_A_CHANNEL
+from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, tested_recordings
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
 from eha_core.diagnosis.explained import explained, predictions
@@ -20,6 +21,7 @@ from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.locate import stated
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.outlook import RATE
+from eha_core.diagnosis.per_recording import base_name, is_one_of
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.result import (
     Alternative,
@@ -35,11 +37,12 @@ from eha_core.diagnosis.result import (
     UnknownLaw,
 )
 from eha_core.diagnosis.search.prune import wald
-from eha_core.diagnosis.shooting import Shooting, cut
+from eha_core.diagnosis.shooting import Shooting
+from eha_core.diagnosis.together import cut_together, facts_alone
 from eha_core.diagnosis.tournament import Entry
 from eha_core.diagnosis.validate import channel_rmse, instants_of, judge, split
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
-from eha_core.effects import SITES
+from eha_core.effects import SITES, Effect
 from eha_core.effects import effects as every_effect
 from eha_core.parameters import catalogue, nominal_values
 from eha_core.recording import Recording
@@ -49,7 +52,12 @@ FINAL_STEP = 1e-4
 one."""
 
 
-def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
+def conclude(
+    recordings: Sequence[Recording],
+    evidence: Evidence,
+    progress: Callable[[str], None] = lambda _: None,
+    tests: Sequence[Recording] = (),
+) -> Diagnosis:
     """Polish the winner, measure what it is worth on data it was not fitted to, and put everything into words."""
     progress("polishing the winner and its intervals")
     unknown = _unknown(evidence)
@@ -59,6 +67,7 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
     before, calibrated = evidence.calibration.nominal, evidence.tournament.nominal.fit
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
+    recording = recordings[evidence.lead - 1]
     effects = () if decision.verdict == "unknown_physics" else _named(decision.winner, final)
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
@@ -66,8 +75,8 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
         duration=recording.duration,
         channels=evidence.observation.channels,
         not_examined=evidence.observation.not_examined,
-        remarks=evidence.observation.remarks,
-        damaged=recording.damaged,
+        remarks=_remarks(evidence),
+        damaged=next((one.damaged for one in recordings if one.damaged), None),
         verdict=decision.verdict,
         summary=_summary(decision, effects, unknown, left),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
@@ -75,8 +84,8 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
         effects=effects,
         alternatives=tuple(Alternative(entry.ids, gap) for entry, gap in decision.rivals),
         unknown=unknown,
-        training=training,
-        held_out=held_out,
+        training=of_recording(training, evidence.lead),
+        held_out=of_recording(held_out, evidence.lead),
         next_experiment=experiment,
         rivals=tuple((entry.ids, entry.score) for entry in evidence.tournament.entries),
         whiteness=dict(zip(evidence.calibration.shooting.names, whiteness(decision.winner.fit.residuals), strict=True)),
@@ -84,13 +93,21 @@ def conclude(recording: Recording, evidence: Evidence, progress: Callable[[str],
         pictures=_pictures(evidence, before, calibrated, decision.winner.fit),
         start_stamp=recording.start_stamp,
         explained=left,
-        prediction=predictions(evidence, final),
+        prediction=predictions(
+            evidence.observation,
+            evidence.shown_fit(evidence.calibration.shooting, final).values,
+            evidence.calibration.shooting.step_size,
+        ),
+        together=fitted_recordings(evidence, final, held_out),
+        tests=tested_recordings(evidence, final, tests),
     )
 
 
 def polish(evidence: Evidence, winner: Entry) -> Fit:
     """The winner fitted once more at the final step."""
-    shooting = cut(evidence.observation, evidence.nominal, min(FINAL_STEP, evidence.calibration.shooting.step_size))
+    searched = evidence.calibration.shooting
+    step_size = min(FINAL_STEP, searched.step_size)
+    shooting = cut_together(evidence.observations, evidence.nominal, step_size, per_recording=searched.per_recording)
     # under the winner the residual is noise at last, so its roughness is measured best there
     shooting = with_noise(shooting, corrected_noise(evidence.calibration.shooting, winner.fit))
     problem = Problem(shooting, np.arange(shooting.windows))
@@ -121,10 +138,18 @@ def _channel_fits(
     return made[0], made[1]
 
 
+def _remarks(evidence: Evidence) -> tuple[str, ...]:
+    """What was put right in each recording; of several, each with its path."""
+    if len(evidence.observations) == 1:
+        return evidence.observation.remarks
+    return tuple(f"{one.path}: {remark}" for one in evidence.observations for remark in one.remarks)
+
+
 def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParameter, ...]:
     found = []
     for one in final.free:
-        if one.name not in UNITS:
+        base = base_name(one.name)
+        if base not in UNITS:
             continue
         note = "" if identifiable(final, one.name) else "this recording does not tell it; held near its nominal value"
         at_bound = _is_at_bound(one, final.values[one.name])
@@ -133,10 +158,10 @@ def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParamet
         found.append(
             FittedParameter(
                 one.name,
-                nominal[one.name],
+                nominal[base],
                 final.values[one.name],
                 final.deviation(one.name),
-                UNITS[one.name],
+                UNITS[base],
                 has_changed(final, nominal, one.name),
                 note,
                 at_bound,
@@ -162,6 +187,7 @@ def _named(winner: Entry, final: Fit) -> tuple[NamedEffect, ...]:
             row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
             for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)
         }
+        values |= _in_other_recordings(effect, final)
         active = winner.span if member.limited else None
         statement = effect.describe({name: value.value for name, value in values.items()})
         statement += f", from {active[0]:.4g} s to {active[1]:.4g} s only" if active else ""
@@ -169,6 +195,18 @@ def _named(winner: Entry, final: Fit) -> tuple[NamedEffect, ...]:
         row = NamedEffect(effect.id, effect.site, effect.equation, values, evidence, statement, active, effect.kind)
         found.append(row)
     return tuple(found)
+
+
+def _in_other_recordings(effect: Effect, final: Fit) -> dict[str, FittedValue]:
+    """The values of an effect's parameters that differ between recordings, in all but the first: `force@2`."""
+    units = {name: row.unit for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}
+    return {
+        one.name.removeprefix(f"{effect.id}."): FittedValue(
+            final.values[one.name], final.deviation(one.name), units[base_name(one.name)]
+        )
+        for one in final.free
+        if "@" in one.name and is_one_of(one.name, units)
+    }
 
 
 def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, ...]:
@@ -259,7 +297,7 @@ def _changed_values(final: Fit) -> dict[str, float]:
 
 
 def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
-    shooting, values = evidence.calibration.shooting, decision.winner.fit.values
+    shooting, values = evidence.shown(evidence.calibration.shooting), decision.winner.fit.values
     noises = {
         name: one.noise * float(np.sqrt(RATE * evidence.observation.duration / len(one.values)))
         for name, one in zip(shooting.names, shooting.samplings, strict=True)
@@ -272,21 +310,24 @@ def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
 
 def _pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pictures:
     """Series for the report: measured channels and the three models' at the same times, windows restarted."""
-    shooting = evidence.calibration.shooting
-    models = [_modelled(shooting, one) for one in (before, calibrated, after)]
+    whole = evidence.calibration.shooting
+    shooting = evidence.shown(whole)
+    models = [_modelled(shooting, evidence.shown_fit(whole, one)) for one in (before, calibrated, after)]
     times = {name: shooting.times(one) for name, one in zip(shooting.names, shooting.samplings, strict=True)}
     measured = {name: one.values for name, one in zip(shooting.names, shooting.samplings, strict=True)}
     variables: dict[str, Array] = {}
-    if len(evidence.facts.rows):
+    facts = facts_alone(whole, evidence.facts, evidence.lead)
+    if len(facts.rows):
         for name in ("velocity", "spool_position", "position", "pressure_a", "pressure_b"):
-            variables[name] = evidence.facts.column(name)
-        variables["time"] = np.asarray((np.arange(len(evidence.facts.rows)) + 1) * shooting.every * shooting.step_size)
+            variables[name] = facts.column(name)
+        variables["time"] = np.asarray((np.arange(len(facts.rows)) + 1) * shooting.every * shooting.step_size)
     if evidence.observation.drive == "voltage":
         times["voltage_command"], measured["voltage_command"] = evidence.observation.inputs[0]
     equations = {one.equation: (one.time, one.residual) for one in evidence.equations}
-    edges = shooting.edges * shooting.step_size
-    outside = split(shooting, instants_of(after))[1]
-    judged = tuple((float(edges[window]), float(edges[window + 1])) for window in outside.windows)
+    outside = split(whole, instants_of(after))[1]
+    lead = whole.recordings[evidence.lead - 1]
+    spans = whole.local_edges.tolist()
+    judged = tuple((spans[window][0], spans[window][1]) for window in outside.windows if window in lead)
     return Pictures(times, measured, models[0], models[1], models[2], variables, equations, judged)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eha_core.diagnosis.result import ChannelFit, Diagnosis, NamedEffect
+from eha_core.diagnosis.result import ChannelFit, Diagnosis, NamedEffect, Prediction
 
 SCHEMA = "eha.diagnosis/1"
 
@@ -47,13 +47,19 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
                 **_rows([diagnosis.explained], ("share", "times_noise", "complete"))[0],
                 "left_over": _rows(diagnosis.explained.left_over, ("site", "share", "where", "when")),
             },
-            "prediction": {
-                name: {
-                    "ahead": {f"{ahead:g}": rmse for ahead, rmse in one.ahead.items()},
-                    "free_running": one.free_running,
+            "prediction": _predictions(diagnosis.prediction),
+            "recordings": [
+                {"path": one.path, "own_values": one.own_values, "held_out": _fits(one.held_out)}
+                for one in diagnosis.together
+            ],
+            "tests": [
+                {
+                    "path": one.path,
+                    "noise": one.noise,
+                    "prediction": {model: _predictions(each) for model, each in one.prediction.items()},
                 }
-                for name, one in diagnosis.prediction.items()
-            },
+                for one in diagnosis.tests
+            ],
         }
     )
     return plain
@@ -76,6 +82,16 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
     row = _rows([effect], ("id", "site", "kind", "equation", "evidence", "statement", "active"))[0]
     row["parameters"] = {name: _row(value, ("value", "std", "unit")) for name, value in effect.parameters.items()}
     return row
+
+
+def _predictions(channels: Mapping[str, Prediction]) -> dict[str, Any]:
+    return {
+        name: {
+            "ahead": {f"{ahead:g}": rmse for ahead, rmse in one.ahead.items()},
+            "free_running": one.free_running,
+        }
+        for name, one in channels.items()
+    }
 
 
 def _fits(fits: Mapping[str, ChannelFit]) -> dict[str, Any]:

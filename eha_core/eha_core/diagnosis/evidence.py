@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from eha_core.diagnosis.balance import Balance
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.observation import Observation
 from eha_core.diagnosis.result import Location
+from eha_core.diagnosis.shooting import Shooting
+from eha_core.diagnosis.together import fit_alone, recording_alone
 from eha_core.diagnosis.tournament import Tournament
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
@@ -17,10 +22,16 @@ from eha_core.diagnosis.verdict import Decision
 
 @dataclass(frozen=True)
 class Evidence:
-    """Every stage's result, in their order. `equations`: the balances that lack least; `balances`: those of each model
-    that they were chosen from."""
+    """Every stage's result, in their order.
 
-    observation: Observation
+    Attributes:
+        observations: one a recording; `lead` is the number, counted from one, of that which the report draws.
+        equations: the balances of the lead that lack least; `balances`: those of each model that they were chosen
+        from.
+    """
+
+    observations: tuple[Observation, ...]
+    lead: int
     nominal: Mapping[str, float]
     calibration: Calibration
     facts: Facts
@@ -30,3 +41,22 @@ class Evidence:
     recovery: Recovery | None
     decision: Decision
     location: tuple[Location, ...]
+
+    @property
+    def observation(self) -> Observation:
+        """The lead's."""
+        return self.observations[self.lead - 1]
+
+    def shown(self, shooting: Shooting) -> Shooting:
+        """The lead's part of the windows."""
+        return recording_alone(shooting, self.lead)
+
+    def shown_fit(self, shooting: Shooting, result: Fit) -> Fit:
+        """What a fit to these windows says of the lead."""
+        return fit_alone(shooting, result, self.lead)
+
+
+def telling_most(shooting: Shooting, fitted: Fit) -> int:
+    """The number of the recording that a model leaves most of, a sample."""
+    each = [fit_alone(shooting, fitted, number) for number in range(1, len(shooting.first_windows) + 1)]
+    return 1 + int(np.argmax([one.data / max(one.count, 1) for one in each]))

@@ -8,8 +8,9 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import COHERENT, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.evidence import Evidence
-from eha_core.diagnosis.fit import Fit, with_noise
+from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.locate import whereabouts
+from eha_core.diagnosis.observation import Observation
 from eha_core.diagnosis.result import Explained, Location, Prediction
 from eha_core.diagnosis.shooting import cut
 from eha_core.diagnosis.verdict import coherence
@@ -36,29 +37,30 @@ def _left_over(evidence: Evidence) -> tuple[Location, ...]:
     """Where and when the rest sits; at the site at which one more effect would explain most of it, as far as a score
     test tells."""
     winner = evidence.decision.winner
-    where, when = whereabouts(evidence.calibration.shooting, winner.fit, evidence.facts)
+    where, when = whereabouts(evidence.calibration.shooting, winner.fit, evidence.facts, evidence.lead)
     sites = evidence.tournament.left_over
     total = sum(sites.values())
     ranked = sorted(sites.items(), key=lambda item: -item[1])[:3]
     return tuple(Location(site, gain / total, where, when, "") for site, gain in ranked if gain > 0.05 * total)
 
 
-def predictions(evidence: Evidence, final: Fit) -> Mapping[str, Prediction]:
-    """How far each channel is predicted from measured states alone, and over the whole record."""
-    shooting, observation = evidence.calibration.shooting, evidence.observation
-    names = shooting.names
-    ahead = {seconds: _errors(evidence, final, seconds) for seconds in AHEAD if seconds < observation.duration}
-    running = _errors(evidence, final, 2.0 * observation.duration)
+def predictions(observation: Observation, values: Mapping[str, float], step_size: float) -> Mapping[str, Prediction]:
+    """How far a model predicts each channel of a recording from measured states alone, and over the whole record."""
+    ahead = {
+        seconds: _errors(observation, values, step_size, seconds) for seconds in AHEAD if seconds < observation.duration
+    }
+    running = _errors(observation, values, step_size, 2.0 * observation.duration)
     return {
-        name: Prediction({seconds: errors[place] for seconds, errors in ahead.items()}, running[place])
-        for place, name in enumerate(names)
+        name: Prediction({seconds: errors[name] for seconds, errors in ahead.items()}, error)
+        for name, error in running.items()
     }
 
 
-def _errors(evidence: Evidence, final: Fit, seconds: float) -> list[float]:
+def _errors(
+    observation: Observation, values: Mapping[str, float], step_size: float, seconds: float
+) -> Mapping[str, float]:
     """RMSE of every channel, restarted from the measured states every so many seconds."""
-    shooting = cut(evidence.observation, final.values, evidence.calibration.shooting.step_size, seconds)
-    shooting = with_noise(shooting, [1.0] * len(shooting.samplings))
-    rows, _ = shooting.simulate(final.values, shooting.initial_states)
-    pairs = zip(shooting.samplings, shooting.sample(rows), strict=True)
-    return [float(np.sqrt(np.mean((one.values - model) ** 2))) for one, model in pairs]
+    shooting = cut(observation, values, step_size, seconds)
+    rows, _ = shooting.simulate(values, shooting.initial_states)
+    triples = zip(shooting.names, shooting.samplings, shooting.sample(rows), strict=True)
+    return {name: float(np.sqrt(np.mean((one.values - model) ** 2))) for name, one, model in triples}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,19 +30,18 @@ class Facts:
         return self.rows[:, COLUMNS.index(name)]
 
 
-def gather(observation: Observation, shooting: Shooting, calibrated: Fit) -> Facts:
-    """Simulate the calibrated model once more, in full, and read the scales off it and off the measured position."""
-    position = observation.channel("position")
-    assert position is not None
-    low, high = np.quantile(position.values, [0.002, 0.998])
+def gather(observations: Sequence[Observation], shooting: Shooting, calibrated: Fit) -> Facts:
+    """Simulate the calibrated model once more, in full, and read the scales off it and off the measured positions."""
+    positions = [channel for one in observations for channel in one.measured if channel.name == "position"]
+    low, high = np.quantile(np.concatenate([one.values for one in positions]), [0.002, 0.998])
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
-    speed = float(np.std(smooth(position, 1)))
+    speed = float(np.std(np.concatenate([smooth(one, 1) for one in positions])))
     scales = {
         "position": (float(centre), float(half)),
-        "time": (0.0, observation.duration),
+        "time": (0.0, max(one.duration for one in observations)),
         "speed": (0.0, speed),
     }
-    if observation.drive == "voltage":
+    if shooting.drive == "voltage":
         rows, _ = shooting.simulate(calibrated.values, calibrated.states, full=True)
         area = calibrated.values["piston_area"]
         difference = rows[:, COLUMNS.index("pressure_a")] - rows[:, COLUMNS.index("pressure_b")]

@@ -14,6 +14,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eha_core.diagnosis.freedom import LATE, Free
 from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.per_recording import in_each, is_one_of
 from eha_core.diagnosis.problem import (
     Problem,
     linearise,
@@ -101,7 +102,7 @@ def fit(
     would not bring it below `give_up_above`.
     """
     shooting = problem.shooting
-    free = tuple(free)
+    free, values = in_each(free, values, shooting.per_recording, len(shooting.first_windows))
     states = (shooting.initial_states if states is None else states).copy()
     q = np.array([one.coordinate(values[one.name]) for one in free])
     resolution = np.array([one.resolution for one in free])
@@ -152,7 +153,7 @@ def fit_in_stages(
     give_up_above: float = np.inf,
 ) -> Fit:
     """`fit` from far away: the parameters of LATE stay where they are until the others have settled."""
-    early = [one for one in free if one.name not in LATE]
+    early = [one for one in free if not is_one_of(one.name, LATE)]
     first = fit(problem, values, early, states, iterations=8)
     return fit(problem, first.values, free, first.states, iterations=iterations, give_up_above=give_up_above)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -26,11 +26,11 @@ class Start:
     values: Mapping[str, float]
 
 
-def candidates(observation: Observation) -> tuple[Effect, ...]:
-    """The effects that this recording could show: those of examined sites whose sensor was there."""
-    sites = SITES_OF_DRIVE[observation.drive]
+def candidates(observations: Sequence[Observation]) -> tuple[Effect, ...]:
+    """The effects that these recordings could show: those of examined sites whose sensor was there."""
+    sites = SITES_OF_DRIVE[observations[0].drive]
     found = [effect for effect in effects() if effect.site in sites and effect.named]
-    if observation.channel("pressure_a") is None and observation.channel("pressure_b") is None:
+    if not any(channel.name.startswith("pressure") for one in observations for channel in one.measured):
         found = [effect for effect in found if "measured_pressure_a" not in effect.needs]
     return tuple(found)
 

@@ -14,6 +14,7 @@ from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Location
 from eha_core.diagnosis.shooting import Shooting
+from eha_core.diagnosis.together import facts_alone, fit_alone, recording_alone
 from eha_core.diagnosis.tournament import Tournament
 from eha_core.effects import SITES
 
@@ -34,13 +35,21 @@ class Region:
 
 
 def locate(
-    calibration: Calibration, nominal: Fit, facts: Facts, tournament: Tournament, equations: Sequence[Balance]
+    calibration: Calibration,
+    nominal: Fit,
+    facts: Facts,
+    tournament: Tournament,
+    equations: Sequence[Balance],
+    recording: int = 1,
 ) -> tuple[Location, ...]:
-    """The sites by the share of the unexplained chi^2 that their best hypothesis takes away, the largest first."""
+    """The sites by the share of the unexplained chi^2 that their best hypothesis takes away, the largest first.
+
+    Where in state space and when is told of one `recording`, counted from one.
+    """
     shooting = calibration.shooting
     unexplained = max(nominal.objective - nominal.count, 1.0)
     gains = _site_gains(tournament, equations)
-    where, when = whereabouts(shooting, nominal, facts)
+    where, when = whereabouts(shooting, nominal, facts, recording)
     found: list[Location] = []
     for site, gain in sorted(gains.items(), key=lambda item: -item[1])[:4]:
         share = float(np.clip(gain / unexplained, 0.0, 1.0))
@@ -50,9 +59,12 @@ def locate(
     return tuple(found)
 
 
-def whereabouts(shooting: Shooting, result: Fit, facts: Facts) -> tuple[str, tuple[tuple[float, float], ...]]:
-    """In which part of state space, and when, a fit leaves most."""
-    return _where(shooting, result, facts), _when(shooting, result)
+def whereabouts(
+    shooting: Shooting, result: Fit, facts: Facts, recording: int = 1
+) -> tuple[str, tuple[tuple[float, float], ...]]:
+    """In which part of state space, and when, a fit leaves most of a recording, counted from one."""
+    alone, of_it = recording_alone(shooting, recording), fit_alone(shooting, result, recording)
+    return _where(alone, of_it, facts_alone(shooting, facts, recording)), _when(alone, of_it)
 
 
 def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 from eha_core.diagnosis.fit import SETTLED, Fit
 from eha_core.diagnosis.freedom import Free
 from eha_core.diagnosis.numbers import Array
+from eha_core.diagnosis.per_recording import is_one_of
 from eha_core.diagnosis.refine import NOMINAL_NAMES
 from eha_core.plant import COLUMNS, Plant
 
@@ -45,11 +46,11 @@ def separation(voltage: Array, rivals: Sequence[Fit], noises: Mapping[str, float
         return None
     outcomes = [test.measured(rows) for rows in responses]
     first = rivals[0]
-    nominal = tuple(one for one in first.free if one.name in NOMINAL_NAMES)
+    nominal = tuple(one for one in first.free if is_one_of(one.name, NOMINAL_NAMES))
     shared = test.slopes(first, nominal, outcomes[0])
     near, every = [], []
     for rival, outcome in zip(rivals, outcomes, strict=True):
-        own = tuple(one for one in rival.free if one.name not in NOMINAL_NAMES)
+        own = tuple(one for one in rival.free if not is_one_of(one.name, NOMINAL_NAMES))
         slopes = _Slopes(nominal + own, np.hstack([shared, test.slopes(rival, own, outcome)]))
         every.append(slopes)
         near.append(outcome if rival is first else _imitating(outcomes[0], test, rival, slopes, outcome))

@@ -37,6 +37,9 @@ trial, for an instant that is wrong by more than a moment shows no slope that le
 SHARPER = 0.1
 """Share of the usual span over which an instant's derivative is taken once it is known closely."""
 
+TOUCHING = 1e-6
+"""s; a window that begins where a span ends touches it."""
+
 TRIED = 4
 """How many effects are fitted with the span in which they act."""
 
@@ -77,7 +80,10 @@ def passing_effects(
 
 def _fitted_outside(problem: Problem, nominal: Fit, windows: tuple[int, int]) -> Fit:
     """The nominal equations as all windows but these, and those that touch them, have them; every window's start."""
-    inside = np.arange(max(windows[0] - 1, 0), windows[1] + 1)
+    begin, end = _span_of(problem, windows)
+    local = problem.shooting.local_edges
+    # a window that only touches the span is inside, too
+    inside = np.flatnonzero((local[:, 1] >= begin - TOUCHING) & (local[:, 0] <= end + TOUCHING))
     rest = np.setdiff1d(problem.windows, inside)
     if len(rest) < 2:
         return nominal
@@ -85,6 +91,12 @@ def _fitted_outside(problem: Problem, nominal: Fit, windows: tuple[int, int]) ->
     fitted = fit_in_stages(replace(problem, windows=rest), {**nominal.values, **untouched}, nominal.free)
     started = refit_states(problem, fitted)
     return fit(problem, fitted.values, nominal.free, started.states, iterations=0)
+
+
+def _span_of(problem: Problem, windows: tuple[int, int]) -> tuple[float, float]:
+    """When these windows in a row begin and end [s] in their recording."""
+    local = problem.shooting.local_edges
+    return float(local[windows[0], 0]), float(local[windows[1] - 1, 1])
 
 
 def _one_each(promises: Sequence[Promise]) -> list[Promise]:
@@ -98,9 +110,8 @@ def _one_each(promises: Sequence[Promise]) -> list[Promise]:
 def _of_fixed_span(problem: Problem, base: Fit, promise: Promise) -> Fit:
     """The promised effect's own parameters fitted, in the span that the windows tell, and nothing else."""
     assert promise.windows is not None
-    edges = problem.shooting.edges * problem.shooting.step_size
-    first, end = promise.windows
-    values = {**base.values, **scaled(promise), "effects_from": float(edges[first]), "effects_until": float(edges[end])}
+    begin, end = _span_of(problem, promise.windows)
+    values = {**base.values, **scaled(promise), "effects_from": begin, "effects_until": end}
     return fit(problem, values, effect_freedom(promise.start.effect, values), base.states, iterations=8)
 
 
@@ -115,10 +126,10 @@ class _Instants:
 
 def _located(problem: Problem, result: Fit) -> _Instants:
     """Move either instant by trial, with the windows' starts alone free."""
-    edges = problem.shooting.edges * problem.shooting.step_size
+    longest = float(np.max(problem.shooting.local_edges))
     reach = ABREAST * SPACINGS[0]
     instants = {row.name: result.values[row.name] for row in ACTING}
-    bounds = {name: (max(at - reach, 0.0), min(at + reach, float(edges[-1]))) for name, at in instants.items()}
+    bounds = {name: (max(at - reach, 0.0), min(at + reach, longest)) for name, at in instants.items()}
     best = result
     for spacing in SPACINGS:
         for name in instants:

@@ -1,4 +1,4 @@
-"""`diagnose`: the stages in their order, from a recording to a frozen result."""
+"""`diagnose`: the stages in their order, from recordings of a rig to a frozen result."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Callable, Mapping, Sequence
 from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.balance import balances, least
-from eha_core.diagnosis.calibrate import calibrate_but_for_its_end
+from eha_core.diagnosis.calibrate import calibrate_but_for_the_ends
 from eha_core.diagnosis.conclude import conclude
-from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
-from eha_core.diagnosis.joint import join
 from eha_core.diagnosis.locate import locate
 from eha_core.diagnosis.observation import observe, reaching
 from eha_core.diagnosis.parallel import side_by_side
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.sets import with_sets
+from eha_core.diagnosis.together import check_alike, fit_alone, recording_alone
 from eha_core.diagnosis.tournament import compete, from_every_start
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
@@ -26,28 +26,41 @@ from eha_core.recording import Recording
 Progress = Callable[[str], None]
 
 
-def examine(recording: Recording, nominal: Mapping[str, float], progress: Progress = lambda _: None) -> Evidence:
-    """Run the stages up to the decision. Raises RecordingError where the recording cannot be used."""
+def examine(
+    recordings: Sequence[Recording],
+    nominal: Mapping[str, float],
+    progress: Progress = lambda _: None,
+    per_recording: Sequence[str] = (),
+) -> Evidence:
+    """Run the stages up to the decision. Raises RecordingError where a recording cannot be used."""
     progress("reading and aligning")
-    observation, nominal = reaching(observe(recording), nominal)
+    seen = [observe(recording) for recording in recordings]
+    check_alike(seen)
+    for number, observation in enumerate(seen):
+        seen[number], nominal = reaching(observation, nominal)
     progress("calibrating the nominal equations")
-    observation, calibration = calibrate_but_for_its_end(observation, nominal)
-    facts = gather(observation, calibration.shooting, calibration.fitted)
-    models = (calibration.fitted, calibration.nominal)
-    alternatives = tuple(balances(observation, calibration.shooting, model) for model in models)
-    equations = least(alternatives)
-    able = candidates(observation)
-    tournament = compete(calibration.problem, calibration.fitted, able, facts, progress)
+    observations, calibration = calibrate_but_for_the_ends(seen, nominal, per_recording)
+    shooting, fitted = calibration.shooting, calibration.fitted
+    facts = gather(observations, shooting, fitted)
+    lead = telling_most(shooting, fitted)
+    alternatives = tuple(
+        balances(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, model, lead))
+        for model in (fitted, calibration.nominal)
+    )
+    able = candidates(observations)
+    tournament = compete(calibration.problem, fitted, able, facts, progress)
     calibration, tournament = with_sets(calibration, tournament, able, facts, progress)
     restarted = from_every_start(calibration.problem, tournament, progress)
     if restarted is not tournament:
         calibration, tournament = with_sets(calibration, restarted, able, facts, progress)
     recovery = recover(calibration.problem, tournament, facts, progress)
     decision = decide(calibration, nominal, tournament, recovery)
-    location = locate(calibration, tournament.nominal.fit, facts, tournament, equations)
+    equations = least(alternatives)
+    location = locate(calibration, tournament.nominal.fit, facts, tournament, equations, lead)
     return Evidence(
-        observation, nominal, calibration, facts, equations, alternatives, tournament, recovery, decision, location
-    )
+        observations, lead, nominal, calibration, facts, equations, alternatives, tournament, recovery, decision,
+        location,
+    )  # fmt: skip
 
 
 def diagnose(recording: Recording, nominal: Mapping[str, float], progress: Progress = lambda _: None) -> Diagnosis:
@@ -56,16 +69,27 @@ def diagnose(recording: Recording, nominal: Mapping[str, float], progress: Progr
 
 
 def diagnose_together(
-    recordings: Sequence[Recording], nominal: Mapping[str, float], progress: Progress = lambda _: None, jobs: int = 2
+    recordings: Sequence[Recording],
+    nominal: Mapping[str, float],
+    progress: Progress = lambda _: None,
+    jobs: int = 2,
+    per_recording: Sequence[str] = (),
+    tests: Sequence[Recording] = (),
 ) -> Diagnosis:
-    """The joint verdict on recordings of one rig; the story is told on the one that tells most."""
+    """The verdict on recordings of one rig, fitted with one set of parameters and effects.
+
+    Args:
+        recordings: of the same rig; the report draws the one of which the nominal equations leave most unexplained.
+        nominal: every parameter of the model.
+        progress: is told each stage as it begins.
+        jobs: threads that simulate side by side.
+        per_recording: parameters that have a value of their own in each recording.
+        tests: recordings that nothing is fitted to; the result says how well they are predicted.
+
+    Raises:
+        RecordingError: a recording cannot be used, or they are driven by different channels.
+    """
     # the simulations share the cores; a linear-algebra library that spins threads of its own only takes them away
     with threadpool_limits(1), side_by_side(jobs):
-        evidences = [examine(recording, nominal, progress) for recording in recordings]
-        joined = join(evidences)
-        chosen = next(
-            one
-            for one, evidence in zip(recordings, evidences, strict=True)
-            if evidence.observation is joined.observation
-        )
-        return conclude(chosen, joined, progress)
+        evidence = examine(recordings, nominal, progress, per_recording)
+        return conclude(recordings, evidence, progress, tests)

@@ -56,9 +56,11 @@ class Problem:
         return sum(int(used[one.window].sum()) for one in self.shooting.samplings)
 
     def links(self) -> Integers:
-        """Windows in use whose successor is in use too."""
+        """Windows in use whose successor is in use too, and of the same recording."""
         used = self.used()
-        return np.flatnonzero(used[:-1] & used[1:])
+        follows = np.ones(self.shooting.windows, dtype=np.bool_)
+        follows[list(self.shooting.first_windows)] = False
+        return np.flatnonzero(used[:-1] & used[1:] & follows[1:])
 
     @cached_property
     def order(self) -> tuple[Integers, Integers, list[Flags]]:
@@ -202,9 +204,7 @@ def changes(
         rows, ends = coarse.simulate_many([base, *moved[block]])
         ends_by[:, :, block] = (ends[:, :, 1:] - ends[:, :, :1]) / over[block]
         for one, used, to in zip(coarse.samplings, problem.order[2], problem.places, strict=True):
-            _sample_changes(
-                rows, over[block], one.row[used], one.late[used], one.column, one.noise, to, place, columns
-            )
+            _sample_changes(rows, over[block], one.row[used], one.late[used], one.column, one.noise, to, place, columns)
 
     each(fill, range(0, len(moved), room))
     return columns, ends_by

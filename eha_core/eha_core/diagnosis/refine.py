@@ -15,6 +15,7 @@ from eha_core.diagnosis.fit import Fit, fit, fit_in_stages
 from eha_core.diagnosis.freedom import LATE, Free, effect_freedom
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.hypothesis import Hypothesis
+from eha_core.diagnosis.per_recording import is_one_of
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
 from eha_core.effects import Effect
@@ -60,7 +61,7 @@ Found = dict[Hypothesis, Fit]
 
 def with_dynamics_as_given(problem: Problem, calibrated: Fit) -> Fit | None:
     """The calibration with the valve's dynamics at their nominal values; None where it hardly moved them."""
-    late = {one.name: one.reference for one in calibrated.free if one.name in LATE}
+    late = {one.name: one.reference for one in calibrated.free if is_one_of(one.name, LATE)}
     if all(abs(calibrated.values[name] / given - 1.0) < BENT for name, given in late.items()):
         return None
     rest = [one for one in calibrated.free if one.name not in late]
@@ -70,7 +71,7 @@ def with_dynamics_as_given(problem: Problem, calibrated: Fit) -> Fit | None:
 
 def as_given(problem: Problem, calibrated: Fit) -> Fit:
     """The calibration with every nominal parameter back at its nominal value, only the windows' starts fitted again."""
-    given = {one.name: one.reference for one in calibrated.free if one.name in NOMINAL_NAMES}
+    given = {one.name: one.reference for one in calibrated.free if is_one_of(one.name, NOMINAL_NAMES)}
     return _set_free(fit(problem, {**calibrated.values, **given}, (), calibrated.states, iterations=5), calibrated.free)
 
 
@@ -122,7 +123,7 @@ def attempts(
     if unbent is None:
         return tuple(chosen)
     # what the dynamics could imitate shows only while they are held
-    held = _set_free(unbent, tuple(one for one in base.free if one.name not in LATE))
+    held = _set_free(unbent, tuple(one for one in base.free if not is_one_of(one.name, LATE)))
     again = one_each(screen(problem, held, beginnings), WITH_DYNAMICS_AS_GIVEN)
     known = {one.promise.start.effect.id for one in chosen if one.afresh}
     afresh = [Attempt(unbent, one, True) for one in again if one.start.effect.id not in known]
@@ -134,7 +135,7 @@ def try_effect(problem: Problem, attempt: Attempt, best: float) -> Fit:
     base, promise = attempt.base, attempt.promise
     effect = promise.start.effect
     if attempt.afresh:
-        untouched = {one.name: one.reference for one in base.free if one.name in NOMINAL_NAMES}
+        untouched = {one.name: one.reference for one in base.free if is_one_of(one.name, NOMINAL_NAMES)}
         values = {**base.values, **untouched, **promise.start.values}
         free = _with_effect(base.free, effect, values)
         return fit_in_stages(problem, values, free, give_up_above=best + OUT_OF_REACH)
@@ -164,7 +165,7 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
         progress(f"settling {' and '.join(hypothesis.ids)}")
         result = fit(exact, result.values, result.free, result.states, iterations=30)
         if result.data > NOT_EXPLAINED * result.count:
-            untouched = {one.name: one.reference for one in result.free if one.name in NOMINAL_NAMES}
+            untouched = {one.name: one.reference for one in result.free if is_one_of(one.name, NOMINAL_NAMES)}
             again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
@@ -192,7 +193,8 @@ def cross(problem: Problem, found: Found) -> Found:
     crossed = dict(found)
     for hypothesis in others[:CROSSED]:
         result = found[hypothesis]
-        shared = {one.name: best.values[one.name] for one in result.free if one.name in SHARED_NAMES}
+        both = (one.name for one in result.free if one.name in best.values)
+        shared = {name: best.values[name] for name in both if is_one_of(name, SHARED_NAMES)}
         kindred = _of_the_same_kind(hypothesis.effects, leading.effects, best.values)
         for own in (kindred, {}) if kindred else ({},):
             values, worse = {**result.values, **shared, **own}, best.objective + OUT_OF_REACH

@@ -93,6 +93,26 @@ class Prediction:
 
 
 @dataclass(frozen=True)
+class RecordingFit:
+    """One of several recordings that one model was fitted to: its path, the values that are its own, and its channels
+    on held-out windows."""
+
+    path: str
+    own_values: Mapping[str, float]
+    held_out: Mapping[str, ChannelFit]
+
+
+@dataclass(frozen=True)
+class TestedRecording:
+    """A recording that nothing was fitted to: how the nominal, the recalibrated and the augmented model (by these
+    names) predict each channel, and the channels' noise [their unit]."""
+
+    path: str
+    prediction: Mapping[str, Mapping[str, Prediction]]
+    noise: Mapping[str, float]
+
+
+@dataclass(frozen=True)
 class Alternative:
     """Effects that explain the recording as well as the named ones, but for `evidence_gap`."""
 
@@ -161,7 +181,10 @@ class Pictures:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The whole result of `eha diagnose` on one recording.
+    """The whole result of `eha diagnose`.
+
+    Of several recordings of one rig, `path` and all that is drawn are of the one that tells most; `together` has a row
+    for each, and `tests` one for each recording that nothing was fitted to.
 
     `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
     calibrated model, less the cost of its freedom. `whiteness` is each channel's largest autocorrelation in units of
@@ -193,6 +216,8 @@ class Diagnosis:
     explained: Explained = field(default_factory=lambda: Explained(1.0, {}, True))
     prediction: Mapping[str, Prediction] = field(default_factory=dict)
     provenance: Mapping[str, str] = field(default_factory=dict)
+    together: tuple[RecordingFit, ...] = ()
+    tests: tuple[TestedRecording, ...] = ()
 
     @property
     def bent(self) -> bool:

@@ -16,6 +16,7 @@ from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.parallel import each
+from eha_core.diagnosis.per_recording import named
 from eha_core.diagnosis.problem import LINK, Linearised, Problem, changes, linearise, normal_equations
 from eha_core.diagnosis.shooting import STATE_SIZE
 
@@ -23,12 +24,14 @@ from eha_core.diagnosis.shooting import STATE_SIZE
 @dataclass(frozen=True)
 class Promise:
     """A start, the gain in chi^2 that it promises, and the factor on its size at which it promises that; `windows`, the
-    first and the one after the last, where it acts in these alone."""
+    first and the one after the last, where it acts in these alone. `others`: the factors in further recordings, where
+    its size differs between recordings."""
 
     start: Start
     gain: float
     factor: float
     windows: tuple[int, int] | None = None
+    others: tuple[float, ...] = ()
 
 
 def screen(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[Promise, ...]:
@@ -51,7 +54,11 @@ def screen_spells(problem: Problem, calibrated: Fit, starts: Sequence[Start]) ->
             return [Promise(start, 0.0, 0.0)]
         energy, along, overlap = _by_window(problem, calibrated, linear, change, shifts[:, :, place])
         solved = np.asarray(cho_solve(factor, overlap))
-        return _best_spells(start, energy, along - towards @ overlap, overlap.T @ solved)
+        along, imitated = along - towards @ overlap, overlap.T @ solved
+        shooting = problem.shooting
+        if len(shooting.first_windows) > 1 and any(name in shooting.per_recording for name in start.values):
+            return [_in_each_recording(start, energy, along, imitated, shooting.recordings)]
+        return _best_spells(start, energy, along, imitated, shooting.recordings)
 
     found = [one for several in each(promises, range(len(starts))) for one in several]
     return tuple(sorted(found, key=lambda one: -one.gain))
@@ -86,14 +93,31 @@ def _by_window(
     return energy, along, overlap
 
 
-def _best_spells(start: Start, energy: Array, along: Array, imitated: Array) -> list[Promise]:
-    """The promise over all windows, and the best over some of them in a row.
+def _in_each_recording(
+    start: Start, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
+) -> Promise:
+    """The promise of a size of its own in each recording: what each promises alone, added up."""
+    gains, factors = [], []
+    for windows in recordings:
+        own = slice(windows.start, windows.stop)
+        left = float(energy[own].sum() - imitated[own, own].sum())
+        usable = left > 1e-9 * float(energy[own].sum()) > 0.0
+        factors.append(float(along[own].sum()) / left if usable else 0.0)
+        gains.append(factors[-1] ** 2 * left if usable else 0.0)
+    return Promise(start, sum(gains), factors[0], None, tuple(factors[1:]))
+
+
+def _best_spells(
+    start: Start, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
+) -> list[Promise]:
+    """The promise over all windows, and the best over some of them in a row, of one recording.
 
     `along` is free of what can be imitated; `imitated` (windows, windows) is what can be of each pair's energy.
     """
     windows = len(energy)
     first, last = np.triu_indices(windows)
     stop = last + 1
+    begins = np.repeat([one.start for one in recordings], [len(one) for one in recordings])
     total = np.concatenate([[0.0], np.cumsum(energy)])
     towards = np.concatenate([[0.0], np.cumsum(along)])
     square = np.zeros((windows + 1, windows + 1))
@@ -110,6 +134,7 @@ def _best_spells(start: Start, energy: Array, along: Array, imitated: Array) -> 
     if windows > 1:
         gain = np.where(factor < 0.0, gain if _reversible(start) else 0.0, gain)
         gain[always] = -1.0
+        gain[begins[first] != begins[last]] = -1.0
         best = int(np.argmax(gain))
         spell = (int(first[best]), int(stop[best]))
         promises.append(Promise(start, float(gain[best]), float(factor[best]), spell))
@@ -133,7 +158,15 @@ def _reversible(start: Start) -> bool:
 
 def scaled(promise: Promise) -> dict[str, float]:
     """The start's values with the sizes that switch the effect scaled as promised, within a decade and the bounds."""
-    return sized(promise.start, float(np.sign(promise.factor) * np.clip(abs(promise.factor), 0.1, 10.0)))
+    values = sized(promise.start, _within_a_decade(promise.factor))
+    for number, factor in enumerate(promise.others, 2):
+        own = sized(promise.start, _within_a_decade(factor))
+        values |= {named(name, number): value for name, value in own.items() if value != promise.start.values[name]}
+    return values
+
+
+def _within_a_decade(factor: float) -> float:
+    return float(np.sign(factor) * np.clip(abs(factor), 0.1, 10.0))
 
 
 def sized(start: Start, factor: float) -> dict[str, float]:

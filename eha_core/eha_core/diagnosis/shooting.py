@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.signal import savgol_filter
 
 from eha_core.diagnosis.numbers import Array, Integers
 from eha_core.diagnosis.observation import Measured, Observation
+from eha_core.diagnosis.per_recording import values_of
 from eha_core.effects import effects
 from eha_core.plant.composite import compiled_step
 from eha_core.plant.lockstep import LockStep
@@ -59,7 +61,9 @@ class Shooting:
         leakage: (windows,) what is added to the internal leakage coefficient in each, as the recording tells.
         samplings: one a measured channel, sorted by time.
         initial_states: (windows, STATE_SIZE) from the smoothed measurement; pressures at half supply where not
-        measured. measured_starts: (windows,) smoothed measured position at each window's start.
+        measured.
+        first_windows: the first window of each recording; there all that runs through begins anew, time too.
+        per_recording: the parameters that have a value in each recording.
     """
 
     drive: str
@@ -72,14 +76,27 @@ class Shooting:
     names: tuple[str, ...]
     initial_states: Array
     free_states: int
+    first_windows: tuple[int, ...] = (0,)
+    per_recording: tuple[str, ...] = ()
 
     @property
     def windows(self) -> int:
         """How many windows there are."""
         return len(self.edges) - 1
 
+    @property
+    def recordings(self) -> list[range]:
+        """The windows of each recording."""
+        return [range(first, last) for first, last in pairwise((*self.first_windows, self.windows))]
+
+    @property
+    def local_edges(self) -> Array:
+        """(windows, 2) when each window begins and ends [s], counted from its own recording's start."""
+        starts = np.repeat(self.edges[list(self.first_windows)], [len(one) for one in self.recordings])
+        return np.asarray(np.stack([self.edges[:-1] - starts, self.edges[1:] - starts], axis=1) * self.step_size)
+
     def times(self, sampling: Sampling) -> Array:
-        """When a channel's samples were taken [s]: a row stands at the end of its steps."""
+        """When a channel's samples were taken [s], one recording after the other: a row stands at its steps' end."""
         return np.asarray((sampling.row + 1 + sampling.late) * self.every * self.step_size)
 
     def simulate(self, values: Mapping[str, float], states: Array, full: bool = False) -> tuple[Array, Array]:
@@ -88,16 +105,26 @@ class Shooting:
 
         Rows: (steps / every, 4) position, velocity, pressure A, pressure B as the sensors say; all columns if `full`.
         """
-        step = compiled_step()
-        packed = {
-            change: pack({**values, "internal_leakage": values["internal_leakage"] + change}, self.step_size)
-            for change in set(self.leakage.tolist())
-        }
-        acting, none = span(values, self.step_size), (False,) * len(effects())
         steps = int(self.edges[-1])
         rows = np.empty((steps // self.every, len(COLUMNS if full else SEEN)))
         ends = np.empty((self.windows, STATE_SIZE))
-        first = self.inputs[0, 0]
+        for number, windows in enumerate(self.recordings, 1):
+            self._simulate_one(values_of(values, number), states, windows, rows, ends)
+        return rows, ends
+
+    def _simulate_one(
+        self, values: Mapping[str, float], states: Array, windows: range, rows: Array, ends: Array
+    ) -> None:
+        """Fill the rows and end states of one recording's windows."""
+        step = compiled_step()
+        changes = set(self.leakage[windows.start : windows.stop].tolist())
+        packed = {
+            change: pack({**values, "internal_leakage": values["internal_leakage"] + change}, self.step_size)
+            for change in changes
+        }
+        acting, none = span(values, self.step_size), (False,) * len(effects())
+        start = int(self.edges[windows.start])
+        first = self.inputs[0, start]
         current = min(
             max(first / values["coil_resistance"], -values["saturation_current"]), values["saturation_current"]
         )
@@ -106,16 +133,16 @@ class Shooting:
         state[AT.supply_pressure], state[AT.return_pressure] = values["supply_pressure"], values["return_pressure"]
         history = np.full(int(LONGEST_DELAY / self.step_size) + 3, first)
         history[-1] = 0
-        memory, sensor_slots = self._memory(current, states[0])
-        for window in range(self.windows):
+        memory, sensor_slots = self._memory(current, states[windows.start])
+        for window in windows:
             begin, end = int(self.edges[window]), int(self.edges[window + 1])
             vector, active, valve = packed[float(self.leakage[window])]
-            state[AT.time] = begin * self.step_size
+            state[AT.time] = (begin - start) * self.step_size
             state[PISTON] = states[window]
             memory[sensor_slots] = self.initial_states[window, 0]
             inputs, out = self.inputs[:, begin:end], rows[begin // self.every : end // self.every]
-            for spell in spells(begin, end - begin, self.every, acting):
-                if spell.acting and begin + spell.steps.start == acting[0] > 0:
+            for spell in spells(begin - start, end - begin, self.every, acting):
+                if spell.acting and begin - start + spell.steps.start == acting[0] > 0:
                     memory, _ = self._memory(state[AT.current], state[PISTON])
                 effects_on, piece = active if spell.acting else none, inputs[:, spell.steps]
                 if self.drive == "voltage":
@@ -129,7 +156,6 @@ class Shooting:
                         out[spell.rows],
                     )  # fmt: skip
             ends[window] = state[PISTON]
-        return rows, ends
 
     def simulate_many(self, sets: Sequence[tuple[Mapping[str, float], Array]]) -> tuple[Array, Array]:
         """`simulate` for up to LANES pairs of values and states, in lock-step and to the same digits.
@@ -137,20 +163,26 @@ class Shooting:
         Rows (steps / every, 4, lanes), the first lanes those of the sets, and the windows' end states (windows, 4,
         sets).
         """
-        first = self.inputs[0, 0]
-        lanes = LockStep([values for values, _ in sets], self.step_size, first)
-        starts = np.stack([states for _, states in sets])
-        rows = np.empty((int(self.edges[-1]) // self.every, STATE_SIZE, lanes.lanes))
+        rows: Array | None = None
         ends = np.empty((self.windows, STATE_SIZE, len(sets)))
-        lanes.place(starts[:, 0])
-        lanes.start_memory()
-        for window in range(self.windows):
-            begin, end = int(self.edges[window]), int(self.edges[window + 1])
-            lanes.add_leakage(float(self.leakage[window]))
-            lanes.place(starts[:, window])
-            lanes.start_sensors(float(self.initial_states[window, 0]))
-            lanes.advance(begin, self.inputs[:, begin:end], self.every, rows[begin // self.every : end // self.every])
-            ends[window] = lanes.states()[: len(sets)].T
+        starts = np.stack([states for _, states in sets])
+        for number, windows in enumerate(self.recordings, 1):
+            start = int(self.edges[windows.start])
+            own = [values_of(values, number) for values, _ in sets]
+            lanes = LockStep(own, self.step_size, self.inputs[0, start])
+            if rows is None:
+                rows = np.empty((int(self.edges[-1]) // self.every, STATE_SIZE, lanes.lanes))
+            lanes.place(starts[:, windows.start])
+            lanes.start_memory()
+            for window in windows:
+                begin, end = int(self.edges[window]), int(self.edges[window + 1])
+                lanes.add_leakage(float(self.leakage[window]))
+                lanes.place(starts[:, window])
+                lanes.start_sensors(float(self.initial_states[window, 0]))
+                out = rows[begin // self.every : end // self.every]
+                lanes.advance(begin - start, self.inputs[:, begin:end], self.every, out)
+                ends[window] = lanes.states()[: len(sets)].T
+        assert rows is not None, "there is a recording"
         return rows, ends
 
     def _memory(self, current: float, start: Array) -> tuple[Array, Integers]:
@@ -176,14 +208,19 @@ class Shooting:
 
 
 def cut(
-    observation: Observation, values: Mapping[str, float], step_size: float = 2e-4, window: float = 1.0
+    observation: Observation,
+    values: Mapping[str, float],
+    step_size: float = 2e-4,
+    window: float = 1.0,
+    every: int | None = None,
 ) -> Shooting:
     """Lay the step grid over the recording, cut it into windows of about `window` seconds, and start each window's
     state.
 
-    `values` gives the pressures at which unmeasured chambers start. Rows are one a sample where the samples allow it.
+    `values` gives the pressures at which unmeasured chambers start. `every` steps make a row: unless given, rows are
+    one a sample where the samples allow it.
     """
-    every = _rows_every(observation, step_size)
+    every = every or rows_every(observation, step_size)
     per_row = every * step_size
     count = max(1, round(observation.duration / window))
     ticks = int(observation.duration / TICK + 1e-6)
@@ -254,7 +291,7 @@ def coarser(fine: Shooting, step_size: float) -> Shooting:
     )
 
 
-def _rows_every(observation: Observation, step_size: float) -> int:
+def rows_every(observation: Observation, step_size: float) -> int:
     """A row a sample for evenly sampled channels; otherwise rows close enough to interpolate the oil's fast motion."""
     for channel in observation.measured:
         gaps = np.diff(channel.time)

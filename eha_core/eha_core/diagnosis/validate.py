@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -25,20 +25,13 @@ class Judged:
     held_out: Mapping[str, float]
 
 
-def split(shooting: Shooting, instants: Iterable[float] = ()) -> tuple[Problem, Problem]:
+def split(shooting: Shooting, instants: Sequence[float] = ()) -> tuple[Problem, Problem]:
     """The windows to fit on, and those to judge on. Two windows or fewer are both.
 
-    What happens at one of the `instants` [s] can be learnt there only: their windows, and those before and after, are
-    fitted to. Between two of them a window is judged, too, where there are three or more.
+    What happens at one of the `instants` [s, in every recording] can be learnt there only: their windows, and those
+    before and after, are fitted to. Between two of them a window is judged, too, where there are three or more.
     """
-    edges = shooting.edges[1:-1] * shooting.step_size
-    events = [int(window) for window in np.searchsorted(edges, sorted(instants))]
-    eventful = {window + beside for window in events for beside in (-1, 0, 1)}
-    chosen = {window for window in held_out(shooting.windows) if window not in eventful}
-    for first, last in pairwise(events):
-        between = range(first + 1, last)
-        if len(between) >= 3 and chosen.isdisjoint(between):
-            chosen.add(between[len(between) // 2])
+    chosen = {window for windows in shooting.recordings for window in _judged_of(shooting, windows, instants)}
     judged = np.array(sorted(chosen), dtype=np.int64)
     rest = np.setdiff1d(np.arange(shooting.windows), judged)
     if shooting.windows < 3 or len(judged) == 0:
@@ -47,7 +40,21 @@ def split(shooting: Shooting, instants: Iterable[float] = ()) -> tuple[Problem, 
     return Problem(shooting, rest), Problem(shooting, judged)
 
 
-def judge(shooting: Shooting, model: Fit, instants: Iterable[float] = ()) -> Judged:
+def _judged_of(shooting: Shooting, windows: range, instants: Sequence[float]) -> set[int]:
+    """The windows of one recording to judge on."""
+    ends = shooting.local_edges[windows.start : windows.stop, 1]
+    inside = sorted(instant for instant in instants if instant < ends[-1])
+    events = [windows.start + int(window) for window in np.searchsorted(ends[:-1], inside)]
+    eventful = {window + beside for window in events for beside in (-1, 0, 1)}
+    chosen = {windows[window] for window in held_out(len(windows))} - eventful
+    for first, last in pairwise(events):
+        between = range(first + 1, last)
+        if len(between) >= 3 and chosen.isdisjoint(between):
+            chosen.add(between[len(between) // 2])
+    return chosen
+
+
+def judge(shooting: Shooting, model: Fit, instants: Sequence[float] = ()) -> Judged:
     """Refit `model` on the training windows only, then fit the judged windows' starts with its parameters held."""
     training, judged = split(shooting, instants)
     fitted = fit(training, model.values, model.free, model.states, iterations=6)

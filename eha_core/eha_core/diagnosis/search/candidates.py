@@ -14,6 +14,7 @@ from eha_core.diagnosis.hypothesis import Hypothesis, neutral
 from eha_core.diagnosis.noise import residual_noise
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.observation import RESOLVED
+from eha_core.diagnosis.per_recording import base_name, is_one_of
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.shooting import Shooting
 from eha_core.effects import Effect
@@ -131,4 +132,5 @@ def with_effects(free: Sequence[Free], effects: Sequence[Effect], values: Mappin
 def without_effect(result: Fit, effect: Effect) -> tuple[dict[str, float], tuple[Free, ...]]:
     """A fit's values with one effect off, and what is then free."""
     off = neutral(effect)
-    return {**result.values, **off}, tuple(one for one in result.free if one.name not in off)
+    values = {name: off.get(base_name(name), value) for name, value in result.values.items()}
+    return values, tuple(one for one in result.free if not is_one_of(one.name, off))

@@ -11,6 +11,7 @@ from eha_core.diagnosis.fit import fit
 from eha_core.diagnosis.freedom import LATE, Free
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, neutral
+from eha_core.diagnosis.per_recording import is_one_of
 from eha_core.diagnosis.refine import as_given
 from eha_core.diagnosis.screen import Promise, one_each, screen, sized
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects
@@ -40,7 +41,8 @@ def joint_start(search: Search, nominal: Candidate) -> Candidate:
         free = with_effects(at.free, effects, values)
         switches = _sizes(promises, values)
         free = tuple(switches.get(one.name, one) for one in free)
-        early = fit(search.problem, values, [one for one in free if one.name not in LATE], at.states, iterations=12)
+        soon = [one for one in free if not is_one_of(one.name, LATE)]
+        early = fit(search.problem, values, soon, at.states, iterations=12)
         whole = fit(search.problem, early.values, free, early.states, iterations=8)
         top = sorted(effects, key=lambda effect: -wald(whole, effect))[:KEPT]
         reduced = {**whole.values}

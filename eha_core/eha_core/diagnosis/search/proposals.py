@@ -14,6 +14,7 @@ from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.freedom import LATE
 from eha_core.diagnosis.hypotheses import Start, starts
 from eha_core.diagnosis.hypothesis import Member
+from eha_core.diagnosis.per_recording import is_one_of
 from eha_core.diagnosis.refine import _set_free, as_given, with_dynamics_as_given
 from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects, without_effect
@@ -70,7 +71,7 @@ def _with_dynamics_held(search: Search, base: Candidate, begin: list[Start]) -> 
     if held is None:
         return
     # what the dynamics could imitate shows only while they are held
-    at = _set_free(held, tuple(one for one in base.fit.free if one.name not in LATE))
+    at = _set_free(held, tuple(one for one in base.fit.free if not is_one_of(one.name, LATE)))
     for promise in one_each(screen(search.problem, at, begin), WITH_DYNAMICS_HELD):
         guess = _guess(base, held, promise, in_stages=True)
         yield Guess(guess.hypothesis, guess.values, guess.free, guess.states, guess.predicted / HELD_SHARE, True)

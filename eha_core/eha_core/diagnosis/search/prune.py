@@ -9,6 +9,7 @@ import numpy as np
 from eha_core.diagnosis.criteria import CHANCE, CONVINCING, OF_ITS_FORM, OF_SAMPLES, OF_SAMPLES_BESIDE_A_FORM
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypothesis import NOTHING, Member, neutral
+from eha_core.diagnosis.per_recording import base_name, is_one_of
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, without_effect
 from eha_core.effects import Effect
 
@@ -24,11 +25,13 @@ def wald(result: Fit, effect: Effect) -> float:
     """What dropping an effect would cost in chi^2, as the curvature at the fit has it."""
     off = neutral(effect)
     switches = {f"{effect.id}.{row.name}" for row in effect.parameters if row.switches}
-    places = [place for place, one in enumerate(result.free) if one.name in switches]
+    places = [place for place, one in enumerate(result.free) if is_one_of(one.name, switches)]
     if not places:
         return 0.0
     away = np.array([result.free[p].slope(result.values[result.free[p].name]) for p in places])
-    distance = np.array([result.values[result.free[p].name] - off[result.free[p].name] for p in places]) / away
+    distance = (
+        np.array([result.values[result.free[p].name] - off[base_name(result.free[p].name)] for p in places]) / away
+    )
     block = result.covariance[np.ix_(places, places)]
     return float(distance @ np.linalg.pinv(block, hermitian=True) @ distance)
 

@@ -1,0 +1,72 @@
+"""What the joint model says of every recording: of those that it was fitted to, and of those that it never saw."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.explained import predictions
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.observation import observe
+from eha_core.diagnosis.per_recording import base_name, named, values_of
+from eha_core.diagnosis.result import ChannelFit, RecordingFit, TestedRecording
+from eha_core.diagnosis.together import check_alike
+from eha_core.recording import Recording
+
+
+def fitted_recordings(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]) -> tuple[RecordingFit, ...]:
+    """Every recording's channels on its held-out windows, and the values that are its own; none of a single one."""
+    observations, marked = evidence.observations, evidence.calibration.shooting.per_recording
+    if len(observations) == 1:
+        return ()
+    own = [one.name for one in final.free if one.name in marked]
+    return tuple(
+        RecordingFit(
+            observation.path,
+            {name: final.values[named(name, number)] for name in own},
+            of_recording(held_out, number),
+        )
+        for number, observation in enumerate(observations, 1)
+    )
+
+
+def of_recording(channels: Mapping[str, ChannelFit], number: int) -> Mapping[str, ChannelFit]:
+    """The channels of one recording, by their plain names."""
+    return {base_name(name): one for name, one in channels.items() if name == named(base_name(name), number)}
+
+
+def tested_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recording]) -> tuple[TestedRecording, ...]:
+    """How well the three models predict recordings that nothing was fitted to.
+
+    What has a value of its own in each recording is not known of these: a nominal parameter has its nominal value
+    there, an effect's the mean over the recordings fitted to.
+
+    Raises RecordingError where a recording cannot be used.
+    """
+    models = {
+        "nominal": evidence.nominal,
+        "recalibrated": _of_another(evidence, evidence.tournament.nominal.fit),
+        "augmented": _of_another(evidence, final),
+    }
+    found = []
+    for recording in tests:
+        observation = observe(recording)
+        check_alike([evidence.observation, observation])
+        step = evidence.calibration.shooting.step_size
+        predicted = {name: predictions(observation, values, step) for name, values in models.items()}
+        noise = {channel.name: channel.noise for channel in observation.measured}
+        found.append(TestedRecording(observation.path, predicted, noise))
+    return tuple(found)
+
+
+def _of_another(evidence: Evidence, model: Fit) -> Mapping[str, float]:
+    """A fitted model's values in a recording that it was not fitted to."""
+    shooting = evidence.calibration.shooting
+    count = len(shooting.first_windows)
+    values = dict(model.values)
+    for name in shooting.per_recording:
+        each = [values_of(model.values, number)[name] for number in range(1, count + 1)]
+        values[name] = evidence.nominal[name] if "." not in name else float(np.mean(each))
+    return values

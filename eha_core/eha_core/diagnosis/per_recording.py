@@ -1,0 +1,54 @@
+"""Parameters that differ between recordings of one rig: a load, a supply pressure.
+
+In a model of several recordings `name` is the first one's value, `name@2`, `name@3` those of the others. What is not
+marked as per recording has one value for all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from eha_core.diagnosis.freedom import Free
+
+
+def named(name: str, number: int) -> str:
+    """A parameter's name in the recording of that number, counted from one."""
+    return name if number == 1 else f"{name}@{number}"
+
+
+def base_name(name: str) -> str:
+    """The parameter's name without the recording's number."""
+    return name.partition("@")[0]
+
+
+def values_of(values: Mapping[str, float], number: int) -> Mapping[str, float]:
+    """Every parameter's value in the recording of that number."""
+    if not any("@" in name for name in values):
+        return values
+    return {name: values.get(named(name, number), value) for name, value in values.items() if "@" not in name}
+
+
+def in_each(
+    free: Sequence[Free], values: Mapping[str, float], marked: Iterable[str], recordings: int
+) -> tuple[tuple[Free, ...], dict[str, float]]:
+    """Free parameters and values with one more for each further recording, of those marked as per recording.
+
+    A new one begins at the first recording's value. What is not marked has no value of its own anywhere.
+    """
+    known = {one.name for one in free}
+    wanted = frozenset(marked)
+    more: list[Free] = []
+    begun = {name: value for name, value in values.items() if base_name(name) in wanted or "@" not in name}
+    for one in free:
+        for number in range(2, recordings + 1 if one.name in wanted else 2):
+            name = named(one.name, number)
+            begun.setdefault(name, begun[one.name])
+            if name not in known:
+                more.append(replace(one, name=name))
+    return (*free, *more), begun
+
+
+def is_one_of(name: str, names: Iterable[str]) -> bool:
+    """Whether a name is one of these in any recording."""
+    return base_name(name) in names

@@ -1,0 +1,126 @@
+"""Several recordings of one rig as one: fitted with one set of parameters and effects, each from its own states.
+
+Their windows stand one after another. At the first window of each all that runs through the others begins anew: coil,
+spool, the effects' own states, and time. No continuity is asked for from one recording to the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.observation import Observation
+from eha_core.diagnosis.per_recording import named, values_of
+from eha_core.diagnosis.shooting import Sampling, Shooting, cut, rows_every
+from eha_core.errors import RecordingError
+
+
+def cut_together(
+    observations: Sequence[Observation],
+    values: Mapping[str, float],
+    step_size: float = 2e-4,
+    window: float = 1.0,
+    per_recording: Sequence[str] = (),
+) -> Shooting:
+    """`cut` for all recordings: one record with every recording's windows.
+
+    The channels of the second are called `position@2`, and so on. `per_recording`: parameters with a value in each.
+    """
+    every = int(np.gcd.reduce([rows_every(one, step_size) for one in observations]))
+    each = [cut(one, values_of(values, number), step_size, window, every) for number, one in enumerate(observations, 1)]
+    return joined(each, per_recording)
+
+
+def check_alike(observations: Sequence[Observation]) -> None:
+    """Raise RecordingError unless all are driven by the same channels."""
+    first = observations[0]
+    for other in observations[1:]:
+        if other.drive != first.drive:
+            raise RecordingError(
+                f"{other.path}: is driven by its {other.drive}, {first.path} by its {first.drive}; recordings of one"
+                " rig need the same driving channel, or are diagnosed each alone (--each)"
+            )
+
+
+def joined(each: Sequence[Shooting], per_recording: Sequence[str] = ()) -> Shooting:
+    """Recordings cut at the same step and rows, one after another."""
+    first = each[0]
+    windows = np.cumsum([0, *(one.windows for one in each)])
+    steps = np.cumsum([0, *(int(one.edges[-1]) for one in each)])
+    samplings = [
+        replace(sampling, row=sampling.row + begin // first.every, window=sampling.window + window)
+        for one, begin, window in zip(each, steps, windows, strict=False)
+        for sampling in one.samplings
+    ]
+    return replace(
+        first,
+        inputs=np.ascontiguousarray(np.concatenate([one.inputs for one in each], axis=1)),
+        edges=np.concatenate([[0], *(one.edges[1:] + begin for one, begin in zip(each, steps, strict=False))]),
+        leakage=np.concatenate([one.leakage for one in each]),
+        samplings=tuple(samplings),
+        names=tuple(named(name, number) for number, one in enumerate(each, 1) for name in one.names),
+        initial_states=np.concatenate([one.initial_states for one in each]),
+        first_windows=tuple(int(window) for window in windows[:-1]),
+        per_recording=tuple(per_recording),
+    )
+
+
+def recording_alone(shooting: Shooting, number: int) -> Shooting:
+    """One recording of several, counted from one, as it stands alone."""
+    if len(shooting.first_windows) == 1:
+        return shooting
+    windows = shooting.recordings[number - 1]
+    begin, end = int(shooting.edges[windows.start]), int(shooting.edges[windows.stop])
+    inside = [_belongs(one, windows) for one in shooting.samplings]
+    names = [name for name, belongs in zip(shooting.names, inside, strict=True) if belongs]
+    return replace(
+        shooting,
+        inputs=np.ascontiguousarray(shooting.inputs[:, begin:end]),
+        edges=shooting.edges[windows.start : windows.stop + 1] - begin,
+        leakage=shooting.leakage[windows.start : windows.stop],
+        samplings=tuple(
+            replace(one, row=one.row - begin // shooting.every, window=one.window - windows.start)
+            for one, belongs in zip(shooting.samplings, inside, strict=True)
+            if belongs
+        ),
+        names=tuple(name.partition("@")[0] for name in names),
+        initial_states=shooting.initial_states[windows.start : windows.stop],
+        first_windows=(0,),
+        per_recording=(),
+    )
+
+
+def fit_alone(shooting: Shooting, result: Fit, number: int) -> Fit:
+    """What a fit of several recordings says of one of them."""
+    if len(shooting.first_windows) == 1:
+        return result
+    windows = shooting.recordings[number - 1]
+    inside = [_belongs(one, windows) for one in shooting.samplings]
+    residuals = tuple(one for one, belongs in zip(result.residuals, inside, strict=True) if belongs)
+    data = sum(float(np.sum(one**2)) for one in residuals)
+    return replace(
+        result,
+        values=values_of(result.values, number),
+        states=result.states[windows.start : windows.stop],
+        residuals=residuals,
+        data=data,
+        objective=data,
+        count=sum(len(one) for one in residuals),
+    )
+
+
+def facts_alone(shooting: Shooting, facts: Facts, number: int) -> Facts:
+    """The facts with the calibrated model's states in one recording only."""
+    if not len(facts.rows) or len(shooting.first_windows) == 1:
+        return facts
+    windows = shooting.recordings[number - 1]
+    begin, end = (int(shooting.edges[window]) // shooting.every for window in (windows.start, windows.stop))
+    return replace(facts, rows=facts.rows[begin:end])
+
+
+def _belongs(sampling: Sampling, windows: range) -> bool:
+    return len(sampling.window) > 0 and int(sampling.window[0]) in windows
