@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike
 
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
-from eha_core.parameters import NOMINAL, changed, load_parameters, nominal_values
+from eha_core.nominal import NominalModel, load_nominal, nominal_of
+from eha_core.parameters import NOMINAL
 from eha_core.recording import Recording, read_recording
 from eha_core.recording.simulated import Experiment
 from eha_core.recording.simulated import simulate as run
@@ -24,7 +25,7 @@ from eha_core.signals import from_text, signals
 if TYPE_CHECKING:
     from eha_core.report.results import Results
 
-Nominal = Mapping[str, float] | str | Path | None
+Nominal = Mapping[str, float | str] | NominalModel | str | Path | None
 
 
 def read(path: str | Path, topics: str | Path | None = None) -> Recording:
@@ -95,8 +96,9 @@ def diagnose(
 
     Args:
         recording: a recording or its path; several are one rig and are judged together.
-        nominal: the model: parameter values that differ from the catalogue's, or a parameters file. By default the
-            values that the recording carries, effects left out, or else the catalogue's nominal actuator.
+        nominal: the model: parameter values that differ from the catalogue's ("unknown" where nobody knows one), a
+            parameters file, or a `NominalModel`. By default the values that the recording carries, effects left out,
+            or else the catalogue's nominal actuator.
         jobs: threads that simulate side by side.
         progress: is told each stage as it begins.
 
@@ -112,18 +114,25 @@ def diagnose(
     recordings = [one if isinstance(one, Recording) else read_recording(one) for one in given]
     model = nominal_model(nominal, recordings[0])
     found = diagnose_together(recordings, model, progress, jobs)
-    origin = "values given by name" if isinstance(nominal, Mapping) else nominal
+    origin = "values given by name" if isinstance(nominal, (Mapping, NominalModel)) else nominal
     return Results(with_provenance(found, recordings, origin, "eha_core.diagnose"))
 
 
 def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]:
-    """Every parameter of the model that a recording is held against; see `diagnose`."""
+    """Every parameter of the model that a recording is held against; see `known_model` and `diagnose`."""
+    return known_model(nominal, recording).values
+
+
+def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
+    """The model that a recording is held against, and which of its parameters are unknown or differ by recording."""
+    if isinstance(nominal, NominalModel):
+        return nominal
     if isinstance(nominal, (str, Path)):
-        return changed(nominal_values(), load_parameters(nominal))
+        return load_nominal(nominal)
     if nominal is not None:
-        return changed(nominal_values(), nominal)
+        return nominal_of(nominal)
     names = {row.name for row in NOMINAL}
-    return changed(nominal_values(), {name: value for name, value in recording.parameters.items() if name in names})
+    return nominal_of({name: value for name, value in recording.parameters.items() if name in names})
 
 
 @dataclass(frozen=True)

@@ -110,11 +110,25 @@ NODE_ONLY = frozenset(
 """Parameters of the simulator node that are none of the plant's; a parameters file may carry them."""
 
 
-def load_parameters(path: str | Path) -> dict[str, float]:
-    """Read the plant's parameters from a file in ROS 2's YAML form.
+UNKNOWN = "unknown"
+"""What a nominal file says in place of a value that nobody knows."""
+PER_RECORDING = "per_recording"
+"""Key of a nominal file's list of the parameters that differ between recordings of one rig."""
 
-    Nested keys are joined by dots. Sections of other nodes and the node's own settings are passed over. Returns only
-    the names that the file gives. Raises ParameterError naming the file when it cannot be read or a value does not fit.
+
+def is_unknown(value: object) -> bool:
+    """Whether a parameters file's value is the word `unknown`."""
+    return isinstance(value, str) and value.strip().lower() == UNKNOWN
+
+
+def read_section(path: str | Path) -> dict[str, object]:
+    """What a parameters file in ROS 2's YAML form says to the simulator, under the catalogue's names and unchecked.
+
+    Nested keys are joined by dots. Sections of other nodes and the node's own settings are passed over. A number in
+    any spelling is a number.
+
+    Raises:
+        ParameterError: the file cannot be read, or says nothing to the simulator.
     """
     document = load_yaml(path, ParameterError, str(path))
     if not isinstance(document, dict):
@@ -126,13 +140,33 @@ def load_parameters(path: str | Path) -> dict[str, float]:
             found.update(from_node(_flatten(section["ros__parameters"])))
     if not found:
         raise ParameterError(f"{path}: no parameters for eha_sim; expected `eha_sim: {{ros__parameters: {{...}}}}`")
-    plant = {name: value for name, value in found.items() if name.split(".")[0] not in NODE_ONLY}
-    plant = {name: _number(value) for name, value in plant.items()}
+    if PER_RECORDING in document:
+        found.setdefault(PER_RECORDING, document[PER_RECORDING])
+    return {name: _number(value) for name, value in found.items() if name.split(".")[0] not in NODE_ONLY}
+
+
+def load_parameters(path: str | Path) -> dict[str, float]:
+    """Read the plant's parameters from a file in ROS 2's YAML form.
+
+    Returns only the names that the file gives; see `read_section`. Raises ParameterError naming the file when it cannot
+    be read, or a value is unknown or does not fit.
+    """
+    plant = {name: value for name, value in read_section(path).items() if name != PER_RECORDING}
+    unknown = next((name for name, value in plant.items() if is_unknown(value)), None)
+    if unknown is not None:
+        raise ParameterError(
+            f"{path}: {unknown} is {UNKNOWN}, which only a diagnosis takes; give its value in {_unit_of(unknown)}"
+        )
     try:
         complete = changed(nominal_values(), plant)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
     return {name: complete[name] for name in plant}
+
+
+def _unit_of(name: str) -> str:
+    row = catalogue().get(name)
+    return row.unit if row else "SI units"
 
 
 def _flatten(section: Mapping[str, object], prefix: str = "") -> dict[str, object]:
