@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg import LinAlgError
 
 from eha_core.diagnosis.freedom import LATE, Free
+from eha_core.diagnosis.normal_matrix import NormalMatrix
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.per_recording import in_each, is_one_of
 from eha_core.diagnosis.problem import (
@@ -50,7 +51,7 @@ class Fit:
     """A fitted model.
 
     Attributes:
-        free: what was moved; `q` its coordinates, `covariance` of (q, free states).
+        free: what was moved; `q` its coordinates, `covariance` of (q, the windows' states), in rows, with q.
         values: every parameter of the plant.
         states: (windows, 4) fitted starts.
         objective: chi^2 of data, links and priors over the windows used; `data` of the data alone.
@@ -110,7 +111,7 @@ def fit(
     rows, ends = simulate(shooting, values, free, q, states)
     objective = objective_of(problem, free, q, states, rows, ends)
     damping, ending, done = 1e-6, Ending.ITERATIONS, 0
-    normal = np.eye(len(free) + STATE_SIZE * shooting.windows)
+    normal = _unknowing(len(free), shooting.windows)
     for done in range(1, iterations + 1):
         linear = linearise(problem, values, free, q, states, steps, (rows, ends))
         normal, gradient = normal_equations(problem, free, q, states, linear)
@@ -124,9 +125,9 @@ def fit(
         new, move, damping = found
         gain = objective - new.objective
         q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
-        ratio = gain / max(float(move @ (2.0 * gradient - normal @ move)), 1e-300)
+        ratio = gain / max(float(move @ (2.0 * gradient - normal.times(move))), 1e-300)
         damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
-        spread = np.sqrt(1.0 / np.maximum(np.diag(normal)[: len(free)], 1e-12))
+        spread = np.sqrt(1.0 / np.maximum(np.diag(normal.parameters), 1e-12))
         steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
         if gain < max(SETTLED, WORTH * (objective - problem.count())):
             ending = Ending.CONVERGED
@@ -136,6 +137,13 @@ def fit(
             break
     ending = ending if np.isfinite(objective) else Ending.DIVERGED
     return _finish(problem, values, free, q, states, rows, objective, normal, ending, done)
+
+
+def _unknowing(parameters: int, windows: int) -> NormalMatrix:
+    """The unit matrix, before any derivative was taken."""
+    own = np.tile(np.eye(STATE_SIZE), (windows, 1, 1))
+    shared = np.zeros((windows, STATE_SIZE, parameters))
+    return NormalMatrix(np.eye(parameters), shared, own, np.zeros((windows - 1, STATE_SIZE, STATE_SIZE)))
 
 
 def exact(problem: Problem) -> Problem:
@@ -179,7 +187,7 @@ def _descend(
     values: Mapping[str, float],
     free: Sequence[Free],
     at: _Point,
-    normal: Array,
+    normal: NormalMatrix,
     gradient: Array,
     damping: float,
 ) -> tuple[_Point, Array, float] | None:
@@ -198,30 +206,27 @@ def _descend(
     return None
 
 
-def _step(normal: Array, gradient: Array, damping: float, free: Sequence[Free], q: Array) -> Array | None:
+def _step(normal: NormalMatrix, gradient: Array, damping: float, free: Sequence[Free], q: Array) -> Array | None:
     """The damped Gauss-Newton step; parameters that it would carry past a bound go to the bound, and the rest
     adapts."""
-    scale = np.sqrt(np.diag(normal))
-    damped = normal + damping * np.diag(scale**2)
-    fixed = np.zeros(len(scale), dtype=np.bool_)
-    move = np.zeros(len(scale))
-    for _ in range(4):
-        rest = ~fixed
-        right = gradient[rest] - damped[np.ix_(rest, fixed)] @ move[fixed]
-        block = damped[np.ix_(rest, rest)] / np.outer(scale[rest], scale[rest])
-        try:
-            move[rest] = np.asarray(cho_solve(cho_factor(block), right / scale[rest])) / scale[rest]
-        except (LinAlgError, ValueError):
-            return None
-        crossing = False
-        for place, one in enumerate(free):
-            reached = float(q[place] + np.clip(move[place], -one.longest_move, one.longest_move))
-            inside = one.coordinate(one.value(reached))
-            if not fixed[place] and abs(inside - reached) > 1e-12:
-                move[place] = inside - q[place]
-                fixed[place] = crossing = True
-        if not crossing:
-            break
+    count = len(free)
+    fixed = np.zeros(count, dtype=np.bool_)
+    move: Array = np.zeros(len(gradient))
+    try:
+        system = normal.eliminate(damping)
+        for _ in range(4):
+            move = system.solve(gradient, fixed, move[:count])
+            crossing = False
+            for place, one in enumerate(free):
+                reached = float(q[place] + np.clip(move[place], -one.longest_move, one.longest_move))
+                inside = one.coordinate(one.value(reached))
+                if not fixed[place] and abs(inside - reached) > 1e-12:
+                    move[place] = inside - q[place]
+                    fixed[place] = crossing = True
+            if not crossing:
+                break
+    except (LinAlgError, ValueError):
+        return None
     return move
 
 
@@ -240,14 +245,13 @@ def _finish(
     states: Array,
     rows: Array,
     objective: float,
-    normal: Array,
+    normal: NormalMatrix,
     ending: Ending,
     iterations: int,
 ) -> Fit:
     used = problem.used()
     left = residuals(problem.shooting, rows)
     data = sum(float(np.sum(r[used[one.window]] ** 2)) for one, r in zip(problem.shooting.samplings, left, strict=True))
-    covariance = _inverse(normal)
     return Fit(
         free,
         q,
@@ -257,16 +261,10 @@ def _finish(
         data,
         problem.count(),
         left,
-        covariance,
+        normal.covariance(),
         ending,
         iterations,
     )
-
-
-def _inverse(normal: Array) -> Array:
-    scale = np.sqrt(np.diag(normal))
-    inner = np.linalg.pinv(normal / np.outer(scale, scale), rcond=1e-13, hermitian=True)
-    return inner / np.outer(scale, scale)
 
 
 def with_noise(shooting: Shooting, noise: Sequence[float]) -> Shooting:

@@ -33,15 +33,16 @@ def with_residual(problem: Problem, result: Fit) -> Fit:
     expected = np.sqrt(np.maximum(np.diag(result.covariance)[:count], 1e-300))
     wider = np.ones(len(result.covariance))
     wider[:count] = np.maximum(1.0, observed / expected)
-    return replace(result, covariance=result.covariance * np.outer(wider, wider))
+    return replace(result, covariance=result.covariance * np.outer(wider, wider[:count]))
 
 
 def _pulls(problem: Problem, result: Fit, linear: Linearised) -> Array:
     """How far each sample's residual moves each parameter's coordinate: (samples, parameters), sorted by window."""
     count, size = len(result.free), problem.shooting.free_states
-    pulls = linear.by_parameter @ result.covariance[:count, :count]
+    pulls = linear.by_parameter @ result.covariance[:count]
+    bounds = np.searchsorted(linear.window, np.arange(problem.shooting.windows + 1))
     for window in range(problem.shooting.windows):
-        own = linear.window == window
+        own = slice(bounds[window], bounds[window + 1])
         place = count + STATE_SIZE * window + np.arange(size)
-        pulls[own] += linear.by_state[own] @ result.covariance[place, :count]
+        pulls[own] += linear.by_state[own] @ result.covariance[place]
     return np.asarray(pulls * linear.residual[:, None])

@@ -14,6 +14,7 @@ import numpy as np
 
 from eha_core.compiled import compiled
 from eha_core.diagnosis.freedom import Free
+from eha_core.diagnosis.normal_matrix import NormalMatrix
 from eha_core.diagnosis.numbers import Array, Flags, Integers
 from eha_core.diagnosis.parallel import each, threads
 from eha_core.diagnosis.shooting import SLOPE_STEP, STATE_SIZE, Shooting, coarser
@@ -227,37 +228,34 @@ def _sample_changes(
 
 def normal_equations(
     problem: Problem, free: Sequence[Free], q: Array, states: Array, linear: Linearised
-) -> tuple[Array, Array]:
+) -> tuple[NormalMatrix, Array]:
     """J^T J and J^T r over (q, states of every window, windows out of use held by their prior)."""
     shooting, used = problem.shooting, problem.used()
-    parameters, size = len(free), shooting.free_states
-    total = parameters + STATE_SIZE * shooting.windows
-    normal, gradient = np.zeros((total, total)), np.zeros(total)
-    normal[:parameters, :parameters] = linear.by_parameter.T @ linear.by_parameter
-    gradient[:parameters] = linear.by_parameter.T @ linear.residual
-    bounds = np.searchsorted(linear.window, np.arange(shooting.windows + 1))
+    windows, size = shooting.windows, shooting.free_states
+    own, shared = np.zeros((windows, STATE_SIZE, STATE_SIZE)), np.zeros((windows, STATE_SIZE, len(free)))
+    following, towards = np.zeros((windows - 1, STATE_SIZE, STATE_SIZE)), np.zeros((windows, STATE_SIZE))
+    bounds = np.searchsorted(linear.window, np.arange(windows + 1))
     for window in np.flatnonzero(used):
         piece = slice(bounds[window], bounds[window + 1])
-        place = parameters + STATE_SIZE * window + np.arange(size)
-        own, shared = linear.by_state[piece], linear.by_parameter[piece]
-        normal[np.ix_(place, place)] += own.T @ own
-        cross = shared.T @ own
-        normal[:parameters, place] += cross
-        normal[place, :parameters] += cross.T
-        gradient[place] += own.T @ linear.residual[piece]
-    for window in problem.links():
-        place = parameters + STATE_SIZE * window + np.arange(size)
-        rows = np.zeros((size, total))
-        rows[:, :parameters] = linear.ends_by_parameter[window, :size]
-        rows[:, place] = linear.ends_by_state[window, :size]
-        rows[:, place + STATE_SIZE] = -np.eye(size)
-        rows /= LINK[:size, None]
-        gap = (linear.ends[window] - states[window + 1])[:size] / LINK[:size]
-        normal += rows.T @ rows
-        gradient -= rows.T @ gap
-    weights = np.tile(1.0 / STATE_TRUST**2, shooting.windows)
-    diagonal = np.concatenate([[1.0 / one.trust**2 for one in free], weights])
-    normal[np.diag_indices(total)] += diagonal
-    offsets = np.concatenate([q, (states - shooting.initial_states).ravel()])
-    gradient -= diagonal * offsets
-    return normal, gradient
+        by_state = linear.by_state[piece]
+        own[window, :size, :size] = by_state.T @ by_state
+        shared[window, :size] = by_state.T @ linear.by_parameter[piece]
+        towards[window, :size] = by_state.T @ linear.residual[piece]
+    links, weight = problem.links(), 1.0 / LINK[:size]
+    by_parameter = linear.ends_by_parameter[links, :size] * weight[:, None]
+    by_start = np.swapaxes(linear.ends_by_state[links, :size] * weight[:, None], 1, 2)
+    gap = (linear.ends[links] - states[links + 1])[:, :size] * weight
+    own[links, :size, :size] += by_start @ np.swapaxes(by_start, 1, 2)
+    own[links + 1, :size, :size] += np.diag(weight**2)
+    following[links, :size, :size] = -by_start * weight
+    shared[links, :size] += by_start @ by_parameter
+    shared[links + 1, :size] -= by_parameter * weight[:, None]
+    towards[links, :size] -= (by_start @ gap[:, :, None])[:, :, 0]
+    towards[links + 1, :size] += gap * weight
+    prior = np.array([1.0 / one.trust**2 for one in free])
+    own += np.diag(1.0 / STATE_TRUST**2)
+    towards -= (states - shooting.initial_states) / STATE_TRUST**2
+    flat = by_parameter.reshape(gap.size, len(free))
+    parameters = linear.by_parameter.T @ linear.by_parameter + flat.T @ flat + np.diag(prior)
+    gradient = linear.by_parameter.T @ linear.residual - flat.T @ gap.ravel() - prior * q
+    return NormalMatrix(parameters, shared, own, following), np.concatenate([gradient, towards.ravel()])

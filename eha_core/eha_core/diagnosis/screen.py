@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypotheses import Start
@@ -43,8 +42,8 @@ def screen_spells(problem: Problem, calibrated: Fit, starts: Sequence[Start]) ->
     """The promise of every start, the largest first: acting all the time, and in the windows where it promises most."""
     linear = linearise(problem, calibrated.values, calibrated.free, calibrated.q, calibrated.states)
     normal, gradient = normal_equations(problem, calibrated.free, calibrated.q, calibrated.states, linear)
-    factor = cho_factor(normal + 1e-9 * np.diag(np.diag(normal)))
-    towards = np.asarray(cho_solve(factor, gradient))
+    system = normal.eliminate(1e-9)
+    towards = system.solve(gradient)
     at = calibrated.values, calibrated.states
     columns, shifts = changes(problem, at, [({**at[0], **start.values}, at[1]) for start in starts])
 
@@ -53,8 +52,7 @@ def screen_spells(problem: Problem, calibrated: Fit, starts: Sequence[Start]) ->
         if not np.all(np.isfinite(change)):
             return [Promise(start, 0.0, 0.0)]
         energy, along, overlap = _by_window(problem, calibrated, linear, change, shifts[:, :, place])
-        solved = np.asarray(cho_solve(factor, overlap))
-        along, imitated = along - towards @ overlap, overlap.T @ solved
+        along, imitated = along - towards @ overlap, overlap.T @ system.solve(overlap)
         shooting = problem.shooting
         if len(shooting.first_windows) > 1 and any(name in shooting.per_recording for name in start.values):
             return [_in_each_recording(start, energy, along, imitated, shooting.recordings)]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg import LinAlgError
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.facts import Facts
@@ -118,12 +118,10 @@ def _promised(problem: Problem, nominal: Fit, values: Mapping[str, float], free:
     q = np.array([one.coordinate(values[one.name]) for one in free])
     linear = linearise(problem, values, free, q, nominal.states)
     normal, gradient = normal_equations(problem, free, q, nominal.states, linear)
-    scale = np.sqrt(np.diag(normal))
     try:
-        solved = cho_solve(cho_factor(normal / np.outer(scale, scale) + 1e-9 * np.eye(len(scale))), gradient / scale)
+        return float(gradient @ normal.eliminate(1e-9).solve(gradient))
     except (LinAlgError, ValueError):
         return 0.0
-    return float(gradient @ (np.asarray(solved) / scale))
 
 
 def _seen(effect: Effect, result: Fit) -> tuple[tuple[float, float], ...]:
