@@ -91,16 +91,18 @@ def diagnose(
     *,
     jobs: int = 2,
     progress: Callable[[str], None] = lambda _: None,
+    tests: Sequence[Recording | str | Path] = (),
 ) -> Results:
     """Say where a model departs from a recording, which physics it leaves out, and how much better it does with it.
 
     Args:
-        recording: a recording or its path; several are one rig and are judged together.
+        recording: a recording or its path; several are one rig, fitted with one set of parameters and effects.
         nominal: the model: parameter values that differ from the catalogue's ("unknown" where nobody knows one), a
             parameters file, or a `NominalModel`. By default the values that the recording carries, effects left out,
             or else the catalogue's nominal actuator.
         jobs: threads that simulate side by side.
         progress: is told each stage as it begins.
+        tests: recordings that nothing is fitted to, only predicted.
 
     Raises:
         RecordingError: the recording cannot be diagnosed; the message says why.
@@ -111,9 +113,10 @@ def diagnose(
     from eha_core.report.results import Results
 
     given = [recording] if isinstance(recording, (Recording, str, Path)) else list(recording)
-    recordings = [one if isinstance(one, Recording) else read_recording(one) for one in given]
-    model = nominal_model(nominal, recordings[0])
-    found = diagnose_together(recordings, model, progress, jobs)
+    recordings, unseen = (
+        [one if isinstance(one, Recording) else read_recording(one) for one in several] for several in (given, tests)
+    )
+    found = diagnose_together(recordings, known_model(nominal, recordings[0]), progress, jobs, unseen)
     origin = "values given by name" if isinstance(nominal, (Mapping, NominalModel)) else nominal
     return Results(with_provenance(found, recordings, origin, "eha_core.diagnose"))
 

@@ -4,20 +4,21 @@ from made import recorded
 
 from eha_core.diagnosis.calibrate import UNNOTICED, calibrate, calibrate_finely_enough, step_error
 from eha_core.diagnosis.observation import observe
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 LONGEST = 2e-4
 
 
 def test_a_gentle_recording_is_calibrated_at_the_longest_step():
-    calibration = calibrate_finely_enough([observe(recorded({}, duration=4.0))], nominal_values())
+    calibration = calibrate_finely_enough([observe(recorded({}, duration=4.0))], NominalModel(nominal_values()))
     assert calibration.shooting.step_size == LONGEST
 
 
 def test_a_violent_recording_is_calibrated_at_a_shorter_one():
     observation = observe(recorded({}, duration=6.0, amplitude=2.0, sine=8.0))
-    calibration = calibrate_finely_enough([observation], nominal_values())
-    coarse = calibrate([observation], nominal_values(), LONGEST)
+    calibration = calibrate_finely_enough([observation], NominalModel(nominal_values()))
+    coarse = calibrate([observation], NominalModel(nominal_values()), LONGEST)
     assert calibration.shooting.step_size < LONGEST
     assert step_error([observation], coarse) > 10.0 * step_error([observation], calibration)
     # the shorter step leaves noise alone; the longer one leaves its own error, whatever the parameters do

@@ -12,6 +12,7 @@ from eha_core.diagnosis.refine import attempts, settle, try_effect
 from eha_core.diagnosis.screen import screen
 from eha_core.diagnosis.tournament import ENOUGH, REFINED
 from eha_core.effects import effects
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 NAMED = [effect for effect in effects() if effect.named]
@@ -49,7 +50,7 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     nominal = {**nominal_values(), **rig}
     other = {"moving_mass": 1.1 * nominal["moving_mass"], "damping_coefficient": 0.93 * nominal["damping_coefficient"]}
     observation = observe(recorded({**rig, **planted, **other}, seed=7, duration=DURATIONS.get(effect.id, 6.0)))
-    calibration = calibrate([observation], nominal, STEPS.get(effect.id, 2e-4))
+    calibration = calibrate([observation], NominalModel(nominal), STEPS.get(effect.id, 2e-4))
     facts = gather([observation], calibration.shooting, calibration.fitted)
     tried = [start for one in candidates([observation]) for start in starts(one, facts)]
     promises = screen(calibration.problem, calibration.fitted, tried)

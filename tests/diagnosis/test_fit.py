@@ -7,13 +7,14 @@ from made import recorded
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.shooting import coarser, cut
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 OTHER = {"moving_mass": 11.5, "damping_coefficient": 1600.0, "bulk_modulus": 1.1e9, "valve_gain": 2.0e-5}
 
 
 def test_parameters_off_by_a_fifth_are_found_within_their_deviations():
-    calibration = calibrate([observe(recorded(OTHER))], nominal_values(), 2e-4)
+    calibration = calibrate([observe(recorded(OTHER))], NominalModel(nominal_values()), 2e-4)
     fitted = calibration.fitted
     assert fitted.data / fitted.count == pytest.approx(1.0, abs=0.03)
     for name, value in OTHER.items():
@@ -22,7 +23,7 @@ def test_parameters_off_by_a_fifth_are_found_within_their_deviations():
 
 
 def test_the_nominal_model_as_given_explains_its_own_recording():
-    calibration = calibrate([observe(recorded({}))], nominal_values(), 2e-4)
+    calibration = calibrate([observe(recorded({}))], NominalModel(nominal_values()), 2e-4)
     assert calibration.nominal.data / calibration.nominal.count == pytest.approx(1.0, abs=0.04)
 
 

@@ -11,6 +11,7 @@ from eha_core.diagnosis.balance import Balance, balances, bumps, continuity_bala
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.observation import Measured, observe
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 AREA, MASS, DAMPING = 645e-6, 9.0, 2000.0
@@ -129,7 +130,7 @@ def test_a_ripple_in_the_plant_itself_is_found_behind_wrong_parameters():
         {"recovered_force.lower": -reach, "recovered_force.upper": reach, "moving_mass": 11.0, **curve}
     )
     observation = observe(recording)
-    calibration = calibrate([observation], nominal_values(), 2e-4)
+    calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
     models = (calibration.fitted, calibration.nominal)
     alternatives = [balances(observation, calibration.shooting, model) for model in models]
     law = weak_law(alternatives)

@@ -10,6 +10,7 @@ from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.refine import as_given, settle
 from eha_core.effects import effects
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 ONSET = next(effect for effect in effects() if effect.id == "leakage_onset")
@@ -18,7 +19,7 @@ PLANTED = {"leakage_onset.time": 4.87, "leakage_onset.internal_leakage": 1e-10}
 
 @pytest.fixture(scope="module")
 def calibration():
-    return calibrate([observe(recorded(PLANTED, duration=8.0))], nominal_values(), 2e-4)
+    return calibrate([observe(recorded(PLANTED, duration=8.0))], NominalModel(nominal_values()), 2e-4)
 
 
 def test_an_instant_a_second_off_is_found(calibration):

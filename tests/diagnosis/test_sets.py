@@ -19,6 +19,7 @@ from eha_core.diagnosis.verdict import coherence
 from eha_core.effects import effects
 from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
 
@@ -30,7 +31,7 @@ PLANTED = {"constant_load.force": 300.0, "valve_deadband.half_width": 1e-4}
 def search():
     """A search on a rig with a load and an overlap, the fit of both and of a third that is not there."""
     observation = observe(recorded(PLANTED, duration=6.0))
-    calibration = calibrate([observation], nominal_values(), 2e-4)
+    calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
     facts = gather([observation], calibration.shooting, calibration.fitted)
     made = Search(calibration.problem, candidates([observation]), facts)
     made.keep(NOTHING, calibration.fitted)

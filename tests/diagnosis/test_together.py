@@ -15,6 +15,7 @@ from eha_core.diagnosis.shooting import cut
 from eha_core.diagnosis.together import cut_together, fit_alone, recording_alone
 from eha_core.diagnosis.validate import split
 from eha_core.errors import RecordingError
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 FIRST = observe(recorded({"coulomb_friction.force": 200.0}, seed=2, duration=3.0))
@@ -130,8 +131,9 @@ def test_a_load_of_its_own_in_each_recording_is_found_and_a_third_is_predicted()
     rig = {"coulomb_friction.force": 120.0}
     both = [recorded(rig | {"constant_load.force": load}, seed=seed, duration=6.0, rate=250.0)
             for seed, load in enumerate(loads, 5)]  # fmt: skip
+    model = NominalModel(nominal_values(), per_recording=("constant_load.force",))
     third = recorded(rig | {"constant_load.force": 50.0}, seed=9, duration=6.0, rate=250.0)
-    found = diagnose_together(both, nominal_values(), per_recording=("constant_load.force",), tests=[third])
+    found = diagnose_together(both, model, tests=[third])
     assert [effect.id for effect in found.effects] == ["constant_load", "coulomb_friction"]
     assert [one.own_values["constant_load.force"] for one in found.together] == pytest.approx(loads, rel=0.05)
     friction = found.effects[1].parameters["force"]

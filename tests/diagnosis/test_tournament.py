@@ -14,6 +14,7 @@ from eha_core.diagnosis.refine import FAR_OFF
 from eha_core.diagnosis.screen import screen
 from eha_core.diagnosis.tournament import Entry, Tournament, from_every_start
 from eha_core.effects import effects
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 LAWS = {effect.id: effect for effect in effects()}
@@ -23,7 +24,7 @@ PLANTED = {"leakage_onset.time": 4.87, "leakage_onset.internal_leakage": 3e-10}
 
 @pytest.fixture(scope="module")
 def calibration():
-    return calibrate([observe(recorded(PLANTED, duration=8.0))], nominal_values(), 2e-4)
+    return calibrate([observe(recorded(PLANTED, duration=8.0))], NominalModel(nominal_values()), 2e-4)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from eha_core.api import nominal_model
+from eha_core.api import known_model
 from eha_core.errors import EhaError
 from eha_core.recording import read_recording
 from eha_core.workers import Workers
@@ -23,13 +23,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "diagnose",
         help="say which physics a model leaves out of a recording",
         description=__doc__,
-        epilog="Several recordings of one rig are judged together. Without --nominal the model is the one whose"
+        epilog="Several recordings are one rig, fitted with one set of parameters and effects; what a nominal file"
+        " lists as per_recording has a value in each. Without --nominal the model is the one whose"
         " parameters the recording carries, effects left out, or else the catalogue's nominal actuator.",
     )
     add = parser.add_argument
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help=".mcap, rosbag2 folder, .db3 or .csv")
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
+    add("--test", action="append", default=[], type=Path, metavar="FILE", help="a recording that is only predicted")
     add("--as-recorded", action="store_true", help="go on where a recording cannot be right, and warn of it")
     add("--out", type=Path, metavar="DIR", help="folder for the report (default out/diagnosis/<recording>)")
     add("--json", metavar="FILE|-", help="write diagnosis.json there (- is standard output) and no report")
@@ -50,9 +52,14 @@ def run(arguments: argparse.Namespace) -> int:
     from eha_core.plausibility import admit
 
     recordings = [read_recording(path, arguments.topics) for path in arguments.recordings]
-    nominal = nominal_model(arguments.nominal, recordings[0])
-    recordings = [admit(recording, nominal, arguments.as_recorded) for recording in recordings]
-    for warning in (remark for recording in recordings for remark in recording.remarks if remark.startswith("warning")):
+    model = known_model(arguments.nominal, recordings[0])
+    recordings = [admit(one, model.values, arguments.as_recorded) for one in recordings]
+    tests = [
+        admit(read_recording(path, arguments.topics), model.values, arguments.as_recorded) for path in arguments.test
+    ]
+    for warning in (
+        remark for recording in (*recordings, *tests) for remark in recording.remarks if remark.startswith("warning")
+    ):
         print(f"eha diagnose: {warning}", file=sys.stderr)
     # compilers and plotting load slowly; bad input should be told at once
     from eha_core.diagnosis import diagnose_together
@@ -61,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     from eha_core.report.files import write_report
     from eha_core.report.provenance import with_provenance
 
-    diagnosis = diagnose_together(recordings, nominal, progress=_progress(), jobs=arguments.jobs)
+    diagnosis = diagnose_together(recordings, model, progress=_progress(), jobs=arguments.jobs, tests=tests)
     diagnosis = with_provenance(diagnosis, recordings, arguments.nominal)
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:
@@ -73,11 +80,13 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.json is not None:
             written = (*written, _write(Path(arguments.json), as_json(diagnosis)))
         print(account(diagnosis, written))
-    return DAMAGED if any(recording.damaged for recording in recordings) else 0
+    return DAMAGED if any(recording.damaged for recording in (*recordings, *tests)) else 0
 
 
 def _run_each(arguments: argparse.Namespace) -> int:
     """Every recording on its own: what one cannot be used for stops none of the others."""
+    if arguments.test:
+        raise EhaError("--test is predicted by one model; with --each there is one for every recording")
     if arguments.json is not None:
         raise EhaError("--json takes one diagnosis; with --each, every recording's is in its own folder below --out")
     folders = [(arguments.out or Path("out") / "diagnosis") / path.stem for path in arguments.recordings]
@@ -106,9 +115,9 @@ def diagnose_alone(
 
     try:
         recording = read_recording(path, topics)
-        values = nominal_model(nominal, recording)
-        recording = admit(recording, values, as_recorded)
-        diagnosis = with_provenance(diagnose_together([recording], values, jobs=1), [recording], nominal)
+        model = known_model(nominal, recording)
+        recording = admit(recording, model.values, as_recorded)
+        diagnosis = with_provenance(diagnose_together([recording], model, jobs=1), [recording], nominal)
         write_report(diagnosis, folder)
     except EhaError as error:
         return path, UNUSABLE, str(error)

@@ -16,6 +16,7 @@ from eha_core.diagnosis.per_recording import base_name
 from eha_core.diagnosis.problem import Problem, whole
 from eha_core.diagnosis.shooting import Shooting
 from eha_core.diagnosis.together import cut_together, fit_alone, recording_alone
+from eha_core.nominal import NominalModel
 from eha_core.parameters import NOMINAL
 
 STEPS = (2e-4, 1e-4, 5e-5)
@@ -49,16 +50,13 @@ class Calibration:
     fitted: Fit
 
 
-def calibrate(
-    observations: Sequence[Observation],
-    nominal: Mapping[str, float],
-    step_size: float,
-    per_recording: Sequence[str] = (),
-) -> Calibration:
+def calibrate(observations: Sequence[Observation], model: NominalModel, step_size: float) -> Calibration:
     """Fit the nominal equations; correct each channel's noise by what the residual's roughness shows; fit again."""
-    shooting = cut_together(observations, nominal, step_size, per_recording=per_recording)
+    nominal = model.values
+    shooting = cut_together(observations, nominal, step_size, per_recording=model.per_recording)
     positions = [channel.values for one in observations for channel in one.measured if channel.name == "position"]
-    free = nominal_freedom(nominal, shooting.drive, max(float(np.max(np.abs(values))) for values in positions))
+    farthest = max(float(np.max(np.abs(values))) for values in positions)
+    free = nominal_freedom(nominal, shooting.drive, farthest, model.unknown)
     first = fit_in_stages(whole(shooting), nominal, free)
     shooting = with_noise(shooting, corrected_noise(shooting, first))
     problem = whole(shooting)
@@ -67,12 +65,10 @@ def calibrate(
     return Calibration(shooting, problem, as_given, fitted)
 
 
-def calibrate_finely_enough(
-    observations: Sequence[Observation], nominal: Mapping[str, float], per_recording: Sequence[str] = ()
-) -> Calibration:
+def calibrate_finely_enough(observations: Sequence[Observation], model: NominalModel) -> Calibration:
     """Calibrate at the longest of STEPS that is short enough."""
     for step_size in STEPS:
-        calibration = calibrate(observations, nominal, step_size, per_recording)
+        calibration = calibrate(observations, model, step_size)
         left = calibration.fitted.objective - calibration.fitted.count
         if step_error(observations, calibration) < max(UNNOTICED, WORTH * left):
             break
@@ -93,14 +89,14 @@ def step_error(observations: Sequence[Observation], calibration: Calibration) ->
 
 
 def calibrate_but_for_the_ends(
-    observations: Sequence[Observation], nominal: Mapping[str, float], per_recording: Sequence[str] = ()
+    observations: Sequence[Observation], model: NominalModel
 ) -> tuple[tuple[Observation, ...], Calibration]:
     """Calibrate, and once more without a recording's last window where only that departs from the model."""
-    calibration = calibrate_finely_enough(observations, nominal, per_recording)
+    calibration = calibrate_finely_enough(observations, model)
     rest = tuple(_but_for_its_end(one, calibration, number) for number, one in enumerate(observations, 1))
     if all(one is other for one, other in zip(rest, observations, strict=True)):
         return rest, calibration
-    return rest, calibrate(rest, nominal, calibration.shooting.step_size, per_recording)
+    return rest, calibrate(rest, model, calibration.shooting.step_size)
 
 
 def _but_for_its_end(observation: Observation, calibration: Calibration, number: int) -> Observation:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 from math import exp, log
 
 from eha_core.effects import Effect
@@ -89,14 +89,23 @@ oil."""
 TOUCHING = 0.985
 """Share of the stroke beyond which the piston has been at its end: then the stroke is seen, and not fitted."""
 
+NOT_KNOWN = Trust(2.3, 1000.0)
+"""Of a value that nobody knows: a factor of ten either way is likely, a thousand impossible (assumed)."""
+
 FORCE_ONLY = ("spring_stiffness", "moving_mass", "damping_coefficient")
 """What a recording without the valve's command can tell."""
 
 
-def nominal_freedom(nominal: Mapping[str, float], drive: str, travel: float) -> tuple[Free, ...]:
-    """The nominal parameters that a recording with this drive may move; `travel` is the largest |position| seen [m]."""
+def nominal_freedom(
+    nominal: Mapping[str, float], drive: str, travel: float, unknown: Collection[str] = ()
+) -> tuple[Free, ...]:
+    """The nominal parameters that a recording with this drive may move; `travel` is the largest |position| seen [m].
+
+    Of `unknown` ones the nominal value is only where the search begins.
+    """
     free = []
-    for name, known in NOMINAL_TRUST.items():
+    for name, trust in NOMINAL_TRUST.items():
+        known = _not_known(trust) if name in unknown else trust
         if drive != "voltage" and name not in FORCE_ONLY:
             continue
         row = catalogue()[name]
@@ -119,6 +128,11 @@ def nominal_freedom(nominal: Mapping[str, float], drive: str, travel: float) -> 
         row = catalogue()["piston_area_b"]
         free.append(Free(row.name, nominal[row.name], True, 0.0, 0.3, row.lower, row.upper))
     return tuple(free)
+
+
+def _not_known(trust: Trust) -> Trust:
+    """The trust in the nominal value of a parameter that is not known."""
+    return replace(NOT_KNOWN, scale=trust.scale)
 
 
 EFFECT_TRUST = 30.0

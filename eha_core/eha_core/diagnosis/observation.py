@@ -11,6 +11,7 @@ import numpy as np
 from eha_core.diagnosis.noise import estimate_noise, find_outliers
 from eha_core.diagnosis.numbers import Array
 from eha_core.errors import RecordingError
+from eha_core.nominal import NominalModel
 from eha_core.recording import CHANNEL_KINDS, Channel, Recording
 
 SHORTEST = 1.0
@@ -138,20 +139,20 @@ def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:
     return tuple((time, value - first) for time, value in told if 0.0 < time < recording.duration and value != first)
 
 
-def reaching(observation: Observation, nominal: Mapping[str, float]) -> tuple[Observation, Mapping[str, float]]:
-    """The nominal values with a stroke that reaches as far as the piston was seen; a remark where it had to grow."""
+def reaching(observation: Observation, model: NominalModel) -> tuple[Observation, NominalModel]:
+    """The nominal model with a stroke that reaches as far as the piston was seen; a remark where it had to grow."""
     position = observation.channel("position")
     assert position is not None
     farthest = float(np.max(np.abs(position.values)))
-    stroke = nominal["actuator_displacement"]
+    stroke = model.values["actuator_displacement"]
     if farthest <= OVERSHOOT * stroke:
-        return observation, nominal
+        return observation, model
     remark = (
         f"position reaches {farthest:.3g} m, beyond the nominal actuator_displacement of {stroke:.3g} m: taken as"
         f" {OVERSHOOT * farthest:.3g} m; give the rig's own, and position from mid-stroke"
     )
-    enlarged = {**nominal, "actuator_displacement": OVERSHOOT * farthest}
-    return replace(observation, remarks=(*observation.remarks, remark)), enlarged
+    enlarged = {**model.values, "actuator_displacement": OVERSHOOT * farthest}
+    return replace(observation, remarks=(*observation.remarks, remark)), replace(model, values=enlarged)
 
 
 def without_end(observation: Observation, moment: float, why: str) -> Observation:

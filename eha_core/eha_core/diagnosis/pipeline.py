@@ -21,25 +21,21 @@ from eha_core.diagnosis.together import check_alike, fit_alone, recording_alone
 from eha_core.diagnosis.tournament import compete, from_every_start
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
+from eha_core.nominal import NominalModel
 from eha_core.recording import Recording
 
 Progress = Callable[[str], None]
 
 
-def examine(
-    recordings: Sequence[Recording],
-    nominal: Mapping[str, float],
-    progress: Progress = lambda _: None,
-    per_recording: Sequence[str] = (),
-) -> Evidence:
+def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
     """Run the stages up to the decision. Raises RecordingError where a recording cannot be used."""
     progress("reading and aligning")
     seen = [observe(recording) for recording in recordings]
     check_alike(seen)
     for number, observation in enumerate(seen):
-        seen[number], nominal = reaching(observation, nominal)
+        seen[number], model = reaching(observation, model)
     progress("calibrating the nominal equations")
-    observations, calibration = calibrate_but_for_the_ends(seen, nominal, per_recording)
+    observations, calibration = calibrate_but_for_the_ends(seen, model)
     shooting, fitted = calibration.shooting, calibration.fitted
     facts = gather(observations, shooting, fitted)
     lead = telling_most(shooting, fitted)
@@ -54,36 +50,36 @@ def examine(
     if restarted is not tournament:
         calibration, tournament = with_sets(calibration, restarted, able, facts, progress)
     recovery = recover(calibration.problem, tournament, facts, progress)
-    decision = decide(calibration, nominal, tournament, recovery)
+    decision = decide(calibration, model.values, tournament, recovery)
     equations = least(alternatives)
     location = locate(calibration, tournament.nominal.fit, facts, tournament, equations, lead)
     return Evidence(
-        observations, lead, nominal, calibration, facts, equations, alternatives, tournament, recovery, decision,
+        observations, lead, model.values, calibration, facts, equations, alternatives, tournament, recovery, decision,
         location,
     )  # fmt: skip
 
 
-def diagnose(recording: Recording, nominal: Mapping[str, float], progress: Progress = lambda _: None) -> Diagnosis:
+def diagnose(
+    recording: Recording, nominal: Mapping[str, float] | NominalModel, progress: Progress = lambda _: None
+) -> Diagnosis:
     """Say whether the nominal plant explains the recording, and what it leaves out if it does not."""
     return diagnose_together([recording], nominal, progress)
 
 
 def diagnose_together(
     recordings: Sequence[Recording],
-    nominal: Mapping[str, float],
+    nominal: Mapping[str, float] | NominalModel,
     progress: Progress = lambda _: None,
     jobs: int = 2,
-    per_recording: Sequence[str] = (),
     tests: Sequence[Recording] = (),
 ) -> Diagnosis:
     """The verdict on recordings of one rig, fitted with one set of parameters and effects.
 
     Args:
         recordings: of the same rig; the report draws the one of which the nominal equations leave most unexplained.
-        nominal: every parameter of the model.
+        nominal: every parameter of the model, and which are unknown or have a value of their own in each recording.
         progress: is told each stage as it begins.
         jobs: threads that simulate side by side.
-        per_recording: parameters that have a value of their own in each recording.
         tests: recordings that nothing is fitted to; the result says how well they are predicted.
 
     Raises:
@@ -91,5 +87,6 @@ def diagnose_together(
     """
     # the simulations share the cores; a linear-algebra library that spins threads of its own only takes them away
     with threadpool_limits(1), side_by_side(jobs):
-        evidence = examine(recordings, nominal, progress, per_recording)
+        model = nominal if isinstance(nominal, NominalModel) else NominalModel(nominal)
+        evidence = examine(recordings, model, progress)
         return conclude(recordings, evidence, progress, tests)

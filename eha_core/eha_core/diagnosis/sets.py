@@ -18,7 +18,7 @@ from eha_core.diagnosis.search.candidates import Candidate, Search, in_noise_of
 from eha_core.diagnosis.search.exchange import rivals_for
 from eha_core.diagnosis.search.proposals import at_the_fit, in_another_form
 from eha_core.diagnosis.search.search import search_sets
-from eha_core.diagnosis.tournament import Entry, Tournament, parameter_cost, rank, scatter
+from eha_core.diagnosis.tournament import Entry, Tournament, freedom_used, parameter_cost, rank, scatter
 from eha_core.effects import Effect
 
 CLOSE = 100.0
@@ -84,7 +84,7 @@ def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
     size = len(best.hypothesis.members)
     of_size = [one for one in search if len(one.hypothesis.members) == size]
     dear = parameter_cost(search.problem.count(), max(1.0, best.times_noise))
-    return min(of_size, key=lambda one: one.fit.objective + dear * len(one.fit.free))
+    return min(of_size, key=lambda one: one.fit.objective + dear * freedom_used(one.fit))
 
 
 def _in_noise_of(search: Search, calibration: Calibration) -> Calibration:

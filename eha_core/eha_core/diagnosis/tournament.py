@@ -10,6 +10,7 @@ import numpy as np
 
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.fit import Fit
+from eha_core.diagnosis.freedom import Free
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.passing import passing_effects
@@ -157,13 +158,27 @@ def parameter_cost(count: int, left_over: float) -> float:
     return log(count) + DEAR * count * max(0.0, 1.0 - ADEQUATE / left_over)
 
 
+def freedom_used(result: Fit) -> int:
+    """How many parameters a fit makes use of: an effect's that rests on its lower bound, as far as can be told, is
+    none.
+
+    A deadband with sharp edges has no rounding to pay for.
+    """
+    return sum(not _rests(result, one) for one in result.free)
+
+
+def _rests(result: Fit, one: Free) -> bool:
+    of_an_effect = "." in one.name and not one.logarithmic
+    return of_an_effect and result.values[one.name] - one.lower < result.deviation(one.name)
+
+
 def rank(problem: Problem, nominal: Fit, found: Found) -> tuple[Entry, ...]:
     """Scores: the gain over the nominal model in units of the residual's variance, less the cost of its parameters."""
     best = min([nominal, *found.values()], key=lambda one: one.objective)
     variance = max(1.0, best.data / best.count)
     entries = []
     for hypothesis, result in found.items():
-        cost = (len(result.free) - len(nominal.free)) * parameter_cost(problem.count(), variance)
+        cost = (freedom_used(result) - len(nominal.free)) * parameter_cost(problem.count(), variance)
         gain = (nominal.objective - result.objective) / variance
         entries.append(Entry(hypothesis, result, gain - cost, cost))
     return tuple(sorted(entries, key=lambda entry: -entry.score))

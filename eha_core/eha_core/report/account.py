@@ -8,6 +8,7 @@ from textwrap import wrap
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, Location, NamedEffect
 from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.each_recording import each_recording
 from eha_core.report.quantities import quantity, scale_for, short, within
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
@@ -26,6 +27,7 @@ def account(diagnosis: Diagnosis, written: Sequence[Path] = (), width: int = 100
         beyond_two = max(0, len(diagnosis.effects[:_MOST_EFFECTS]) - 2)
         lines += _section(label, text, width, 2 * beyond_two if label == "Verdict" else 0)
     lines += _improvement(diagnosis)
+    lines += each_recording(diagnosis)
     lines += _section("Next test", diagnosis.next_experiment.statement if diagnosis.next_experiment else "", width)
     lines += _section("Note", "; ".join(_notes(diagnosis)), width)
     lines += _written(written)
