@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from eha_core.exam.summary import Summary
 
 OWN = "eha diagnose"
-DIAGNOSE = "{python} -m eha_core.cli diagnose {recording} --json {answer} --jobs 1"
+DIAGNOSE = "{python} -m eha_core.cli diagnose {recording} {nominal} --json {answer} --jobs 1"
 """The command of the project's own diagnosis, as a user would type it."""
 BELOW_THE_MARK = 1
 """Exit status where the score is below --require."""

@@ -38,6 +38,7 @@ class Case:
         several effects, each beside all the others. seen: of several effects, those that can be named beside the
         others.
         rivals: effects that this recording cannot tell from the concealed one.
+        loads [N]: the constant load in each further recording of the same rig.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Case:
     decidable: bool = True
     rivals: tuple[str, ...] = ()
     seen: tuple[str, ...] = ()
+    loads: tuple[float, ...] = ()
 
     @property
     def setting(self) -> Setting:

@@ -44,6 +44,9 @@ WORN_RIG = (
 )
 """What a worn rig has at once: at most one of each of these."""
 
+LOAD = "constant_load"
+"""What differs between several recordings of a rig."""
+
 NOISES = (1.0, 3.0, 10.0)
 FRICTION = {"coulomb_friction", "stribeck_friction", "presliding_friction"}
 
@@ -57,9 +60,11 @@ def draw_case(tier: str, number: int, seed: int) -> Case:
     duration = float(g.choice((12.0, 16.0, 20.0)))
     amplitude = float(g.uniform(0.2, 0.5)) * rig.values["actuator_displacement"]
     speed = min(float(g.uniform(0.06, 0.25)) * rig.top_speed, 6.0 * amplitude)
-    effects, windows = _conceal(tier, number, Setting(rig, amplitude, speed, duration), g)
+    setting = Setting(rig, amplitude, speed, duration)
+    effects, windows = _conceal(tier, number, setting, g)
     loop = float(g.uniform(6.0, 15.0)) if tier == "tracking" else float(g.choice((0.0, 1.0, 1.0)))
     rough = g.random() < 0.4
+    loads = (float(draw_effect(LOAD, setting, g)["force"]),) if tier == "recordings" else ()
     case = Case(
         name=f"{tier}-{number:04d}",
         tier=tier,
@@ -82,6 +87,7 @@ def draw_case(tier: str, number: int, seed: int) -> Case:
         jitter=1e-4 if rough else 0.0,
         dropout=0.01 if rough else 0.0,
         channels=("voltage_command", "position") if tier == "position_only" else Case.channels,
+        loads=loads,
     )
     return _weakly_tested(case, TWINS[number % len(TWINS)][1]) if tier == "twins" else case
 
@@ -111,6 +117,11 @@ def _conceal(
             names = [str(name) for name in g.choice(catalogue, 2 if tier == "pair" else 3, replace=False)]
             if len(FRICTION.intersection(names)) < 2:
                 return tuple((name, draw_effect(name, setting, g)) for name in names), {}
+    if tier == "recordings":
+        while True:
+            names = [str(name) for name in g.choice([name for name in catalogue if name != LOAD], 2, replace=False)]
+            if len(FRICTION.intersection(names)) < 2:
+                return tuple((name, draw_effect(name, setting, g)) for name in (LOAD, *names)), {}
     if tier == "rig":
         groups = sorted(g.choice(len(WORN_RIG), 4 + number % 3, replace=False).tolist())
         names = [str(g.choice(WORN_RIG[group])) for group in groups]

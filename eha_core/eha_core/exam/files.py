@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml
 
 from eha_core.exam.case import Arrays, Case
 from eha_core.recording import RecordingWriter
@@ -36,6 +37,17 @@ def write_case(case: Case, arrays: Arrays, path: Path) -> None:
             if kind != FLOAT:
                 fields = fields | {"header": {"stamp": {"sec": stamp // 10**9, "nanosec": stamp % 10**9}}}
             writer.write_fields(topic, kind, fields, stamp)
+
+
+def further_name(name: str, number: int) -> str:
+    """The file name of a case's recording of that number, counted from one."""
+    return name if number == 1 else name.replace(".mcap", f"-{number}.mcap")
+
+
+def write_per_recording(names: Sequence[str], nominal: Mapping[str, float], path: Path) -> None:
+    """Write the nominal file that a diagnosis of several recordings is given: it lists what differs between them."""
+    document = {"eha_sim": {"ros__parameters": dict(nominal)}, "per_recording": list(names)}
+    path.write_text(yaml.safe_dump(document), encoding="utf-8")
 
 
 def _messages(arrays: Arrays, atmosphere: float) -> Iterator[tuple[int, str, str, dict[str, Any]]]:
@@ -72,7 +84,7 @@ def read_answer(text: str) -> Case:
     fields = json.loads(text)
     fields["effects"] = tuple((name, values) for name, values in fields["effects"])
     fields["windows"] = {name: tuple(span) for name, span in fields["windows"].items()}
-    for name in ("channels", "seen"):
+    for name in ("channels", "seen", "loads"):
         fields[name] = tuple(fields[name])
     return Case(**fields)
 

@@ -1,4 +1,4 @@
-"""The second recording: the rig is driven with the test that a diagnosis prescribed."""
+"""Further recordings of a case's rig: with other loads, or driven with the test that a diagnosis prescribed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 
 from eha_core.errors import EhaError
 from eha_core.exam.case import POSITION_NOISE, Array, Arrays, Case
-from eha_core.exam.measuring import measure
+from eha_core.exam.drawing import LOAD
+from eha_core.exam.measuring import measure, simulate_case
 from eha_core.exam.truth import simulate_truth
 from eha_core.signals import make_signal
 
@@ -30,6 +31,16 @@ def prescribed_voltage(reference: Mapping[str, Any], time: Array) -> Array:
     prefix = f"{signal}."
     parameters = {name.removeprefix(prefix): value for name, value in reference.items() if name.startswith(prefix)}
     return np.asarray(make_signal(signal, parameters).value(time), dtype=float)
+
+
+def with_other_loads(case: Case) -> list[Arrays]:
+    """What the sensors of a case's rig record of another test for each of its `loads`."""
+    recordings = []
+    for number, load in enumerate(case.loads, 1):
+        effects = tuple((name, {**values, "force": load} if name == LOAD else values) for name, values in case.effects)
+        again = replace(case, seed=case.seed + number, effects=effects)
+        recordings.append(measure(again, simulate_case(again)))
+    return recordings
 
 
 def second_recording(case: Case, prescribed: Mapping[str, Any]) -> Arrays:

@@ -15,14 +15,24 @@ import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import count, takewhile
 from pathlib import Path
 from typing import Any
 
 from eha_core.errors import EhaError
 from eha_core.exam.cases import make_case
-from eha_core.exam.files import answer_text, digest_of, read_answer, recording_name, write_case
+from eha_core.exam.drawing import LOAD
+from eha_core.exam.files import (
+    answer_text,
+    digest_of,
+    further_name,
+    read_answer,
+    recording_name,
+    write_case,
+    write_per_recording,
+)
 from eha_core.exam.scoring import Answer, Mark, mark
-from eha_core.exam.second import second_recording
+from eha_core.exam.second import second_recording, with_other_loads
 from eha_core.exam.tiers import plan
 from eha_core.workers import Workers
 
@@ -100,6 +110,12 @@ def prepare_case(tier: str, number: int, seed: int, folder: str) -> None:
     recording = Path(folder) / "recordings" / recording_name(case)
     recording.unlink(missing_ok=True)
     write_case(case, arrays, recording)
+    for further, more in enumerate(with_other_loads(case), 2):
+        path = recording.with_name(further_name(recording.name, further))
+        path.unlink(missing_ok=True)
+        write_case(case, more, path)
+    if case.loads:
+        write_per_recording([f"{LOAD}.force"], case.nominal, recording.with_suffix(".yaml"))
     _write(Path(folder) / "sealed" / f"{tier}-{number:04d}.json", answer_text(case))
 
 
@@ -107,12 +123,18 @@ def _diagnose(exam: Exam, tool: str, command: str, workers: Workers, progress: P
     names = json.loads((exam.folder / "seal.json").read_text(encoding="utf-8"))
     answers = exam.folder / "answers" / tool
     missing = [name for name in names if not (answers / f"{Path(name).stem}.json").is_file()]
-    calls = [((str(exam.folder / "recordings" / name),), str(answers), command) for name in missing]
+    calls = [(_recordings_of(exam.folder / "recordings" / name), str(answers), command) for name in missing]
     done = len(names) - len(calls)
     progress(tool, done, len(names))
     for _ in workers.run(diagnose_recording, calls):
         done += 1
         progress(tool, done, len(names))
+
+
+def _recordings_of(first: Path) -> tuple[str, ...]:
+    """A case's recordings: one, or those of a rig that was recorded several times."""
+    numbered = (first.with_name(further_name(first.name, number)) for number in count(2))
+    return (str(first), *(str(path) for path in takewhile(Path.is_file, numbered)))
 
 
 def _repeat(exam: Exam, tool: str, command: str, workers: Workers, progress: Progress) -> None:
@@ -124,11 +146,11 @@ def _repeat(exam: Exam, tool: str, command: str, workers: Workers, progress: Pro
         stem = Path(recording_name(read_answer(sealed.read_text(encoding="utf-8")))).stem
         given = json.loads((answers / f"{stem}.json").read_text(encoding="utf-8"))["diagnosis"] or {}
         prescribed = given.get("next_experiment")
-        done = (answers / SECOND / f"{stem}.json").is_file()
-        if given.get("verdict") == "ambiguous" and prescribed and not done:
+        there = (answers / SECOND / f"{stem}.json").is_file()
+        if given.get("verdict") == "ambiguous" and prescribed and not there:
             calls.append((str(sealed), str(exam.folder), tool, command, prescribed))
-    for count, _ in enumerate(workers.run(repeat_case, calls), 1):
-        progress(f"{tool}, second recordings", count, len(calls))
+    for done, _ in enumerate(workers.run(repeat_case, calls), 1):
+        progress(f"{tool}, second recordings", done, len(calls))
 
 
 def repeat_case(sealed: str, folder: str, tool: str, command: str, prescribed: Mapping[str, Any]) -> None:
@@ -151,11 +173,20 @@ def repeat_case(sealed: str, folder: str, tool: str, command: str, prescribed: M
 
 
 def diagnose_recording(recordings: Sequence[str], answers: str, command: str) -> None:
-    """Have a tool diagnose a recording, or several of one rig, and keep what it said."""
+    """Have a tool diagnose a recording, or several of one rig, and keep what it said.
+
+    The word {nominal} becomes the options that name the rig's nominal file, where there is one; a tool that has no use
+    for it is given the first recording alone then.
+    """
     given = [str(Path(recording).resolve()) for recording in recordings]
+    nominal = Path(given[0]).with_suffix(".yaml")
+    options = ["--nominal", str(nominal)] if nominal.is_file() else []
+    if options and "{nominal}" not in command:
+        given = given[:1]
+    replaced = {"{recording}": given, "{nominal}": options}
     words: list[str] = []
     for word in shlex.split(command):
-        words += given if word == "{recording}" else [word.replace("{python}", sys.executable)]
+        words += replaced.get(word, [word.replace("{python}", sys.executable)])
     answer = run_tool(words)
     _write(Path(answers) / f"{Path(recordings[0]).stem}.json", json.dumps(asdict(answer)))
 

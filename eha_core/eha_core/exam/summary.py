@@ -70,10 +70,12 @@ def _of_sets(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
     """The aims for several effects at once: statement, share asked, share reached."""
     pairs = [m for m in marks if m.tier == "pair" and m.decidable]
     three, rigs = ([m for m in marks if m.tier == tier] for tier in ("three", "rig"))
+    together = [m for m in marks if m.tier == "recordings"]
     return [
         ("pairs exact", 0.95, _count(pairs, lambda m: m.outcome == "right")),
         ("three effects exact", 0.92, _count(three, lambda m: m.exact)),
         ("rigs exact", 0.80, _count(rigs, lambda m: m.exact)),
+        ("two recordings with loads of their own exact", 0.80, _count(together, lambda m: m.exact)),
         ("decidable effects of rigs found", 0.95, _found(rigs)),
         ("`complete` told truly", 1.0, _count([m for m in marks if m.truthful is not None], _truthful)),
     ]

@@ -5,12 +5,13 @@ from __future__ import annotations
 from eha_core.errors import EhaError, remedy
 
 SHARES = {
-    "single": 0.20,
-    "small": 0.06,
+    "single": 0.18,
+    "small": 0.05,
     "other_law": 0.05,
     "pair": 0.12,
     "three": 0.10,
     "rig": 0.10,
+    "recordings": 0.03,
     "named_and_unknown": 0.03,
     "null": 0.05,
     "null_parameters": 0.07,
@@ -24,7 +25,7 @@ SHARES = {
 }
 """Share of each tier in an exam of all tiers."""
 
-SETS = ("pair", "three", "rig")
+SETS = ("pair", "three", "rig", "recordings")
 """Tiers that conceal several effects of the catalogue at once."""
 
 MEANINGS = {
@@ -34,6 +35,7 @@ MEANINGS = {
     "pair": "two effects",
     "three": "three effects",
     "rig": "four to six effects: dry friction, valve, supply, load, sensor and leakage together",
+    "recordings": "two recordings of a rig with two effects and a load that differs between them",
     "named_and_unknown": "one effect of the catalogue, and one law that it does not know",
     "null": "nothing missing, nominal parameters exact",
     "null_parameters": "nothing missing, nominal parameters up to 30 % off",
