@@ -14,7 +14,6 @@ from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
 from eha_core.diagnosis.explained import explained, predictions
 from eha_core.diagnosis.fit import Fit, fit, with_noise
-from eha_core.diagnosis.freedom import Free
 from eha_core.diagnosis.intervals import with_residual
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
@@ -152,7 +151,7 @@ def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParamet
         if base not in UNITS:
             continue
         note = "" if identifiable(final, one.name) else "this recording does not tell it; held near its nominal value"
-        at_bound = _is_at_bound(one, final.values[one.name])
+        at_bound = one.is_bound_by(final.values[one.name])
         if at_bound:
             note = "at the bound of what is believed of it: its interval does not count"
         found.append(
@@ -168,15 +167,6 @@ def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParamet
             )
         )
     return tuple(found)
-
-
-def _is_at_bound(one: Free, value: float) -> bool:
-    """Whether a fitted value rests on a bound that is no nominal value: one at nothing is no wish for more."""
-    return any(
-        np.isclose(value, bound, rtol=1e-6, atol=0.0) and bound != one.reference
-        for bound in (one.lower, one.upper)
-        if bound != 0.0
-    )
 
 
 def _named(winner: Entry, final: Fit) -> tuple[NamedEffect, ...]:

@@ -15,7 +15,7 @@ from scipy.linalg import LinAlgError
 from eha_core.diagnosis.freedom import LATE, Free
 from eha_core.diagnosis.normal_matrix import NormalMatrix
 from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.per_recording import in_each, is_one_of
+from eha_core.diagnosis.per_recording import base_name, in_each, is_one_of
 from eha_core.diagnosis.problem import (
     Problem,
     linearise,
@@ -26,6 +26,7 @@ from eha_core.diagnosis.problem import (
     values_at,
 )
 from eha_core.diagnosis.shooting import STATE_SIZE, Shooting
+from eha_core.parameters import catalogue
 
 SETTLED = 0.5
 """Chi^2; an iteration that gains less ends the fit."""
@@ -76,6 +77,17 @@ class Fit:
     def converged(self) -> bool:
         """Whether more iterations would not have helped."""
         return self.ending in (Ending.CONVERGED, Ending.NO_DESCENT)
+
+    def held_by_belief(self) -> frozenset[str]:
+        """The plant's own parameters that rest on a bound which is no limit of the catalogue's, but of belief."""
+        rows = catalogue()
+        return frozenset(
+            base_name(one.name)
+            for one in self.free
+            if "." not in one.name
+            and one.is_bound_by(self.values[one.name])
+            and self.values[one.name] not in (rows[base_name(one.name)].lower, rows[base_name(one.name)].upper)
+        )
 
     def deviation(self, name: str) -> float:
         """Standard deviation of a fitted parameter's value, from the curvature at the optimum.

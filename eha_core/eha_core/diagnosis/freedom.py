@@ -43,6 +43,11 @@ class Free:
             return log(max(value, self.lower, 1e-300) / self.reference)
         return (value - self.reference) / self.scale
 
+    def is_bound_by(self, value: float) -> bool:
+        """Whether a value rests on a bound; one at nothing, or where it is nominal, is no wish for more."""
+        bounds = (bound for bound in (self.lower, self.upper) if bound not in (0.0, self.reference))
+        return any(abs(value - bound) <= 1e-6 * abs(bound) for bound in bounds)
+
     def slope(self, value: float) -> float:
         """d value / d q, to carry a standard deviation from the coordinate to the value."""
         return value if self.logarithmic else self.scale

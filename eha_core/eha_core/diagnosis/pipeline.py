@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.balance import balances, least
 from eha_core.diagnosis.calibrate import calibrate_but_for_the_ends
 from eha_core.diagnosis.conclude import conclude
+from eha_core.diagnosis.criteria import chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
@@ -28,7 +30,22 @@ Progress = Callable[[str], None]
 
 
 def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
-    """Run the stages up to the decision. Raises RecordingError where a recording cannot be used."""
+    """Run the stages up to the decision; once more without the bounds that the model found rests on.
+
+    How far a nominal value is believed must not decide which physics is named. Raises RecordingError where a recording
+    cannot be used.
+    """
+    evidence = _examine(recordings, model, progress)
+    bounds = evidence.decision.winner.fit.held_by_belief() - model.unknown
+    if not bounds:
+        return evidence
+    progress(f"once more: {', '.join(sorted(bounds))} went as far as believed of it")
+    again = _examine(recordings, replace(model, unknown=model.unknown | bounds), progress)
+    gain = evidence.decision.winner.fit.objective - again.decision.winner.fit.objective
+    return again if gain > chance_gain(again.calibration.problem.count(), again.tournament.scatter) else evidence
+
+
+def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:
     progress("reading and aligning")
     seen = [observe(recording) for recording in recordings]
     check_alike(seen)

@@ -1,0 +1,35 @@
+"""How far a nominal value is believed decides no physics."""
+
+from __future__ import annotations
+
+import pytest
+from made import recorded
+
+from eha_core.diagnosis import diagnose_together
+from eha_core.diagnosis.freedom import NOMINAL_TRUST, nominal_freedom
+from eha_core.nominal import NominalModel
+from eha_core.parameters import nominal_values
+
+RIG = {"damping_coefficient": 20.0 * nominal_values()["damping_coefficient"], "coulomb_friction.force": 200.0}
+
+
+def test_an_unknown_value_may_go_a_thousandfold():
+    name = "damping_coefficient"
+    known, unknown = (
+        next(one for one in nominal_freedom(nominal_values(), "voltage", 0.01, names) if one.name == name)
+        for names in ((), (name,))
+    )
+    assert known.upper / known.reference == pytest.approx(NOMINAL_TRUST[name].reach)
+    assert unknown.upper / unknown.reference == pytest.approx(1000.0)
+    assert unknown.trust > 2.0 * known.trust
+
+
+@pytest.mark.timeout(400)
+@pytest.mark.parametrize("unknown", [(), ("damping_coefficient",)], ids=["believed", "said to be unknown"])
+def test_damping_far_from_its_guess_is_found_and_the_friction_beside_it(unknown):
+    found = diagnose_together([recorded(RIG, duration=5.0)], NominalModel(nominal_values(), frozenset(unknown)))
+    assert [effect.id for effect in found.effects] == ["coulomb_friction"]
+    damping = next(one for one in found.parameters if one.name == "damping_coefficient")
+    assert damping.fitted == pytest.approx(RIG["damping_coefficient"], rel=0.02)
+    assert not damping.at_bound
+    assert found.explained.complete
