@@ -7,9 +7,9 @@ from pathlib import Path
 from textwrap import wrap
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, Location, NamedEffect
+from eha_core.quantities import quantity, scale_for, short, within
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.each_recording import each_recording
-from eha_core.report.quantities import quantity, scale_for, short, within
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
 _INDENT = 13

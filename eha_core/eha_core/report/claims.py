@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from eha_core.diagnosis.result import ChannelFit, Diagnosis
+from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import quantity
 from eha_core.report.wording import channel_title, listed
 
 NOISE_ALONE = 1.1

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from eha_core.diagnosis.result import Diagnosis, TestedRecording
 from eha_core.parameters import catalogue
+from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import quantity
 from eha_core.report.wording import channel_title
 
 MODELS = ("nominal", "recalibrated", "augmented")

@@ -7,8 +7,8 @@ from importlib import import_module
 
 from eha_core.diagnosis.result import Diagnosis, NamedEffect
 from eha_core.effects import SITES
+from eha_core.quantities import quantity, within
 from eha_core.report.claims import improvement
-from eha_core.report.quantities import quantity, within
 from eha_core.report.stage import SURE
 from eha_core.report.wording import (
     VERDICT_TITLES,

@@ -6,11 +6,11 @@ import numpy as np
 
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.laws import Law, laws
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture, Ribbon
-from eha_core.report.quantities import quantity, scale_for
 from eha_core.report.series import spread, thinned
 from eha_core.report.stage import adds_physics
 from eha_core.report.wording import capital, channel_title

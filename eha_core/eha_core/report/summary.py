@@ -10,8 +10,8 @@ from pathlib import Path
 from textwrap import wrap
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import scale_for, short
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import scale_for, short
 from eha_core.report.stage import SURE, Table
 from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, sentence
 

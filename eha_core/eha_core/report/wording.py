@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from math import isfinite
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import quantity
 
 VERDICT_TITLES = {
     "consistent": "Nothing is missing",

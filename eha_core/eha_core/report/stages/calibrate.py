@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter
+from eha_core.quantities import quantity, with_deviation
 from eha_core.report.picture import Group, Intervals, Panel, Picture
-from eha_core.report.quantities import quantity, with_deviation
 from eha_core.report.stage import SURE, Stage, Table
 from eha_core.report.wording import listed, sentence, told_errors, words
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.effects import SITES
+from eha_core.quantities import interval, scale_for, with_deviation
 from eha_core.report.finding import effects_listed
 from eha_core.report.picture import LABELS, Dots, Group, Intervals, Panel, Picture
-from eha_core.report.quantities import interval, scale_for, with_deviation
 from eha_core.report.series import spread, strongest_dependence
 from eha_core.report.stage import SURE, Stage, Table
 from eha_core.report.stages.locate import NOISE

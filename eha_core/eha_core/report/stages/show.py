@@ -6,10 +6,10 @@ import numpy as np
 
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import Scale, quantity, scale_for, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import improvement, left_over
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture
-from eha_core.report.quantities import Scale, quantity, scale_for, short
 from eha_core.report.series import autocorrelation, pieces, spread
 from eha_core.report.stage import Stage, Table, adds_physics, judged_spans
 from eha_core.report.wording import capital, channel_title

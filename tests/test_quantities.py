@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from eha_core.report.quantities import quantity, unit_text, with_deviation
+from eha_core.quantities import quantity, unit_text, with_deviation
 
 
 @pytest.mark.parametrize(
