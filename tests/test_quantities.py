@@ -57,6 +57,7 @@ def test_digits_are_those_that_the_deviation_deserves(value: float, deviation: f
 def test_powers_in_units_are_raised_and_pure_numbers_have_none() -> None:
     assert unit_text("N s^2/m^2") == "N s²/m²"
     assert unit_text("-") == ""
+    assert unit_text("m^(5/2) kg^(-1/2)") == "m²√(m/kg)"
 
 
 def test_a_format_string_shows_a_value_in_a_readable_unit() -> None:

@@ -54,6 +54,8 @@ def scale_for(unit: str, magnitude: float) -> Scale:
 
 def unit_text(unit: str) -> str:
     """A unit with whole powers raised: m^3/(s Pa) as m³/(s Pa); nothing for the unit of pure numbers."""
+    if unit == "m^(5/2) kg^(-1/2)":
+        return "m²√(m/kg)"
     return "" if unit == "-" else re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit)
 
 

@@ -3,9 +3,28 @@
 const touch = window.matchMedia("(pointer: coarse)").matches;
 const plots = [...document.querySelectorAll(".plot")];
 
+// On a narrow plot, long names of rows and axes take two lines.
+function inTwoLines(text) {
+  if (text.length < 17 || text.includes("<br>")) return text;
+  const spaces = [...text.matchAll(/ /g)].map((found) => found.index);
+  if (!spaces.length) return text;
+  const middle = spaces.reduce((best, at) => (Math.abs(at - text.length / 2) < Math.abs(best - text.length / 2) ? at : best));
+  return `${text.slice(0, middle)}<br>${text.slice(middle + 1)}`;
+}
+
+function narrowed(layout) {
+  for (const key of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
+    const axis = layout[key];
+    if (key[0] === "y" && axis.ticktext) axis.ticktext = axis.ticktext.map(inTwoLines);
+    if (key[0] === "y" && axis.ticktext) axis.tickfont = { size: 10 };
+    if (key[0] === "x" && axis.title.text.length > 24) axis.title.text = inTwoLines(axis.title.text);
+  }
+}
+
 for (const place of plots) {
   const { data, layout } = JSON.parse(place.querySelector("script").textContent);
   layout.autosize = true;
+  if (place.clientWidth < 420) narrowed(layout);
   layout.dragmode = touch ? false : "zoom"; // a finger on a plot scrolls the page
   Plotly.newPlot(place, data, layout, {
     responsive: true,

@@ -7,6 +7,7 @@ import numpy as np
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.tournament import ENOUGH, TIE
 from eha_core.effects import effects
+from eha_core.report.finding import IN_A_SENTENCE, counted, names_listed
 from eha_core.report.picture import Bars, Group, Panel, Picture, Upright
 from eha_core.report.stage import Stage, adds_physics
 from eha_core.report.wording import effect_title, listed
@@ -42,7 +43,12 @@ def named(effects: tuple[str, ...]) -> str:
 
 
 def _headline(diagnosis: Diagnosis) -> str:
-    winner = named(tuple(one.id for one in diagnosis.effects))
+    count = len(diagnosis.effects)
+    winner = (
+        named(tuple(one.id for one in diagnosis.effects))
+        if count <= IN_A_SENTENCE
+        else f"{counted(count)} effects together: {names_listed(diagnosis)}"
+    )
     return {
         "consistent": "Nothing needs to be added to the model",
         "parameters": "Other parameter values suffice; no physics has to be added",
@@ -52,16 +58,27 @@ def _headline(diagnosis: Diagnosis) -> str:
     }[diagnosis.verdict]
 
 
+def _rung(effects: set[str], chosen: set[str]) -> str:
+    """A hypothesis by its effects; a large set by how it differs from the one that was named."""
+    if len(effects) <= IN_A_SENTENCE:
+        return named(tuple(sorted(effects)))
+    if effects == chosen:
+        return f"the {counted(len(chosen))} named effects"
+    lacks = [f"without {effect_title(one)}" for one in sorted(chosen - effects)]
+    more = [f"with {effect_title(one)}" for one in sorted(effects - chosen)]
+    return f"the named effects {listed([*lacks, *more])}" if chosen & effects else named(tuple(sorted(effects)))
+
+
 def _picture(diagnosis: Diagnosis) -> Picture:
     """How far each hypothesis is behind the best, on a logarithmic axis; the model that adds nothing is among them."""
     best = float(diagnosis.rivals[0][1])
-    ranked = [(named(effects), set(effects), score) for effects, score in diagnosis.rivals[:SHOWN]]
+    chosen = {one.id for one in diagnosis.effects}
+    ranked = [(_rung(set(effects), chosen), set(effects), score) for effects, score in diagnosis.rivals[:SHOWN]]
     if all(effects for _, effects, _ in ranked):
         ranked.append((NULL, set(), 0.0))
     ranked.sort(key=lambda one: -one[2])
     top = max(best, 0.0)
     behind = np.array([top - score for _, _, score in ranked])
-    chosen = {one.id for one in diagnosis.effects}
     tied = [set(one.effects) for one in diagnosis.alternatives]
     roles = tuple(
         "after" if effects == chosen else "calibrated" if effects in tied else "other" for _, effects, _ in ranked
