@@ -105,7 +105,7 @@ def _draw(axes: Any, panel: Panel, last: bool) -> None:
     axes.spines[["left", "bottom"]].set_color("#c9d1d7")
     axes.tick_params(colors="#5c6b78", labelsize=8, length=0, labelbottom=last)
     if panel.names:
-        axes.set_yticks(range(len(panel.names)), [name.replace(" + ", " +\n") for name in panel.names])
+        axes.set_yticks(range(len(panel.names)), [name.replace(" + ", " +\n") for name in panel.row_labels])
         axes.set_ylim(len(panel.names) - 0.4, -0.6)
     for mark in panel.marks:
         _mark(axes, mark)
@@ -162,7 +162,7 @@ def _cells(axes: Any, mark: Cells) -> None:
     shades = LinearSegmentedColormap.from_list("cells", [COLOURS["before"], "#ffffff", COLOURS["after"]])
     shown = axes.imshow(mark.values, cmap=shades, vmin=mark.low, vmax=mark.high, aspect="auto")
     axes.grid(visible=False)
-    axes.set_xticks(range(len(mark.names)), mark.names, rotation=90)
+    axes.set_xticks(range(len(mark.names)), [str(place + 1) for place in range(len(mark.names))])
     axes.figure.colorbar(shown, ax=axes, shrink=0.6)
 
 

@@ -153,6 +153,12 @@ class Panel:
         """The rows' names, where the panel has rows."""
         return next((mark.names for mark in self.marks if isinstance(mark, (Intervals, Bars, Cells))), ())
 
+    @property
+    def row_labels(self) -> tuple[str, ...]:
+        """The names as they stand beside the rows: numbered where the columns have no more room than a number's."""
+        numbered = any(isinstance(mark, Cells) for mark in self.marks)
+        return tuple(f"{name}  {place}" if numbered else name for place, name in enumerate(self.names, start=1))
+
 
 @dataclass(frozen=True)
 class Group:

@@ -93,7 +93,8 @@ def _across(panel: Panel, suffix: str, last: bool) -> Drawing:
         axis["range"] = panel.x_range
     if any(isinstance(mark, Cells) for mark in panel.marks):
         places = list(range(len(panel.names)))
-        axis |= {"tickvals": places, "ticktext": panel.names, "tickangle": 90, "automargin": True, "showgrid": False}
+        numbers = [str(place + 1) for place in places]
+        axis |= {"tickvals": places, "ticktext": numbers, "tickangle": 0, "showgrid": False}
     if panel.x_ticks:
         axis |= {
             "tickvals": [place for place, _ in panel.x_ticks],
@@ -110,7 +111,7 @@ def _up(panel: Panel, suffix: str, domain: tuple[float, float]) -> Drawing:
     if panel.names:
         axis |= {
             "tickvals": list(range(len(panel.names))),
-            "ticktext": [name.replace(" + ", " +<br>") for name in panel.names],
+            "ticktext": [name.replace(" + ", " +<br>") for name in panel.row_labels],
             "range": (len(panel.names) - 0.4, -0.6),
             "showgrid": False,
             "zeroline": False,

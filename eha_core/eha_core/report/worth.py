@@ -84,7 +84,7 @@ def effect_table(diagnosis: Diagnosis) -> Table:
         rows.append(tuple(row))
     headings: tuple[str, ...] = ("missing effect", "value (95 % interval)", "where")
     if diagnosis.without:
-        headings += ("left with it added [× noise]", "left without it [× noise]")
+        headings += ("left with it [× noise]", "left without it [× noise]")
     return Table(headings, tuple(rows), "What is missing, what explains most first")
 
 

@@ -34,8 +34,8 @@ WITHOUT = "It was read off the balances of measured channels; the simulation goe
 
 LAW_HEIGHT = 240  # pixels
 
-CELL, LABELS_BELOW = 20, 170
-"""Pixels of a row of correlations, and of the names below them."""
+CELL = 22
+"""Pixels of a row of correlations."""
 
 TOLD_TOGETHER = 0.9
 """Correlation from which two parameters are said to be told only together (a common rule of thumb)."""
@@ -87,13 +87,13 @@ def correlations(diagnosis: Diagnosis) -> Picture | None:
     if len(names) < 2:
         return None
     titles = tuple(_parameter_title(name) for name in names)
-    panel = Panel((Cells(titles, np.array(matrix), -1.0, 1.0),), height=LABELS_BELOW + CELL * len(names))
+    panel = Panel((Cells(titles, np.array(matrix), -1.0, 1.0),), height=CELL * len(names))
     caption = (
         "Correlation of the fitted parameters' errors. Near 1 or -1, this recording tells only a combination of the"
         " two, and either may be wrong with the other."
     )
     return Picture(
-        "5-model-correlation", (Group((panel,)),), title="Which parameters are told together", caption=caption
+        "5-model-correlation", (Group((panel,)),), title="Which parameters are told only together", caption=caption
     )
 
 

@@ -17,6 +17,8 @@ SHOWN = 12
 STUB = 1.6
 """How long the bar of what is not behind at all is drawn, as a factor on the logarithmic axis."""
 
+MILLION = 1e6
+
 NULL = "nothing added (recalibrated model)"
 
 
@@ -83,15 +85,15 @@ def _picture(diagnosis: Diagnosis) -> Picture:
     roles = tuple(
         "after" if effects == chosen else "calibrated" if effects in tied else "other" for _, effects, _ in ranked
     )
-    texts = tuple("best" if one <= 0.0 else f"{one:,.0f} behind" for one in behind)
+    texts = tuple("best" if one <= 0.0 else f"{_large(one)} behind" for one in behind)
     rungs = Bars(tuple(name for name, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
     decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
-    ticks = tuple((exponent + np.log10(STUB), f"{10**exponent:,}") for exponent in decades)
+    ticks = tuple((exponent + np.log10(STUB), _large(10**exponent)) for exponent in decades)
     panel = Panel(
         (Upright(float(np.log10(TIE * STUB)), "told apart"), rungs),
         "evidence behind the best (log scale)",
         height=50 + 30 * len(ranked),
-        x_range=(0.0, 1.3 * (decades[-1] + np.log10(STUB))),
+        x_range=(0.0, 1.45 * (decades[-1] + np.log10(STUB))),
         x_ticks=ticks,
     )
     caption = (
@@ -100,6 +102,10 @@ def _picture(diagnosis: Diagnosis) -> Picture:
         f" from it. {_screened(diagnosis)}"
     )
     return Picture("4-name", (Group((panel,)),), caption=caption)
+
+
+def _large(value: float) -> str:
+    return f"{value:,.0f}" if value < MILLION else f"{value / MILLION:.3g} million"
 
 
 def _screened(diagnosis: Diagnosis) -> str:

@@ -99,7 +99,7 @@ def _whole(diagnosis: Diagnosis, name: str) -> Group:
     return Group(
         (
             Panel(tuple(values), "time [s]", scale.unit, title, 170),
-            Panel(tuple(left), "time [s]", fine.unit, f"{title}: measured less modelled", 190),
+            Panel(tuple(left), "time [s]", fine.unit, f"{title}: residual", 190),
         )
     )
 
