@@ -34,9 +34,7 @@ BAGS: dict[str, tuple[str, frozenset[str]]] = {
     "rig_deadband_and_friction.mcap": ("missing_physics", frozenset({"valve_deadband", "coulomb_friction"})),
     "rig_five_effects.mcap": (
         "missing_physics",
-        frozenset(
-            {"coulomb_friction", "valve_deadband", "supply_pressure_droop", "constant_load", "external_leakage"}
-        ),
+        frozenset({"coulomb_friction", "valve_deadband", "supply_pressure_droop", "constant_load", "external_leakage"}),
     ),
     "rig_cut_short.mcap": ("missing_physics", frozenset({"coulomb_friction"})),
 }
