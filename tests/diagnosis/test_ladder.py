@@ -14,6 +14,7 @@ from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.search.candidates import Candidate, with_effects
 from eha_core.effects import effects
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 LAWS = {effect.id: effect for effect in effects()}
@@ -24,13 +25,13 @@ PLANTED = {"constant_load.force": 60.0, "valve_deadband.half_width": 2e-4}
 def evidence():
     """A rig with a small load and a large overlap, with the fit of both."""
     observation = observe(recorded(PLANTED, duration=4.0))
-    calibration = calibrate(observation, nominal_values(), 2e-4)
+    calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
     chosen = [LAWS[name.partition(".")[0]] for name in PLANTED]
     begun = {**nominal_values(), **PLANTED}
     free = with_effects(calibration.fitted.free, chosen, begun)
     found = fit(calibration.problem, begun, free, iterations=15)
     return SimpleNamespace(
-        observation=observation,
+        observations=(observation,),
         nominal=nominal_values(),
         calibration=calibration,
         tournament=SimpleNamespace(nominal=Candidate(NOTHING, calibration.fitted), entries=()),
