@@ -27,7 +27,7 @@ def page(diagnosis: Diagnosis, contents: Contents | None = None) -> str:
     """The whole page as text."""
     contents = contents or contents_of(diagnosis)
     template = Template((files("eha_core.report") / "page.html").read_text(encoding="utf-8"))
-    summary = effect_table(diagnosis) if diagnosis.effects else None
+    summary = effect_table(diagnosis) if len(diagnosis.effects) > 1 else None
     return template.substitute(
         title=escape(f"Diagnosis of {Path(diagnosis.path).name}"),
         style=(files("eha_core.report") / "page.css").read_text(encoding="utf-8"),

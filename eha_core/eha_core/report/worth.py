@@ -45,12 +45,12 @@ def ladder_picture(diagnosis: Diagnosis) -> Picture | None:
         rest = [(f"without {effect_title(one)}", diagnosis.without[one], "other") for one in ids]
         groups.append(Group((_bars([*rest, whole], top, "Each left out in turn"),)))
     caption = (
-        "RMS of what each model leaves over the noise, all channels together. Every model is fitted again. The axis"
-        f" begins at the noise. Dotted: {LEFT_IN_A_CHANNEL:g} times the noise; an explanation counts as complete if"
-        " every channel is below that and what is left is white."
+        "RMS of what each model leaves over the noise, all channels together. All but the nominal model are fitted. The"
+        f" axis begins at the noise. Dotted: {LEFT_IN_A_CHANNEL:g} times the noise; an explanation counts as complete"
+        " if every channel is below that and what is left is white."
     )
     title = "What is left, from the nominal model to the noise"
-    return Picture("0-ladder", tuple(groups), (1,) * len(groups), title, caption)
+    return Picture("0-ladder", tuple(groups), (1, 1), title, caption)
 
 
 def _bars(rows: Sequence[tuple[str, Residual, str]], top: float, title: str) -> Panel:

@@ -9,6 +9,7 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import Scale, quantity, scale_for, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import improvement, left_over
+from eha_core.report.each_recording import recording_tables
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture
 from eha_core.report.series import autocorrelation, pieces, spread
 from eha_core.report.stage import Stage, Table, adds_physics, judged_spans
@@ -29,7 +30,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
         left_over(diagnosis),
         sentences,
         (_overlays(diagnosis), _whiteness(diagnosis), *_over_input(diagnosis)),
-        (error_table(diagnosis), *prediction_table(diagnosis)),
+        (error_table(diagnosis), *recording_tables(diagnosis), *prediction_table(diagnosis)),
     )
 
 
