@@ -30,6 +30,26 @@ def test_the_actuator_s_packages_bear_one_version() -> None:
         assert re.search(rf'^\s*version ?= ?"{re.escape(here)}"', (ROOT / path).read_text(), re.MULTILINE), path
 
 
+def test_help_names_every_verb_and_imports_nothing_heavy() -> None:
+    code = (
+        "import sys; from eha_core.cli import main\n"
+        "try: main(['--help'])\n"
+        "finally: print(sorted({'numpy', 'numba', 'scipy', 'matplotlib', 'plotly'} & set(sys.modules)))"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert out.rstrip().endswith("[]")
+    for verb in verbs():
+        assert re.search(rf"^ +{verb} +[a-z]+ ", out, re.MULTILINE), verb
+
+
+def test_what_is_neither_verb_nor_option_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    for word in ("--nonsense", "-x", "--"):
+        with pytest.raises(SystemExit) as ended:
+            main([word])
+        assert ended.value.code == 2
+        assert "see `eha --help`" in capsys.readouterr().err
+
+
 def test_a_word_that_is_nearly_a_verb_is_answered_with_it(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["diagnos"])

@@ -9,9 +9,10 @@ import pytest
 
 from eha_core.errors import EhaError
 from eha_core.exam.files import read_answer
+from eha_core.exam.page import as_html
 from eha_core.exam.sitting import Exam, open_answers, run_tool, sit
 from eha_core.exam.summary import summarise
-from eha_core.exam.tables import as_html, as_json, as_markdown
+from eha_core.exam.tables import as_json, as_markdown
 from eha_core.recording import read_recording
 from eha_core.workers import Workers
 
@@ -65,8 +66,8 @@ def test_known_answers_get_the_marks_they_deserve(exam: Exam, tools: dict[str, s
     table = as_markdown(summaries, {"seed": 5})
     assert "| null_parameters | silent | 2 | 2/2 = 100.0 % (34.2 to 100.0) |" in table
     assert json.loads(as_json(summaries, marks, {}))["tools"]["loud"]["marks"][0]["named"] == ["coulomb_friction"]
-    page = as_html(summaries, {}, {marks["loud"][0].name: "lost/page.html"})
-    assert page.count('href="lost/page.html"') == 2  # lost by `loud` and by `broken`
+    page = as_html(summaries, marks, {}, {marks["silent"][0].name: "lost/page.html"})
+    assert page.count('href="lost/page.html"') == 1  # reports are of the first tool's diagnoses
 
 
 def test_recordings_say_nothing_of_what_is_concealed(exam: Exam, tools: dict[str, str]) -> None:

@@ -10,6 +10,7 @@ from recordings import ATMOSPHERE, SECOND, START, header, piston_recording, writ
 
 from eha_core.errors import RecordingError
 from eha_core.recording import RecordingWriter, read_recording
+from eha_core.recording.channel_rules import ChannelRule, TopicsFile
 
 FLOAT = "std_msgs/msg/Float64"
 PRESSURE = "sensor_msgs/msg/FluidPressure"
@@ -193,9 +194,19 @@ def test_disorder_is_left_out_and_counted(tmp_path: Path) -> None:
         "position (/joint_states): 1 samples that are no finite number were left out",
         "position (/joint_states): 1 samples with the stamp of the one before were left out",
         "position (/joint_states): 1 samples were left out because time runs backwards there",
-        "velocity (/joint_states): no values were recorded",
-        "force (/joint_states): no values were recorded",
     )
+
+
+def test_a_joint_without_speed_and_force_is_complete_unless_they_were_asked_for(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    with RecordingWriter(path) as writer:
+        for k in range(4):
+            writer.write_fields(
+                "/joint_states", JOINTS, {"header": header(START + k * SECOND), "position": [0.1]}, START
+            )
+    assert read_recording(path).remarks == ()
+    asked = TopicsFile({"velocity": ChannelRule("/joint_states", "velocity[0]")})
+    assert "velocity (/joint_states): no values were recorded" in read_recording(path, asked).remarks
 
 
 def test_the_simulators_truth_is_not_read_as_a_measurement(tmp_path: Path) -> None:

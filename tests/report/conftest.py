@@ -11,6 +11,7 @@ import pytest
 from eha_core.diagnosis.result import (
     Alternative,
     ChannelFit,
+    Correlation,
     Diagnosis,
     Experiment,
     FittedParameter,
@@ -18,6 +19,8 @@ from eha_core.diagnosis.result import (
     Location,
     NamedEffect,
     Pictures,
+    Residual,
+    Step,
     UnknownLaw,
 )
 from eha_core.plant import Plant
@@ -117,6 +120,47 @@ def ambiguous(friction: Diagnosis) -> Diagnosis:
     )
 
 
+def residual(position: float, pressure: float) -> Residual:
+    """Position and both pressures, as many samples of each."""
+    overall = float(np.sqrt((position**2 + 2.0 * pressure**2) / 3.0))
+    return Residual({"position": position, "pressure_a": pressure, "pressure_b": pressure}, overall)
+
+
+@pytest.fixture(scope="session")
+def several(friction: Diagnosis) -> Diagnosis:
+    """Three effects, with what each is worth; the overlap's edge is not told from a sharp one."""
+    overlap = {"half_width": FittedValue(5.96e-5, 4.3e-7, "A"), "rounding": FittedValue(0.0, 3.2e-5, "A")}
+    effects = (
+        NamedEffect("valve_deadband", "orifice", "opening = ...", overlap, 9000.0, "the lands overlap: 59.6 µA"),
+        *friction.effects,
+        NamedEffect(
+            "constant_load",
+            "force",
+            "M_p x_p'' = ... - force",
+            {"force": FittedValue(-76.4, 0.52, "N")},
+            700.0,
+            "a steady load of 76.4 N pushes towards extension",
+        ),
+    )
+    steps = (
+        Step("nominal", residual(300.0, 160.0)),
+        Step("recalibrated", residual(46.0, 54.0)),
+        Step("valve_deadband", residual(25.0, 17.0)),
+        Step("coulomb_friction", residual(6.0, 5.0)),
+        Step("constant_load", residual(1.0, 1.0)),
+    )
+    without = {
+        "valve_deadband": residual(30.0, 31.0),
+        "coulomb_friction": residual(9.0, 8.0),
+        "constant_load": residual(6.0, 5.0),
+    }
+    told = Correlation(
+        ("valve_gain", "valve_deadband.half_width", "constant_load.force"),
+        ((1.0, 0.95, 0.1), (0.95, 1.0, -0.2), (0.1, -0.2, 1.0)),
+    )
+    return replace(friction, effects=effects, steps=steps, without=without, correlation=told)
+
+
 @pytest.fixture(scope="session")
 def unknown(friction: Diagnosis) -> Diagnosis:
     """A law outside the catalogue, recovered as a curve."""
@@ -156,7 +200,7 @@ def position_alone(friction: Diagnosis) -> Diagnosis:
     )  # fmt: skip
 
 
-@pytest.fixture(params=["friction", "ambiguous", "unknown", "consistent", "position_alone"])
+@pytest.fixture(params=["friction", "several", "ambiguous", "unknown", "consistent", "position_alone"])
 def any_diagnosis(request: pytest.FixtureRequest) -> Diagnosis:
     """Each kind of diagnosis in turn."""
     return request.getfixturevalue(request.param)

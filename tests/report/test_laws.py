@@ -11,7 +11,12 @@ import pytest
 
 from eha_core.diagnosis.result import Diagnosis, FittedValue, NamedEffect
 from eha_core.effects import effects
-from eha_core.report.laws import Law, laws
+from eha_core.report.laws import Law
+from eha_core.report.laws import laws as laws_by_effect
+
+
+def laws(diagnosis: Diagnosis) -> tuple[Law, ...]:
+    return tuple(laws_by_effect(diagnosis).values())
 
 
 def named(identifier: str, values: dict[str, float], std: float = 0.0) -> NamedEffect:

@@ -18,12 +18,12 @@ from matplotlib.image import imread
 import eha_core
 from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis, Pictures
+from eha_core.quantities import quantity
 from eha_core.report.figures import write_figures
 from eha_core.report.first_screen import law_picture, pictures
 from eha_core.report.html import page
 from eha_core.report.picture import Bars, Upright
 from eha_core.report.provenance import with_provenance
-from eha_core.report.quantities import quantity
 from eha_core.report.stages import story
 
 ORDER = ["read", "calibrate", "locate", "name", "model", "show", "next"]

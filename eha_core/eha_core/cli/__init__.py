@@ -8,11 +8,12 @@ A verb's module offers `add_parser(subparsers)`, which adds the verb under the m
 from __future__ import annotations
 
 import argparse
+import ast
 import os
 import pkgutil
 import sys
 from collections.abc import Sequence
-from importlib import import_module
+from importlib import import_module, resources
 from typing import NoReturn
 
 from eha_core.errors import EhaError, remedy
@@ -37,6 +38,15 @@ def verbs() -> list[str]:
     return sorted(module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_"))
 
 
+def _list_verbs(parser: argparse.ArgumentParser, known: Sequence[str]) -> None:
+    """Give each verb with the first sentence of its module, which is read and not imported: that takes no time."""
+    subparsers = parser.add_subparsers(dest="verb", metavar="VERB")
+    for verb in known:
+        source = resources.files(__name__).joinpath(f"{verb}.py").read_text(encoding="utf-8")
+        sentence = (ast.get_docstring(ast.parse(source)) or "").partition(": ")[2]
+        subparsers.add_parser(verb, help=" ".join(sentence.partition(".")[0].split()))
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status; `words` defaults to those of the process."""
     words = sys.argv[1:] if words is None else words
@@ -48,6 +58,10 @@ def main(words: Sequence[str] | None = None) -> int:
     if not completing and (not words or not (words[0].startswith("-") or words[0] in known)):
         choice = f"choose {', '.join(known)}"
         parser.error(f"{words[0]!r} is no verb; {remedy(words[0], known, choice)}" if words else choice)
+    if words and words[0].startswith("-") and not completing:
+        _list_verbs(parser, known)
+        parser.parse_args(words)
+        parser.error(f"{words[0]!r} is no verb; choose {', '.join(known)}")
     # A verb that is named is the only one imported: others may load compilers and plotting.
     typed = os.environ.get("COMP_LINE", "").split()[1:2] if completing else words[:1]
     wanted = typed if typed and typed[0] in known else known

@@ -56,10 +56,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb; the exit status says whether --require was met."""
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
+    from eha_core.exam.page import as_html
     from eha_core.exam.real import show_bags, show_emps
     from eha_core.exam.sitting import Exam, report_lost, sit
     from eha_core.exam.summary import summarise
-    from eha_core.exam.tables import as_html, as_json, as_markdown
+    from eha_core.exam.tables import as_json, as_markdown
 
     if arguments.cases < 1 or arguments.jobs < 1:
         raise EhaError(f"--cases {arguments.cases} --jobs {arguments.jobs}: give 1 or more of each")
@@ -80,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name, text in (
         ("table.md", as_markdown(summaries, about, shown)),
         ("table.json", as_json(summaries, marks, about, shown)),
-        ("table.html", as_html(summaries, about, reports, shown)),
+        ("table.html", as_html(summaries, marks, about, reports, shown)),
     ):
         (exam.folder / name).write_text(text, encoding="utf-8")
     for summary in summaries:

@@ -15,6 +15,7 @@ from eha_core.diagnosis.experiment import propose
 from eha_core.diagnosis.explained import explained, predictions
 from eha_core.diagnosis.fit import Fit, fit, with_noise
 from eha_core.diagnosis.intervals import with_residual
+from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.locate import stated
@@ -67,7 +68,10 @@ def conclude(
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     recording = recordings[evidence.lead - 1]
+    steps, without = ladder(replace(evidence, decision=decision), final)
+    order = [one.added for one in steps]
     effects = () if decision.verdict == "unknown_physics" else _named(decision.winner, final)
+    effects = tuple(sorted(effects, key=lambda one: order.index(one.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
         path=str(recording.path),
@@ -99,6 +103,9 @@ def conclude(
         ),
         together=fitted_recordings(evidence, final, held_out),
         tests=tested_recordings(evidence, final, tests),
+        steps=steps,
+        without=without,
+        correlation=correlation(final),
     )
 
 

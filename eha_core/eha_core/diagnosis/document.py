@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eha_core.diagnosis.result import ChannelFit, Diagnosis, NamedEffect, Prediction
+from eha_core.diagnosis.result import ChannelFit, Diagnosis, NamedEffect, Prediction, Residual
 
 SCHEMA = "eha.diagnosis/1"
 
@@ -60,6 +60,9 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
                 }
                 for one in diagnosis.tests
             ],
+            "steps": [{"added": one.added, **_residual(one.residual)} for one in diagnosis.steps],
+            "without": {name: _residual(one) for name, one in diagnosis.without.items()},
+            "correlation": _row(diagnosis.correlation, ("names", "matrix")),
         }
     )
     return plain
@@ -97,6 +100,10 @@ def _predictions(channels: Mapping[str, Prediction]) -> dict[str, Any]:
 def _fits(fits: Mapping[str, ChannelFit]) -> dict[str, Any]:
     names = ("rmse_before", "rmse_calibrated", "rmse_after", "noise")
     return {channel: _row(one, names) for channel, one in fits.items()}
+
+
+def _residual(one: Residual) -> dict[str, Any]:
+    return _rows([one], ("times_noise", "overall"))[0]
 
 
 def _plain(value: Any) -> Any:

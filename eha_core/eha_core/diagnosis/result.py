@@ -81,6 +81,37 @@ class Explained:
 
 
 @dataclass(frozen=True)
+class Residual:
+    """What a model leaves: the RMS of its residual over the noise, of each channel and of all samples together."""
+
+    times_noise: Mapping[str, float]
+    overall: float
+
+
+@dataclass(frozen=True)
+class Step:
+    """A model between the nominal one and the whole set, fitted on its own, and what it leaves.
+
+    `added` is what it has beyond the step before: NOMINAL, RECALIBRATED, then the id of an effect.
+    """
+
+    added: str
+    residual: Residual
+
+
+NOMINAL, RECALIBRATED = "nominal", "recalibrated"
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """How the errors of the final model's fitted parameters depend on each other: coefficients from -1 to 1, (n, n) for
+    n `names`. Near 1 or -1, the recording tells the two only together."""
+
+    names: tuple[str, ...] = ()
+    matrix: tuple[tuple[float, ...], ...] = ()
+
+
+@dataclass(frozen=True)
 class Prediction:
     """RMSE [the channel's unit] of the fitted model where no state was fitted.
 
@@ -189,7 +220,8 @@ class Diagnosis:
     `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
     calibrated model, less the cost of its freedom. `whiteness` is each channel's largest autocorrelation in units of
     the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
-    what, when, as text.
+    what, when, as text. `steps` lead from the nominal model to the whole set, which adds `effects` in their order;
+    `without` has what the set leaves when one of several effects is taken out and the rest fitted again.
     """
 
     path: str
@@ -218,6 +250,9 @@ class Diagnosis:
     provenance: Mapping[str, str] = field(default_factory=dict)
     together: tuple[RecordingFit, ...] = ()
     tests: tuple[TestedRecording, ...] = ()
+    steps: tuple[Step, ...] = ()
+    without: Mapping[str, Residual] = field(default_factory=dict)
+    correlation: Correlation = Correlation()
 
     @property
     def bent(self) -> bool:

@@ -13,7 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="command",
-    statement="the valve acts late: the command reaches the coil {delay:.4g} s after it was given",
+    statement="the valve acts late: the command reaches the coil {delay:4} after it was given",
     equation="L_c I' = V(t - delay) - R_c I",
     parameters=(
         Parameter(

@@ -13,7 +13,8 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="force",
-    statement="a steady load of {force:.4g} N pushes against extension",
+    statement="a steady load of {force:4} pushes against extension",
+    opposite="a steady load of {force:4} pushes towards extension",
     equation="M_p x_p'' = ... - force",
     parameters=(
         Parameter(

@@ -16,7 +16,7 @@ EFFECT = Effect(
     site="force",
     kind="dry friction",
     approximate=True,
-    statement="the seals rub: {force:.4g} N of dry friction opposes motion and holds the piston at rest",
+    statement="the seals rub: {force:4} of dry friction opposes motion and holds the piston at rest",
     equation="M_p x_p'' = ... - force sign(x_p')",
     parameters=(
         Parameter(

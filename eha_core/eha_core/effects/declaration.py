@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from eha_core.parameter import Parameter
+from eha_core.quantities import Quantity
 
 MEMORY_STARTS = ("zero", "current", "position", "velocity")
 """What a memory slot of an effect can hold when the effect begins to act."""
@@ -18,7 +19,8 @@ class Effect:
     """One physical effect that the nominal equations leave out.
 
     `site` is one of `sites.SITES`. `statement` completes the sentence "the recording shows that ..." and may quote
-    parameters by name, in SI units.
+    parameters by name; they are shown in readable units (see `Quantity`). `opposite` is said in its place, of the
+    magnitude, where the first parameter is negative.
     `memory` names what each of the effect's state slots starts from (one of MEMORY_STARTS). `order` ranks effects of
     one site where their sequence matters physically; equal ranks go by id. `needs` lists measured columns without which
     no recording can show the effect. Effects of one `kind` are forms of one law: never two of them are named together.
@@ -37,6 +39,7 @@ class Effect:
     kind: str = ""
     approximate: bool = False
     named: bool = True
+    opposite: str = ""
     id: str = ""
 
     def parameter_names(self) -> tuple[str, ...]:
@@ -48,5 +51,9 @@ class Effect:
         return any(row.switches and values[f"{self.id}.{row.name}"] != row.nominal for row in self.parameters)
 
     def describe(self, values: Mapping[str, float]) -> str:
-        """The statement with the given parameter values (short names) filled in."""
-        return self.statement.format(**values)
+        """The statement with the given parameter values (short names, SI) filled in."""
+        shown = {row.name: Quantity(values[row.name], row.unit) for row in self.parameters if row.name in values}
+        first = self.parameters[0]
+        if self.opposite and values[first.name] < 0.0:
+            return self.opposite.format(**{**shown, first.name: Quantity(-values[first.name], first.unit)})
+        return self.statement.format(**shown)

@@ -15,8 +15,7 @@ from eha_core.parameter import Parameter
 EFFECT = Effect(
     site="force",
     approximate=True,
-    statement="the piston meets a stop: below {lower:.4g} m or above {upper:.4g} m a spring of "
-    "{stiffness:.3g} N/m pushes back",
+    statement="the piston meets a stop: below {lower:4} or above {upper:4} a spring of {stiffness} pushes back",
     equation="M_p x_p'' = ... - stiffness (x_p - limit) - damping x_p' past a limit",
     parameters=(
         Parameter(

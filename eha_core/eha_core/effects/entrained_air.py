@@ -29,7 +29,7 @@ LEAST_PRESSURE = 1e3
 EFFECT = Effect(
     site="chamber",
     approximate=True,
-    statement="the oil carries air: {air_fraction:.3g} of its volume at one atmosphere",
+    statement="the oil carries air: {air_fraction:%} of its volume at one atmosphere",
     equation="1/beta = (L/beta_oil + G/(1.4 P)) / (L + G), L = 1 - air_fraction, G = air_fraction (P_0/P)^(1/1.4)",
     parameters=(
         Parameter(

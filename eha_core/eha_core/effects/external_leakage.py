@@ -13,8 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="chamber",
-    statement="oil leaks to the outside: {coefficient_a:.3g} m^3/(s Pa) from chamber A, {coefficient_b:.3g} "
-    "from chamber B",
+    statement="oil leaks to the outside: {coefficient_a} from chamber A, {coefficient_b} from chamber B",
     equation="q1 += coefficient_a P1, q2 += coefficient_b P2",
     parameters=(
         Parameter(

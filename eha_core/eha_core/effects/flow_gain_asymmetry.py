@@ -14,7 +14,8 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="orifice",
-    statement="the valve's flow gain towards retraction is lower by the ratio {ratio:.3g} than towards extension",
+    statement="the valve's flow gain towards retraction is {ratio:%} lower than towards extension",
+    opposite="the valve's flow gain towards retraction is {ratio:%} higher than towards extension",
     equation="K -> K (1 - ratio) for x_v < 0",
     parameters=(
         Parameter(

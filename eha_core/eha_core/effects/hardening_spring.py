@@ -13,7 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="force",
-    statement="the load is a spring that hardens: {coefficient:.4g} N for each m^3 of displacement cubed",
+    statement="the load is a spring that hardens: {coefficient:4} times its displacement cubed",
     equation="M_p x_p'' = ... - coefficient x_p^3",
     parameters=(
         Parameter(

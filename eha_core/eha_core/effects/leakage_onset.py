@@ -13,7 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="schedule",
-    statement="the piston's seal fails at {time:.4g} s: internal leakage jumps to {internal_leakage:.3g} m^3/(s Pa)",
+    statement="the piston's seal fails at {time:4}: internal leakage jumps to {internal_leakage}",
     equation="K_Lin -> internal_leakage for t >= time",
     parameters=(
         Parameter(

@@ -13,7 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="sensor",
-    statement="the position sensor has a play of {half_width:.3g} m to either side",
+    statement="the position sensor has a play of {half_width} to either side",
     equation="y = min(x_p + half_width, max(x_p - half_width, y before))",
     parameters=(
         Parameter(

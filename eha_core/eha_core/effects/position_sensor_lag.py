@@ -15,7 +15,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="sensor",
-    statement="the position sensor lags: it follows with a time constant of {time_constant:.4g} s",
+    statement="the position sensor lags: it follows with a time constant of {time_constant:4}",
     equation="time_constant y' + y = x_p",
     parameters=(
         Parameter(

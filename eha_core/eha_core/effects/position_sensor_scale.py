@@ -13,7 +13,8 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="sensor",
-    statement="the position sensor reads too long by the ratio {ratio:.3g}",
+    statement="the position sensor reads {ratio:%} too long",
+    opposite="the position sensor reads {ratio:%} too short",
     equation="y = (1 + ratio) x_p",
     parameters=(
         Parameter(

@@ -23,8 +23,8 @@ EFFECT = Effect(
     site="force",
     kind="dry friction",
     approximate=True,
-    statement="the seals cling before they slide: {force:.4g} N of friction ({static_force:.4g} N to break away) "
-    "behind a spring of {stiffness:.3g} N/m",
+    statement="the seals cling before they slide: {force:4} of friction ({static_force:4} to break away) "
+    "behind a spring of {stiffness}",
     equation="F_f = stiffness z + damping z', z' = x_p' - stiffness |x_p'| z / g(x_p')",
     parameters=(
         Parameter(

@@ -13,7 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="sensor",
-    statement="the pressure sensors are off: chamber A's by {bias_a:.3g} Pa, chamber B's by {bias_b:.3g} Pa",
+    statement="the pressure sensors are off: chamber A's by {bias_a}, chamber B's by {bias_b}",
     equation="measured P1 = P1 + bias_a, measured P2 = P2 + bias_b",
     parameters=(
         Parameter(

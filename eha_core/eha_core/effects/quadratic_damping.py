@@ -13,7 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="force",
-    statement="fast motion is braked by {coefficient:.4g} N for each (m/s)^2",
+    statement="fast motion is braked by {coefficient:4} times its speed squared",
     equation="M_p x_p'' = ... - coefficient x_p' |x_p'|",
     parameters=(
         Parameter(

@@ -15,8 +15,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="supply",
-    statement="the return line resists: its pressure rises by {resistance:.3g} Pa for each m^3/s returned, "
-    "within {time_constant:.3g} s",
+    statement="the return line resists: its pressure rises by {resistance} returned, within {time_constant}",
     equation="P_r -> P_r + b, time_constant b' + b = resistance Q_r",
     parameters=(
         Parameter(

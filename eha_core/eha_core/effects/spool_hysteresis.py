@@ -15,7 +15,7 @@ from eha_core.parameter import Parameter
 EFFECT = Effect(
     site="spool",
     approximate=True,
-    statement="the spool follows the current only past a play of {half_width:.3g} A to either side",
+    statement="the spool follows the current only past a play of {half_width} to either side",
     equation="target = min(I + half_width, max(I - half_width, target before))",
     parameters=(
         Parameter(

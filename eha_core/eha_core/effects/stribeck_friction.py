@@ -19,8 +19,7 @@ EFFECT = Effect(
     site="force",
     kind="dry friction",
     approximate=True,
-    statement="the seals rub and stick: {static_force:.4g} N to break away, {force:.4g} N in motion past "
-    "{stribeck_velocity:.3g} m/s",
+    statement="the seals rub and stick: {static_force:4} to break away, {force:4} in motion past {stribeck_velocity}",
     equation="M_p x_p'' = ... - (force + (static_force - force) exp(-(x_p' / stribeck_velocity)^2)) sign(x_p')",
     parameters=(
         Parameter(

@@ -16,8 +16,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="supply",
-    statement="the supply gives way: its pressure falls by {resistance:.3g} Pa for each m^3/s drawn, within "
-    "{time_constant:.3g} s",
+    statement="the supply gives way: its pressure falls by {resistance} drawn, within {time_constant}",
     equation="P_s -> P_s - l, time_constant l' + l = resistance Q_s",
     parameters=(
         Parameter(

@@ -17,8 +17,8 @@ from eha_core.parameter import Parameter
 EFFECT = Effect(
     site="schedule",
     approximate=True,
-    statement="the oil warms up within {time_constant:.3g} s: damping falls by the ratio {damping_ratio:.3g}, "
-    "internal leakage rises by {leakage_ratio:.3g}",
+    statement="the oil warms up within {time_constant}: damping falls by {damping_ratio:%}, "
+    "internal leakage rises by {leakage_ratio:%}",
     equation="B_s -> B_s (1 - damping_ratio w), K_Lin -> K_Lin (1 + leakage_ratio w), w = 1 - exp(-t / time_constant)",
     parameters=(
         Parameter(

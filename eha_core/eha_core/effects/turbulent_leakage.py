@@ -20,7 +20,7 @@ TRANSITION_PRESSURE = 1e3
 EFFECT = Effect(
     site="chamber",
     approximate=True,
-    statement="oil passes the piston as through an orifice: {coefficient:.3g} m^3/s per root of a Pa",
+    statement="oil passes the piston as through an orifice: {coefficient}",
     equation="q12 += coefficient sign(P1 - P2) sqrt|P1 - P2|",
     parameters=(
         Parameter(

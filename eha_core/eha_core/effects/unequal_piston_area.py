@@ -13,7 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="chamber",
-    statement="the piston's areas differ: chamber B's is {ratio:.4g} of what was taken for it",
+    statement="the piston's areas differ: chamber B's is {ratio:%} of what was taken for it",
     equation="A_b -> ratio A_b",
     parameters=(
         Parameter(

@@ -18,7 +18,7 @@ from eha_core.parameter import Parameter
 EFFECT = Effect(
     site="orifice",
     approximate=True,
-    statement="the valve's lands overlap: within {half_width:.3g} A of null no oil flows",
+    statement="the valve's lands overlap: within {half_width} of null no oil flows",
     equation="opening = sign(x_v) max(|x_v| - half_width, 0), edges rounded within +-rounding",
     parameters=(
         Parameter(

@@ -19,8 +19,7 @@ from eha_core.parameter import Parameter
 EFFECT = Effect(
     site="orifice",
     approximate=True,
-    statement="the valve's lands are worn: about null each passes {conductance:.3g} m^3/(s Pa), fading within "
-    "{width:.3g} A",
+    statement="the valve's lands are worn: about null each passes {conductance}, fading within {width}",
     equation="Q_port += conductance exp(-|x_v| / width) (P_s + P_r - 2 P_port)",
     parameters=(
         Parameter(

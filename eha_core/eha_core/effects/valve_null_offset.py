@@ -13,7 +13,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="orifice",
-    statement="the valve's null is shifted: it acts as if the spool stood {offset:.3g} A off",
+    statement="the valve's null is shifted: it acts as if the spool stood {offset} off",
     equation="opening = x_v + offset",
     parameters=(
         Parameter(

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from statistics import median
 
 from eha_core.exam.scoring import Mark, Proportion
 from eha_core.exam.tiers import MEANINGS, SETS
+
+ROUNDING = 1e-9
+"""An interval that ends at 1 may fall short of it by a last digit."""
 
 Choice = Callable[[Mark], bool]
 
@@ -30,23 +33,34 @@ class Row:
 
 @dataclass(frozen=True)
 class Target:
-    """A stated aim, what was reached, and whether that meets it; `met` is None where no case speaks to it."""
+    """A stated aim, what was reached, and whether that meets it.
+
+    `met` is true or false only where the whole 95 % interval of what was reached says so, else None; `judged` says the
+    same in a word: "yes", "no", "open", or "no case".
+    """
 
     statement: str
     aim: str
     reached: str
     met: bool | None
+    judged: str
 
 
 @dataclass(frozen=True)
 class Summary:
-    """The score of one tool. `confusion`: what was named in place of what, and how often."""
+    """The score of one tool.
+
+    `confusion`: what was named in place of what, and how often; `rightly`: how often each effect was named that was
+    there. `by_noise`: the cases that are right, by tier and noise.
+    """
 
     tool: str
     rows: tuple[Row, ...]
     targets: tuple[Target, ...]
     lost: tuple[Mark, ...]
     confusion: tuple[tuple[str, str, int], ...] = ()
+    rightly: tuple[tuple[str, int], ...] = ()
+    by_noise: tuple[tuple[str, float, Proportion], ...] = ()
 
 
 def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
@@ -59,7 +73,24 @@ def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
             groups += [(f"{tier}, noise {noise:g}x", [m for m in inside if m.noise == noise]) for noise in (1, 3, 10)]
     rows = tuple(_row(name, group) for name, group in groups if group)
     lost = tuple(m for m in marks if m.outcome in ("wrong", "failed"))
-    return Summary(tool, rows, tuple(_targets(marks)), lost, tuple(confusion(marks)))
+    return Summary(
+        tool,
+        rows,
+        tuple(_targets(marks)),
+        lost,
+        tuple(confusion(marks)),
+        tuple(_rightly(marks)),
+        tuple(_by_noise(marks)),
+    )
+
+
+def _by_noise(marks: Sequence[Mark]) -> Iterator[tuple[str, float, Proportion]]:
+    noises = sorted({m.noise for m in marks})
+    for tier in MEANINGS:
+        for noise in noises:
+            inside = [m for m in marks if (m.tier, m.noise) == (tier, noise)]
+            if inside:
+                yield tier, noise, _count(inside, lambda m: m.outcome == "right")
 
 
 def _count(marks: Sequence[Mark], chosen: Choice) -> Proportion:
@@ -105,6 +136,11 @@ def confusion(marks: Sequence[Mark]) -> list[tuple[str, str, int]]:
         false = sorted(set(m.named) - set(m.concealed)) or ["nothing"]
         counts.update((one, other) for one in missed for other in false if one != other)
     return [(one, other, count) for (one, other), count in counts.most_common()]
+
+
+def _rightly(marks: Sequence[Mark]) -> list[tuple[str, int]]:
+    """How often each effect was named that was there."""
+    return Counter(name for m in marks for name in sorted(set(m.named) & set(m.concealed))).most_common()
 
 
 def _row(name: str, marks: Sequence[Mark]) -> Row:
@@ -175,24 +211,38 @@ def _targets(marks: Sequence[Mark]) -> list[Target]:
         _covering("nominal parameters", nominal),
     ]
     if marks:
-        seconds = median(m.seconds for m in marks)
         longest = max(m.seconds for m in marks)
-        targets.append(Target("seconds a recording, median", "10", f"{seconds:.1f}", seconds <= 10.0))
-        targets.append(Target("seconds a recording, longest", "60", f"{longest:.1f}", longest <= 60.0))
+        for what, limit, reached in (("median", 10.0, median(m.seconds for m in marks)), ("longest", 60.0, longest)):
+            targets.append(_target(f"seconds a recording, {what}", f"{limit:g}", f"{reached:.1f}", reached <= limit))
     return targets
 
 
+def _target(statement: str, aim: str, reached: str, met: bool | None) -> Target:
+    return Target(statement, aim, reached, met, {True: "yes", False: "no", None: "open"}[met])
+
+
+def _within(statement: str, aim: str, reached: Proportion, least: float, most: float) -> Target:
+    """A target that is met where the whole interval lies between two shares, and not met where all of it lies
+    outside."""
+    if not reached.trials:
+        return Target(statement, aim, str(reached), None, "no case")
+    low, high = reached.interval
+    met = None
+    if least <= low and high <= most:
+        met = True
+    elif high < least - ROUNDING or low > most + ROUNDING:
+        met = False
+    return _target(statement, aim, str(reached), met)
+
+
 def _at_least(statement: str, goal: float, reached: Proportion) -> Target:
-    met = None if reached.value is None else reached.value >= goal
-    return Target(statement, f"at least {100 * goal:.0f} %", str(reached), met)
+    return _within(statement, f"at least {100 * goal:.0f} %", reached, goal, 1.0)
 
 
 def _at_most(statement: str, goal: float, reached: Proportion) -> Target:
-    met = None if reached.value is None else reached.value <= goal
-    return Target(statement, f"at most {100 * goal:.0f} %", str(reached), met)
+    return _within(statement, f"at most {100 * goal:.0f} %", reached, 0.0, goal)
 
 
 def _covering(what: str, held: Sequence[bool]) -> Target:
-    reached = Proportion(sum(held), len(held))
-    met = None if reached.value is None else 0.93 <= reached.value <= 0.97
-    return Target(f"95 % intervals of {what} that hold the truth", "93 to 97 %", str(reached), met)
+    statement = f"95 % intervals of {what} that hold the truth"
+    return _within(statement, "93 to 97 %", Proportion(sum(held), len(held)), 0.93, 0.97)

@@ -1,14 +1,13 @@
-"""The scored table in Markdown, JSON and HTML: three presenters of the same summaries."""
+"""The scored table in Markdown and JSON."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from html import escape
 
 from eha_core.exam.real import Shown
-from eha_core.exam.scoring import Mark, Proportion
+from eha_core.exam.scoring import Mark
 from eha_core.exam.summary import Summary
 from eha_core.exam.tiers import MEANINGS
 
@@ -32,10 +31,10 @@ def as_json(
 def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown: Sequence[Shown] = ()) -> str:
     """The tables as Markdown: one of outcomes with all tools, then each tool's targets and lost cases."""
     lines = ["# The exam's table", "", *(f"- {name}: {value}" for name, value in about.items()), ""]
-    lines += _markdown_table(("group", "tool", *HEAD), _rows(summaries))
+    lines += _markdown_table(("group", "tool", *HEAD), outcome_rows(summaries))
     for summary in summaries:
         lines += ["", f"## {summary.tool}: targets", ""]
-        rows = [[t.statement, t.aim, t.reached, _met(t.met)] for t in summary.targets]
+        rows = [[t.statement, t.aim, t.reached, t.judged] for t in summary.targets]
         lines += _markdown_table(("target", "aim", "reached", "met"), rows)
         lines += ["", f"## {summary.tool}: what was named in place of what", ""]
         lines += _markdown_table(("concealed", "named", "times"), _confusion(summary))
@@ -44,48 +43,13 @@ def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown
             lines += _markdown_table(("case", "noise", "concealed", "verdict", "named"), _lost(summary))
     if shown:
         lines += ["", "## Recordings that the exam did not make", ""]
-        lines += _markdown_table(SHOWN, _shown(shown))
+        lines += _markdown_table(SHOWN, shown_rows(shown))
     lines += ["", "## Tiers", "", *(f"- `{tier}`: {meaning}" for tier, meaning in MEANINGS.items()), ""]
     return "\n".join(lines)
 
 
-def as_html(
-    summaries: Sequence[Summary],
-    about: Mapping[str, object],
-    reports: Mapping[str, str],
-    shown: Sequence[Shown] = (),
-) -> str:
-    """One self-contained page; `reports` maps a lost case's name to the page that shows its diagnosis."""
-    parts = [_STYLE, "<h1>The exam</h1><ul>"]
-    parts += [f"<li>{escape(name)}: {escape(str(value))}</li>" for name, value in about.items()]
-    parts.append("</ul><p>Bars: right, abstained, wrong, failed.</p>")
-    for summary in summaries:
-        parts.append(f"<h2>{escape(summary.tool)}</h2><table><tr><th>group</th><th></th>")
-        parts += [f"<th>{escape(head)}</th>" for head in HEAD] + ["</tr>"]
-        for row, cells in zip(summary.rows, _rows([summary]), strict=True):
-            bar = _bar((row.right, row.abstained, row.wrong, row.failed))
-            parts.append(f"<tr><td>{escape(cells[0])}</td><td>{bar}</td>" + _cells(cells[2:]) + "</tr>")
-        parts.append("</table><h3>Targets</h3><table><tr><th>target</th><th>aim</th><th>reached</th><th>met</th></tr>")
-        parts += [f"<tr>{_cells((t.statement, t.aim, t.reached, _met(t.met)))}</tr>" for t in summary.targets]
-        parts.append("</table><h3>What was named in place of what</h3><table>")
-        parts.append("<tr><th>concealed</th><th>named</th><th>times</th></tr>")
-        parts += [f"<tr>{_cells(cells)}</tr>" for cells in _confusion(summary)] + ["</table>"]
-        if summary.lost:
-            parts.append("<h3>Lost cases</h3><table><tr><th>case</th><th>noise</th><th>concealed</th><th>verdict</th>")
-            parts.append("<th>named</th></tr>")
-            for cells in _lost(summary):
-                link = reports.get(cells[0])
-                name = f'<a href="{escape(link)}">{escape(cells[0])}</a>' if link else escape(cells[0])
-                parts.append(f"<tr><td>{name}</td>{_cells(cells[1:])}</tr>")
-            parts.append("</table>")
-    if shown:
-        parts.append("<h2>Recordings that the exam did not make</h2><table><tr>")
-        parts += [f"<th>{escape(head)}</th>" for head in SHOWN] + ["</tr>"]
-        parts += [f"<tr>{_cells(cells)}</tr>" for cells in _shown(shown)] + ["</table>"]
-    return "\n".join(parts)
-
-
-def _shown(shown: Sequence[Shown]) -> list[list[str]]:
+def shown_rows(shown: Sequence[Shown]) -> list[list[str]]:
+    """A row for each recording that the exam did not make, under SHOWN."""
     return [
         [
             one.recording,
@@ -101,7 +65,8 @@ def _shown(shown: Sequence[Shown]) -> list[list[str]]:
     ]
 
 
-def _rows(summaries: Sequence[Summary]) -> list[list[str]]:
+def outcome_rows(summaries: Sequence[Summary]) -> list[list[str]]:
+    """A row for each group and tool: group, tool, and what stands under HEAD."""
     groups = {row.group: None for summary in summaries for row in summary.rows}
     lines = []
     for group in groups:
@@ -126,27 +91,3 @@ def _lost(summary: Summary) -> list[list[str]]:
 
 def _markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     return [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *(f"| {' | '.join(row)} |" for row in rows)]
-
-
-def _met(met: bool | None) -> str:
-    return "no case" if met is None else "yes" if met else "no"
-
-
-def _cells(cells: Sequence[str]) -> str:
-    return "".join(f"<td>{escape(cell)}</td>" for cell in cells)
-
-
-def _bar(shares: Sequence[Proportion]) -> str:
-    """A stacked bar of four shares as an inline drawing."""
-    x, pieces = 0.0, []
-    for colour, share in zip(("#2a7", "#bbb", "#c33", "#111"), shares, strict=True):
-        width = 160.0 * (share.value or 0.0)
-        pieces.append(f'<rect x="{x:.1f}" width="{width:.1f}" height="12" fill="{colour}"/>')
-        x += width
-    return f'<svg width="160" height="12" role="img">{"".join(pieces)}</svg>'
-
-
-_STYLE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>The exam</title><style>
-body{font:15px/1.45 system-ui,sans-serif;max-width:80rem;margin:2rem auto;padding:0 1rem;color:#222}
-table{border-collapse:collapse;font-size:13px}td,th{padding:.2rem .6rem;border-bottom:1px solid #ddd;text-align:left}
-</style>"""

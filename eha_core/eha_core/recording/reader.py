@@ -24,6 +24,9 @@ STANDARD_ATMOSPHERE = 101325.0
 
 _TEXT_ENDINGS = (".csv", ".tsv", ".txt")
 
+MAY_BE_EMPTY = ("velocity", "force")
+"""Channels that a joint's messages may leave out by their definition: that they do is no remark."""
+
 
 def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = None) -> Recording:
     """Read a recording.
@@ -61,6 +64,10 @@ def _from_messages(path: Path, raw: RawRecording, topics_file: TopicsFile | None
     decoded, leap_remarks = without_leaps(decoded)
     decoded, clock_remarks = on_one_clock(decoded)
     samples = {name: Samples(topic.stamps, values) for topic in decoded for name, values in topic.columns.items()}
+    asked = topics_file.channels if topics_file is not None else {}
+    for name in MAY_BE_EMPTY:
+        if name in samples and name not in asked and not np.isfinite(samples[name].values).any():
+            del samples[name]
     types = {name: raw.topics[str(rule.topic)].type_name for name, rule in rules.items()}
     return assemble(path, samples, rules, types, raw, [*remarks, *leap_remarks, *clock_remarks])
 

@@ -7,9 +7,10 @@ from pathlib import Path
 from textwrap import wrap
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, Location, NamedEffect
+from eha_core.quantities import quantity, scale_for, short, within
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.each_recording import each_recording
-from eha_core.report.quantities import quantity, scale_for, short, within
+from eha_core.report.finding import told_parameters
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
 _INDENT = 13
@@ -55,7 +56,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
 
 
 def _named(effect: NamedEffect) -> str:
-    values = [f"{name} {within(one.value, one.std, one.unit)}" for name, one in effect.parameters.items()]
+    values = [f"{name} {within(one.value, one.std, one.unit)}" for name, one in told_parameters(effect).items()]
     return f"{effect.id} ({', '.join(values)}; 95 %)"
 
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from eha_core.diagnosis.result import ChannelFit, Diagnosis
+from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import quantity
 from eha_core.report.wording import channel_title, listed
 
 NOISE_ALONE = 1.1
@@ -48,9 +48,28 @@ def left_over(diagnosis: Diagnosis) -> str:
     if is_noise(diagnosis):
         return "What is left is noise"
     if not ratio >= NOISE_ALONE:
-        titles = listed([channel_title(name) for name in coloured(diagnosis)])
-        return f"What is left is as small as the noise, but not random in {titles}"
+        return f"What is left is as small as the noise, but not random in {_titles(coloured(diagnosis))}"
     return f"What is left is up to {ratio:.1f} times the noise"
+
+
+def left_in_words(diagnosis: Diagnosis) -> str:
+    """What the final model leaves in size and colour, as a sentence; empty where nothing was judged."""
+    ratios = [one.rmse_after / one.noise for one in judged(diagnosis).values() if np.isfinite(one.rmse_after)]
+    if not ratios or not diagnosis.whiteness:
+        return ""
+    least, most = (f"{end:.2f}" for end in (min(ratios), max(ratios)))
+    size = f"{least} to {most} times the noise" if least != most else f"{most} times the noise"
+    largest = max(diagnosis.whiteness.values())
+    colour = f"not white in {_titles(coloured(diagnosis))}" if coloured(diagnosis) else "white"
+    told = f"noise: {size}, and white" if is_noise(diagnosis) else f"{size}, and {colour}"
+    return (
+        f"What is left is {told} (largest autocorrelation {largest:.1f} standard deviations; white noise stays below"
+        f" {WHITE:g})."
+    )
+
+
+def _titles(names: list[str]) -> str:
+    return listed([channel_title(name) for name in names])
 
 
 def equations_hold(diagnosis: Diagnosis) -> bool:
@@ -84,8 +103,7 @@ def noise_floor(diagnosis: Diagnosis) -> str:
     below = [name for name, one in judged(diagnosis).items() if one.rmse_after * NOISE_ALONE < one.noise]
     if not below:
         return "Each channel's noise is estimated from the data themselves; no model can be expected to come closer."
-    titles = listed([channel_title(name) for name in below])
     return (
         "Each channel's noise is estimated from the data themselves, and not taken as less than a good sensor's;"
-        f" the final model is closer than that to {titles}."
+        f" the final model is closer than that to {_titles(below)}."
     )

@@ -1,5 +1,5 @@
-"""Several recordings on the terminal: what each says of the joint model, and how a recording that it never saw is
-predicted."""
+"""Several recordings, on the terminal and on the page: what each says of the joint model, and how a recording that it
+never saw is predicted."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from pathlib import Path
 
 from eha_core.diagnosis.result import Diagnosis, TestedRecording
 from eha_core.parameters import catalogue
+from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import quantity
-from eha_core.report.wording import channel_title
+from eha_core.report.stage import Table
+from eha_core.report.wording import channel_title, words
 
 MODELS = ("nominal", "recalibrated", "augmented")
 
@@ -44,3 +45,39 @@ def _tested(tested: TestedRecording) -> Iterator[str]:
 
 def _valued(name: str, value: float) -> str:
     return quantity(value, catalogue()[name].unit)
+
+
+def recording_tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
+    """The same for the page: a table of the recordings fitted together, and one for each that was only predicted."""
+    tables = [_together(diagnosis)] if diagnosis.together else []
+    return (*tables, *(_prediction(tested) for tested in diagnosis.tests))
+
+
+def _together(diagnosis: Diagnosis) -> Table:
+    first = diagnosis.together[0]
+    channels, own = list(first.held_out), list(first.own_values)
+    rows = tuple(
+        (
+            Path(one.path).name,
+            *(f"{one.held_out[name].rmse_after / one.held_out[name].noise:.2f}" for name in channels),
+            *(_valued(name, one.own_values[name]) for name in own),
+        )
+        for one in diagnosis.together
+    )
+    headings = ("recording", *(f"{channel_title(name)} [× noise]" for name in channels), *map(words, own))
+    return Table(headings, rows, "Recordings fitted together: held-out errors, and the values that are their own")
+
+
+def _prediction(tested: TestedRecording) -> Table:
+    rows = []
+    for channel in tested.noise:
+        unit = CHANNEL_KINDS[channel].unit
+        each = [tested.prediction[model][channel] for model in MODELS]
+        title = channel_title(channel)
+        for seconds in each[0].ahead:
+            shown = (quantity(one.ahead[seconds], unit) for one in each)
+            rows.append((f"{title}, {seconds:g} s ahead", *shown, quantity(tested.noise[channel], unit)))
+        shown = (quantity(one.free_running, unit) for one in each)
+        rows.append((f"{title}, free-running", *shown, quantity(tested.noise[channel], unit)))
+    title = f"Test on {Path(tested.path).name}, which no model was fitted to: RMSE"
+    return Table(("prediction", *MODELS, "noise"), tuple(rows), title)

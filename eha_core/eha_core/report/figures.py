@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -20,6 +21,7 @@ from eha_core.report.picture import (
     TRANSLUCENT,
     Band,
     Bars,
+    Cells,
     Dots,
     Intervals,
     Line,
@@ -103,7 +105,7 @@ def _draw(axes: Any, panel: Panel, last: bool) -> None:
     axes.spines[["left", "bottom"]].set_color("#c9d1d7")
     axes.tick_params(colors="#5c6b78", labelsize=8, length=0, labelbottom=last)
     if panel.names:
-        axes.set_yticks(range(len(panel.names)), [name.replace(" + ", " +\n") for name in panel.names])
+        axes.set_yticks(range(len(panel.names)), [name.replace(" + ", " +\n") for name in panel.row_labels])
         axes.set_ylim(len(panel.names) - 0.4, -0.6)
     for mark in panel.marks:
         _mark(axes, mark)
@@ -141,6 +143,8 @@ def _mark(axes: Any, mark: Mark) -> None:
             axes.axvspan(start, end, color=SHADE, alpha=0.75, linewidth=0)
     elif isinstance(mark, Bars):
         _bars(axes, mark)
+    elif isinstance(mark, Cells):
+        _cells(axes, mark)
     else:
         _intervals(axes, mark)
 
@@ -152,6 +156,14 @@ def _bars(axes: Any, mark: Bars) -> None:
         axes.annotate(
             text, (max(0.0, float(mark.x[row])), row), (4, 0), textcoords="offset points", va="center", fontsize=8
         )
+
+
+def _cells(axes: Any, mark: Cells) -> None:
+    shades = LinearSegmentedColormap.from_list("cells", [COLOURS["before"], "#ffffff", COLOURS["after"]])
+    shown = axes.imshow(mark.values, cmap=shades, vmin=mark.low, vmax=mark.high, aspect="auto")
+    axes.grid(visible=False)
+    axes.set_xticks(range(len(mark.names)), [str(place + 1) for place in range(len(mark.names))])
+    axes.figure.colorbar(shown, ax=axes, shrink=0.6)
 
 
 def _intervals(axes: Any, mark: Intervals) -> None:

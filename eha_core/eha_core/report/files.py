@@ -9,11 +9,10 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.errors import EhaError
 from eha_core.parameters import dump_parameters
 from eha_core.report.comparison import write_comparison
+from eha_core.report.contents import contents_of
 from eha_core.report.experiment_file import FILE, experiment_file
 from eha_core.report.figures import write_figures
-from eha_core.report.first_screen import pictures as first_screen
 from eha_core.report.html import write_page
-from eha_core.report.stages import story
 
 
 def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
@@ -32,12 +31,12 @@ def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
         document.write_text(as_json(diagnosis), encoding="utf-8")
         fitted.write_text(dump_parameters(diagnosis.fitted_values, _heading(diagnosis)), encoding="utf-8")
         write_comparison(diagnosis, comparison)
-        told = [picture for stage in story(diagnosis) for picture in stage.pictures]
-        write_figures([*first_screen(diagnosis), *told], folder / "figures")
+        contents = contents_of(diagnosis)
+        write_figures(contents.figures, folder / "figures")
         experiment.unlink(missing_ok=True)
         if diagnosis.next_experiment is not None:
             experiment.write_text(experiment_file(diagnosis, diagnosis.next_experiment), encoding="utf-8")
-        write_page(diagnosis, page)
+        write_page(diagnosis, page, contents)
     except OSError as error:
         raise EhaError(
             f"{error.filename or folder}: cannot be written ({error.strerror}); choose another --out"

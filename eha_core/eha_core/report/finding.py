@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 
-from eha_core.diagnosis.result import Diagnosis, NamedEffect
+from eha_core.diagnosis.result import Diagnosis, FittedParameter, FittedValue, NamedEffect
 from eha_core.effects import SITES
-from eha_core.report.claims import improvement
-from eha_core.report.quantities import quantity, within
+from eha_core.quantities import quantity, within
+from eha_core.report.claims import improvement, left_in_words
 from eha_core.report.stage import SURE
 from eha_core.report.wording import (
     VERDICT_TITLES,
@@ -26,6 +27,11 @@ NEARLY_ALL = 0.9999
 MOST_VALUES = 2
 """Values of one effect that the first sentence gives; the tables have all."""
 
+IN_A_SENTENCE = 2
+"""Effects whose values the first sentence gives; of more it has the names, and a table the values."""
+
+COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
+
 
 @dataclass(frozen=True)
 class Missing:
@@ -40,14 +46,30 @@ class Missing:
 def missing(effect: NamedEffect) -> Missing:
     """A named effect in words."""
     declared = import_module(f"eha_core.effects.{effect.id}").EFFECT
-    switching = [row.name for row in declared.parameters if row.switches and row.name in effect.parameters]
+    told = told_parameters(effect)
+    switching = [row.name for row in declared.parameters if row.switches and row.name in told]
     values = []
     for name in switching[:MOST_VALUES]:
-        one = effect.parameters[name]
+        one = told[name]
         values.append(f"{words(name)} {within(one.value, one.std, one.unit, SURE)}")
     cause, colon, _ = effect.statement.partition(":")
     active = getattr(effect, "active", None)
     return Missing(effect_title(effect.id), tuple(values), cause if colon else "", span(active) if active else "")
+
+
+def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
+    """The parameters that the recording tells from nothing: all but those whose interval holds a neutral zero.
+
+    An edge that may be sharp is no finding. An effect of which no parameter is told keeps them all.
+    """
+    declared = import_module(f"eha_core.effects.{effect.id}").EFFECT.parameters
+    neutral = {row.name for row in declared if row.nominal == 0.0}
+    told = {
+        name: one
+        for name, one in effect.parameters.items()
+        if name not in neutral or (one.value != 0.0 and not abs(one.value) <= SURE * one.std < float("inf"))
+    }
+    return told or effect.parameters
 
 
 def headline(diagnosis: Diagnosis) -> str:
@@ -56,7 +78,19 @@ def headline(diagnosis: Diagnosis) -> str:
         return sentence(diagnosis.summary.removeprefix(f"{VERDICT_TITLES[diagnosis.verdict]}: "))
     certain = "The model leaves out" if diagnosis.verdict == "missing_physics" else "The model most likely leaves out"
     more = "" if is_complete(diagnosis) else ", and more that is not named"
+    if len(diagnosis.effects) > IN_A_SENTENCE:
+        return f"{certain} {counted(len(diagnosis.effects))} effects{more}: {names_listed(diagnosis)}."
     return f"{certain} {effects_listed(diagnosis)}{more}; 95 % intervals."
+
+
+def counted(number: int) -> str:
+    """A number as a word, where it is small."""
+    return COUNTS[number] if number < len(COUNTS) else str(number)
+
+
+def names_listed(diagnosis: Diagnosis) -> str:
+    """The named effects without their values."""
+    return listed([effect_title(effect.id) for effect in diagnosis.effects])
 
 
 def is_complete(diagnosis: Diagnosis) -> bool:
@@ -73,13 +107,20 @@ def effects_listed(diagnosis: Diagnosis) -> str:
     )
 
 
+def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """What casts doubt on everything below it: data taken although they cannot be right, or a damaged file."""
+    told = [sentence(one) for one in diagnosis.remarks if one.startswith("warning")]
+    damaged = f"Warning: the file is damaged, and this rests on what could be read: {diagnosis.damaged}."
+    return (*told, damaged) if diagnosis.damaged else tuple(told)
+
+
 def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The sentences below it: the likely causes, what the physics is worth, and what it leaves."""
     causes = [(one.title, one.cause) for one in map(missing, diagnosis.effects) if one.cause]
     likely = "; ".join(f"{cause} ({title})" for title, cause in causes)
     rivals = listed([" + ".join(map(effect_title, one.effects)) for one in diagnosis.alternatives])
     changed = [one for one in diagnosis.parameters if one.changed]
-    values = listed([f"{words(one.name)} {quantity(one.fitted, one.unit)}" for one in changed[:MOST_VALUES + 1]])
+    values = listed([f"{words(one.name)} {_departure(one)}" for one in changed[: MOST_VALUES + 1]])
     found = (
         f"Likely cause{'s' if len(causes) > 1 else ''}: {likely}." if likely else "",
         f"This recording does not tell it from {rivals}." if rivals else "",
@@ -87,9 +128,16 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
         f"Parameters that differ from the nominal model: {values}{' and others' if len(changed) > 3 else ''}."
         if changed and not diagnosis.bent
         else "",
+        left_in_words(diagnosis),
         explanation(diagnosis),
     )
     return tuple(one for one in found if one)
+
+
+def _departure(one: FittedParameter) -> str:
+    """A changed parameter's value, and how far it is from nominal."""
+    value = quantity(one.fitted, one.unit)
+    return f"{value} ({one.fitted / one.nominal - 1.0:+.1%})".replace("%", " %") if one.nominal else value
 
 
 def explanation(diagnosis: Diagnosis) -> str:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.laws import Law, laws
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture, Ribbon
-from eha_core.report.quantities import quantity, scale_for
 from eha_core.report.series import spread, thinned
 from eha_core.report.stage import adds_physics
 from eha_core.report.wording import capital, channel_title
+from eha_core.report.worth import ladder_picture
 
 ABREAST = 3
 """Panels beside each other."""
@@ -27,15 +30,15 @@ SURROUND = 0.12
 """Of a law's height, that is shown above and below it; points about a reversal lie far outside."""
 
 
-def pictures(diagnosis: Diagnosis) -> tuple[Picture, ...]:
-    """The laws, if there are any, and the residuals."""
-    law = law_picture(diagnosis)
-    return (law, residual_picture(diagnosis)) if law else (residual_picture(diagnosis),)
+def pictures(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tuple[Picture, ...]:
+    """The way to the noise, the laws (those found already, if they are given), and the residuals."""
+    shown = (ladder_picture(diagnosis), law_picture(diagnosis, found), residual_picture(diagnosis))
+    return tuple(one for one in shown if one)
 
 
-def law_picture(diagnosis: Diagnosis) -> Picture | None:
+def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> Picture | None:
     """Each missing effect as a law in SI; None where it has none."""
-    found = laws(diagnosis)
+    found = laws(diagnosis) if found is None else found
     if not found:
         return None
     columns = (1,) * min(ABREAST, len(found))
@@ -44,10 +47,13 @@ def law_picture(diagnosis: Diagnosis) -> Picture | None:
         " what the nominal model has in its place. Points: what the equation that holds the law gives when the measured"
         " channels are put into it; those of a force where the piston neither stops nor turns."
     )
-    return Picture("0-laws", tuple(Group((_law(one),)) for one in found), columns, "The missing physics", caption)
+    return Picture(
+        "0-laws", tuple(Group((law_panel(one),)) for one in found.values()), columns, "The missing physics", caption
+    )
 
 
-def _law(law: Law) -> Panel:
+def law_panel(law: Law, height: int = 250) -> Panel:
+    """The law with its band, its points and what the nominal model has in its place."""
     across = scale_for(law.across.unit, float(np.abs(law.x).max(initial=0.0)))
     up = scale_for(law.up.unit, float(np.abs(law.y).max(initial=0.0)))
     x, marks = law.x / across.factor, list[Mark]()
@@ -67,7 +73,7 @@ def _law(law: Law) -> Panel:
         f"{law.across.title} [{across.unit or '-'}]",
         f"{law.up.title} [{up.unit or '-'}]",
         law.title,
-        250,
+        height,
         y_range=(low - room, high + room),
     )
 

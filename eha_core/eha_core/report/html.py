@@ -12,21 +12,22 @@ from string import Template
 from plotly.offline import get_plotlyjs
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.contents import Contents, contents_of
 from eha_core.report.experiment_file import FILE
-from eha_core.report.finding import headline, supporting
-from eha_core.report.first_screen import pictures as first_screen
+from eha_core.report.finding import headline, supporting, warnings
 from eha_core.report.picture import Picture
 from eha_core.report.plotly_drawing import figure
-from eha_core.report.stage import Stage, Table
-from eha_core.report.stages import story
+from eha_core.report.stage import Part, Stage, Table
 from eha_core.report.stages.show import error_table
 from eha_core.report.wording import VERDICT_TITLES, words
+from eha_core.report.worth import effect_table
 
 
-def page(diagnosis: Diagnosis) -> str:
+def page(diagnosis: Diagnosis, contents: Contents | None = None) -> str:
     """The whole page as text."""
-    stages = story(diagnosis)
+    contents = contents or contents_of(diagnosis)
     template = Template((files("eha_core.report") / "page.html").read_text(encoding="utf-8"))
+    summary = effect_table(diagnosis) if len(diagnosis.effects) > 1 else None
     return template.substitute(
         title=escape(f"Diagnosis of {Path(diagnosis.path).name}"),
         style=(files("eha_core.report") / "page.css").read_text(encoding="utf-8"),
@@ -35,24 +36,26 @@ def page(diagnosis: Diagnosis) -> str:
         recording=escape(Path(diagnosis.path).name),
         verdict=diagnosis.verdict,
         verdict_title=escape(VERDICT_TITLES[diagnosis.verdict]),
+        warnings="".join(f'<p class="warning" role="alert">{escape(one)}</p>' for one in warnings(diagnosis)),
         headline=escape(headline(diagnosis)),
         supporting="".join(f"<li>{escape(one)}</li>" for one in supporting(diagnosis)),
-        proof="".join(_picture(one) for one in first_screen(diagnosis)),
+        summary=f"<h3>{escape(summary.title)}</h3>{_table(summary, folded=False, kind='summary')}" if summary else "",
+        proof="".join(_picture(one) for one in contents.first_screen),
         errors_title=escape(error_table(diagnosis).title),
-        errors=_table(error_table(diagnosis), folded=False),
+        errors=_table(error_table(diagnosis), folded=False, kind="errors"),
         files=_files(diagnosis),
         provenance=_provenance(diagnosis),
         steps="".join(
             f'<a href="#{one.name}"><span>{number}</span>{escape(one.title)}</a>'
-            for number, one in enumerate(stages, start=1)
+            for number, one in enumerate(contents.stages, start=1)
         ),
-        stages="".join(_stage(number, one) for number, one in enumerate(stages, start=1)),
+        stages="".join(_stage(number, one) for number, one in enumerate(contents.stages, start=1)),
     )
 
 
-def write_page(diagnosis: Diagnosis, path: Path) -> None:
+def write_page(diagnosis: Diagnosis, path: Path, contents: Contents | None = None) -> None:
     """Write the page to `path`."""
-    path.write_text(page(diagnosis), encoding="utf-8")
+    path.write_text(page(diagnosis, contents), encoding="utf-8")
 
 
 FILES = {
@@ -80,7 +83,17 @@ def _stage(number: int, stage: Stage) -> str:
     return (
         f'<section id="{stage.name}"><p class="step"><span>{number}</span>{escape(stage.title)}</p>'
         f"<h2>{escape(stage.headline)}</h2>{_paragraphs(stage.sentences)}{code}"
+        f"{''.join(_part(one) for one in stage.parts)}"
         f"{''.join(_picture(one) for one in stage.pictures)}{''.join(_table(one) for one in stage.tables)}</section>"
+    )
+
+
+def _part(part: Part) -> str:
+    """One finding beside its picture."""
+    code = f"<pre>{escape(part.code)}</pre>" if part.code else ""
+    return (
+        f"<article><div><h3>{escape(part.title)}</h3>{_paragraphs(part.sentences)}{code}</div>"
+        f"<div>{''.join(_picture(one) for one in part.pictures)}</div></article>"
     )
 
 
@@ -120,10 +133,12 @@ def _cells(headings: tuple[str, ...], row: tuple[str, ...]) -> str:
     )
 
 
-def _table(table: Table, folded: bool = True) -> str:
+def _table(table: Table, folded: bool = True, kind: str = "") -> str:
     head = "".join(f"<th>{escape(one)}</th>" for one in table.headings)
     body = "".join(f"<tr>{_cells(table.headings, row)}</tr>" for row in table.rows)
-    content = f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
+    content = (
+        f'<div class="scroll"><table class="{kind}"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
+    )
     if not folded:
         return content
     return f"<details><summary>{escape(table.title)}</summary>{content}</details>"

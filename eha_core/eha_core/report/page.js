@@ -3,9 +3,41 @@
 const touch = window.matchMedia("(pointer: coarse)").matches;
 const plots = [...document.querySelectorAll(".plot")];
 
+// On a narrow plot, long names of rows and axes take two lines.
+function inTwoLines(text) {
+  if (text.length < 17 || text.includes("<br>")) return text;
+  const spaces = [...text.matchAll(/ /g)].map((found) => found.index);
+  if (!spaces.length) return text;
+  const middle = spaces.reduce((best, at) => (Math.abs(at - text.length / 2) < Math.abs(best - text.length / 2) ? at : best));
+  return `${text.slice(0, middle)}<br>${text.slice(middle + 1)}`;
+}
+
+function narrowed(layout, table) {
+  if (table) table.showscale = false;
+  for (const key of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
+    const axis = layout[key];
+    if (key[0] === "y" && axis.ticktext) {
+      axis.tickfont = { size: 10 };
+      axis.ticktext = axis.ticktext.map(table ? (name) => name.replace(/^.*: /, "") : inTwoLines);
+    } else if (key[0] === "x" && axis.title.text.length > 24) {
+      axis.title.text = inTwoLines(axis.title.text);
+      axis.title.standoff += 10;
+      layout.margin.b += 16;
+    }
+    if (key[0] === "x" && (axis.ticktext || []).length > 5) {
+      axis.tickvals = axis.tickvals.filter((_, place) => place % 3 === 0);
+      axis.ticktext = axis.ticktext.filter((_, place) => place % 3 === 0);
+    }
+  }
+}
+
 for (const place of plots) {
   const { data, layout } = JSON.parse(place.querySelector("script").textContent);
   layout.autosize = true;
+  if (place.clientWidth < 360) {
+    narrowed(layout, data.find((trace) => trace.type === "heatmap"));
+    for (const bars of data.filter((trace) => trace.type === "bar")) bars.text = bars.text.map((text) => text.replace(" behind", ""));
+  }
   layout.dragmode = touch ? false : "zoom"; // a finger on a plot scrolls the page
   Plotly.newPlot(place, data, layout, {
     responsive: true,

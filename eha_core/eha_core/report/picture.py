@@ -102,6 +102,17 @@ class Bars:
 
 
 @dataclass(frozen=True)
+class Cells:
+    """A square table of numbers between `low` and `high`, each as a colour: from that of "before" over white to that of
+    "after"; rows and columns have the same names."""
+
+    names: tuple[str, ...]
+    values: Array
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
 class Band:
     """Values between `low` and `high` that need no explanation."""
 
@@ -118,7 +129,7 @@ class Spans:
     label: str
 
 
-Mark = Line | Dots | Ribbon | Upright | Intervals | Bars | Band | Spans
+Mark = Line | Dots | Ribbon | Upright | Intervals | Bars | Cells | Band | Spans
 
 
 @dataclass(frozen=True)
@@ -140,7 +151,13 @@ class Panel:
     @property
     def names(self) -> tuple[str, ...]:
         """The rows' names, where the panel has rows."""
-        return next((mark.names for mark in self.marks if isinstance(mark, (Intervals, Bars))), ())
+        return next((mark.names for mark in self.marks if isinstance(mark, (Intervals, Bars, Cells))), ())
+
+    @property
+    def row_labels(self) -> tuple[str, ...]:
+        """The names as they stand beside the rows: numbered where the columns have no more room than a number's."""
+        numbered = any(isinstance(mark, Cells) for mark in self.marks)
+        return tuple(f"{name}  {place}" if numbered else name for place, name in enumerate(self.names, start=1))
 
 
 @dataclass(frozen=True)
@@ -171,8 +188,16 @@ class Picture:
         return tuple(found.items())
 
 
+def on_paper(colour: str) -> str:
+    """What a ribbon of this colour looks like on white."""
+    parts = (int(colour[place : place + 2], 16) for place in (1, 3, 5))
+    return "#" + "".join(f"{round(255 - TRANSLUCENT * (255 - part)):02x}" for part in parts)
+
+
 def _legend(mark: Mark) -> Sequence[tuple[str, str]]:
-    if isinstance(mark, (Line, Dots, Ribbon)):
+    if isinstance(mark, Ribbon):
+        return [(mark.label, on_paper(COLOURS[mark.role]))]
+    if isinstance(mark, (Line, Dots)):
         return [(mark.label, COLOURS[mark.role])] if mark.label else []
     if isinstance(mark, (Band, Spans)):
         return [(mark.label, NOISE_SHADE if isinstance(mark, Band) else SHADE)]

@@ -20,6 +20,7 @@ from eha_core.report.picture import (
     TRANSLUCENT,
     Band,
     Bars,
+    Cells,
     Dots,
     Group,
     Intervals,
@@ -90,6 +91,10 @@ def _across(panel: Panel, suffix: str, last: bool) -> Drawing:
         axis["matches"] = "x"
     if panel.x_range:
         axis["range"] = panel.x_range
+    if any(isinstance(mark, Cells) for mark in panel.marks):
+        places = list(range(len(panel.names)))
+        numbers = [str(place + 1) for place in places]
+        axis |= {"tickvals": places, "ticktext": numbers, "tickangle": 0, "showgrid": False}
     if panel.x_ticks:
         axis |= {
             "tickvals": [place for place, _ in panel.x_ticks],
@@ -106,7 +111,7 @@ def _up(panel: Panel, suffix: str, domain: tuple[float, float]) -> Drawing:
     if panel.names:
         axis |= {
             "tickvals": list(range(len(panel.names))),
-            "ticktext": [name.replace(" + ", " +<br>") for name in panel.names],
+            "ticktext": [name.replace(" + ", " +<br>") for name in panel.row_labels],
             "range": (len(panel.names) - 0.4, -0.6),
             "showgrid": False,
             "zeroline": False,
@@ -179,6 +184,19 @@ def _traces(mark: Mark, unit: str) -> Iterator[Drawing]:
             "cliponaxis": False,
             "marker": {"color": [COLOURS[role] for role in mark.roles]},
             "hovertemplate": "%{text}<extra></extra>",
+        }
+    elif isinstance(mark, Cells):
+        yield {
+            "type": "heatmap",
+            "z": [[round(float(value), 3) for value in row] for row in mark.values],
+            "zmin": mark.low,
+            "zmax": mark.high,
+            "colorscale": [[0.0, COLOURS["before"]], [0.5, "#ffffff"], [1.0, COLOURS["after"]]],
+            "xgap": 1,
+            "ygap": 1,
+            "colorbar": {"thickness": 10, "outlinewidth": 0, "len": 0.6},
+            "text": [[f"{one}<br>{other}" for other in mark.names] for one in mark.names],
+            "hovertemplate": "%{text}<br>%{z:.2f}<extra></extra>",
         }
 
 

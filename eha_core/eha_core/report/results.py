@@ -13,7 +13,9 @@ from eha_core.report.figures import Drawn, drawn
 from eha_core.report.first_screen import law_picture, residual_picture
 from eha_core.report.picture import Picture
 from eha_core.report.stages import story
+from eha_core.report.stages.model import correlations
 from eha_core.report.summary import Summary, summarise
+from eha_core.report.worth import ladder_picture
 
 
 class Plots:
@@ -43,6 +45,20 @@ class Plots:
         """The missing physics as a law in SI units: the data, the fitted law, and the nominal model."""
         picture = law_picture(self._diagnosis)
         return drawn(picture) if picture else self._picture("model")
+
+    def ladder(self) -> Drawn:
+        """What is left from the nominal model to the noise, one effect added after another."""
+        picture = ladder_picture(self._diagnosis)
+        if picture is None:
+            raise EhaError("there is nothing to plot here: this diagnosis does not say what each model leaves")
+        return drawn(picture)
+
+    def correlation(self) -> Drawn:
+        """How the errors of the fitted parameters depend on each other."""
+        picture = correlations(self._diagnosis)
+        if picture is None:
+            raise EhaError("there is nothing to plot here: fewer than two parameters were fitted")
+        return drawn(picture)
 
     def residuals(self) -> Drawn:
         """Measured less modelled over time, of the nominal and of the final model."""

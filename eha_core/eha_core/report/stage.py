@@ -23,6 +23,16 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Part:
+    """One of several findings of a stage, beside its picture."""
+
+    title: str
+    sentences: tuple[str, ...]
+    pictures: tuple[Picture, ...] = ()
+    code: str = ""
+
+
+@dataclass(frozen=True)
 class Stage:
     """A stage: its name, what it found as a headline, a few sentences, and what there is to look at."""
 
@@ -33,6 +43,7 @@ class Stage:
     pictures: tuple[Picture, ...] = ()
     tables: tuple[Table, ...] = ()
     code: str = ""
+    parts: tuple[Part, ...] = ()
 
 
 def adds_physics(diagnosis: Diagnosis) -> bool:

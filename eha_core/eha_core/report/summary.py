@@ -10,8 +10,9 @@ from pathlib import Path
 from textwrap import wrap
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import scale_for, short
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import scale_for, short
+from eha_core.report.finding import told_parameters
 from eha_core.report.stage import SURE, Table
 from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, sentence
 
@@ -71,7 +72,7 @@ def _effects(diagnosis: Diagnosis) -> Table:
     rows = tuple(
         _row(f"{effect.id}.{name}", one.value, one.std, one.unit)
         for effect in diagnosis.effects
-        for name, one in effect.parameters.items()
+        for name, one in told_parameters(effect).items()
     )
     return Table(("missing physics", "value", "std err", "[0.025", "0.975]", "unit"), rows, "Missing physics")
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from math import isfinite
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.quantities import quantity
 
 VERDICT_TITLES = {
     "consistent": "Nothing is missing",
@@ -75,8 +75,10 @@ def capital(text: str) -> str:
 
 
 def channel_title(name: str) -> str:
-    """A channel in an engineer's words."""
-    return _CHANNEL_TITLES.get(name, words(name))
+    """A channel in an engineer's words; of several recordings, with the number of its own."""
+    base, numbered, number = name.partition("@")
+    title = _CHANNEL_TITLES.get(base, words(base))
+    return f"{title}, recording {number}" if numbered else title
 
 
 def channels_listed(names: Sequence[str]) -> str:
@@ -104,7 +106,7 @@ def plain(text: str) -> str:
 
 def words(name: str) -> str:
     """An identifier as words."""
-    return name.replace("_", " ").replace(".", ": ")
+    return name.replace("_", " ").replace(".", ": ").replace("@", ", recording ")
 
 
 def listed(items: Sequence[str]) -> str:

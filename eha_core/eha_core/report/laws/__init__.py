@@ -21,13 +21,13 @@ _SITES: dict[str, Callable[[Models, NamedEffect], Law | None]] = {
 }
 
 
-def laws(diagnosis: Diagnosis) -> tuple[Law, ...]:
-    """The law of each named effect that has one, or the unknown law, in the order of the diagnosis.
+def laws(diagnosis: Diagnosis) -> dict[str, Law]:
+    """The law of each named effect that has one by its id, or the unknown law, in the order of the diagnosis.
 
     A dead time or a hysteresis has none: it is no function of one quantity.
     """
     models = Models(diagnosis)
     if diagnosis.unknown is not None:
-        return (unknown_law(models, diagnosis.unknown),)
-    found = (_SITES[effect.site](models, effect) for effect in diagnosis.effects if effect.site in _SITES)
-    return tuple(one for one in found if one is not None)
+        return {"": unknown_law(models, diagnosis.unknown)}
+    found = {effect.id: _SITES[effect.site](models, effect) for effect in diagnosis.effects if effect.site in _SITES}
+    return {name: law for name, law in found.items() if law is not None}

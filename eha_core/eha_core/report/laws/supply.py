@@ -46,9 +46,7 @@ def _steady(models: Models, effect: NamedEffect, values: Mapping[str, float], fl
     for one in flow.tolist():
         memory, before = np.zeros(max(slots, 1)), np.inf
         for _ in range(SETTLED):
-            supply, back = call(
-                p["supply_pressure"], p["return_pressure"], one, one, memory, 0, STEP, *parameters
-            )
+            supply, back = call(p["supply_pressure"], p["return_pressure"], one, one, memory, 0, STEP, *parameters)
             if abs(supply - back - before) < 1.0:
                 break
             before = supply - back

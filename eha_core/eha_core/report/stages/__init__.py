@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.laws import Law, laws
 from eha_core.report.stage import Stage
 from eha_core.report.stages import calibrate, locate, model, name, next_experiment, read, show
 
-_ORDER = (read, calibrate, locate, name, model, show, next_experiment)
 
-
-def story(diagnosis: Diagnosis) -> tuple[Stage, ...]:
-    """The stages in the order in which the diagnosis came to its verdict."""
-    return tuple(one.stage(diagnosis) for one in _ORDER)
+def story(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tuple[Stage, ...]:
+    """The stages in the order in which the diagnosis came to its verdict, with the laws if they are found already."""
+    found = laws(diagnosis) if found is None else found
+    return (
+        read.stage(diagnosis),
+        calibrate.stage(diagnosis),
+        locate.stage(diagnosis),
+        name.stage(diagnosis),
+        model.stage(diagnosis, found),
+        show.stage(diagnosis),
+        next_experiment.stage(diagnosis),
+    )

@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter
+from eha_core.quantities import quantity, with_deviation
 from eha_core.report.picture import Group, Intervals, Panel, Picture
-from eha_core.report.quantities import quantity, with_deviation
 from eha_core.report.stage import SURE, Stage, Table
 from eha_core.report.wording import listed, sentence, told_errors, words
 
 MOST_NAMED = 4
 """Changed parameters that the headline names; more are counted."""
+
+UNCHANGED_SEEN = 50.0
+"""Per cent; wider intervals of parameters that did not change run out of the picture."""
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
@@ -52,8 +55,9 @@ def _picture(parameters: tuple[FittedParameter, ...]) -> Picture | None:
     size = np.array([abs(one.nominal) for one in shown])
     departure = 100.0 * (np.array([one.fitted - one.nominal for one in shown])) / size
     reach = 100.0 * SURE * np.nan_to_num(np.array([one.std for one in shown]), posinf=0.0) / size
-    known = [one.changed or not one.note for one in shown]
-    limit = 1.15 * max([2.0, *(np.abs(departure) + np.minimum(reach, 100.0))[known]])
+    far = np.abs(departure) + np.minimum(reach, 100.0)
+    changed = np.array([one.changed for one in shown])
+    limit = 1.15 * max([2.0, *far[changed], *np.minimum(far[~changed], UNCHANGED_SEEN)])
     roles = tuple("after" if one.changed else "other" for one in shown)
     texts = tuple(
         f"{with_deviation(one.fitted, one.std, one.unit)}, nominal {quantity(one.nominal, one.unit)}" for one in shown

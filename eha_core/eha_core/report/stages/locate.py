@@ -9,10 +9,10 @@ import numpy as np
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.effects import SITES
+from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import equations_hold
 from eha_core.report.picture import Band, Dots, Group, Line, Mark, Panel, Picture
-from eha_core.report.quantities import quantity, scale_for
 from eha_core.report.series import spread, strongest_dependence, thinned
 from eha_core.report.stage import Stage, Table, violated
 from eha_core.report.wording import (

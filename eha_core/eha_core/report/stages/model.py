@@ -2,31 +2,49 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import numpy as np
 
-from eha_core.diagnosis.result import Diagnosis
+from eha_core.diagnosis.result import Diagnosis, NamedEffect
 from eha_core.effects import SITES
-from eha_core.report.finding import effects_listed
-from eha_core.report.picture import LABELS, Dots, Group, Intervals, Panel, Picture
-from eha_core.report.quantities import interval, scale_for, with_deviation
+from eha_core.quantities import interval, scale_for, with_deviation
+from eha_core.report.finding import IN_A_SENTENCE, effects_listed, missing, names_listed, told_parameters
+from eha_core.report.first_screen import law_panel
+from eha_core.report.laws import Law
+from eha_core.report.picture import LABELS, Cells, Dots, Group, Intervals, Panel, Picture
 from eha_core.report.series import spread, strongest_dependence
-from eha_core.report.stage import SURE, Stage, Table
+from eha_core.report.stage import SURE, Part, Stage, Table
 from eha_core.report.stages.locate import NOISE
 from eha_core.report.wording import (
     VARIABLE_UNITS,
     capital,
     channel_title,
     effect_title,
+    listed,
     sentence,
     variable_title,
     words,
 )
+from eha_core.report.worth import step_table, worth
 
 WITHOUT = "It was read off the balances of measured channels; the simulation goes on without it."
 
 
-def stage(diagnosis: Diagnosis) -> Stage:
-    """The named physics in equations and numbers, or the recovered law as a curve."""
+LAW_HEIGHT = 240  # pixels
+
+CELL = 22
+"""Pixels of a row of correlations."""
+
+TOLD_TOGETHER = 0.9
+"""Correlation from which two parameters are said to be told only together (a common rule of thumb)."""
+
+MOST_PAIRS = 4
+
+
+def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
+    """The named physics effect by effect in words, equations, numbers and laws, or the recovered law as a curve."""
     if diagnosis.unknown:
         law = diagnosis.unknown
         told = (
@@ -39,14 +57,68 @@ def stage(diagnosis: Diagnosis) -> Stage:
     if not diagnosis.effects:
         ending = "with the fitted parameters" if diagnosis.verdict == "parameters" else "as it was given"
         return Stage("model", "Model", f"The model stands {ending}", ("No physics was added.",))
-    sentences = (
-        *(sentence(one.statement) for one in diagnosis.effects),
-        "Started with fitted.yaml, the simulator has this physics.",
-        *(f"{capital(effect_title(one.id))} acts {SITES[one.site].words}." for one in diagnosis.effects),
+    pictures = tuple(one for one in (_collapse(diagnosis), _intervals(diagnosis), correlations(diagnosis)) if one)
+    headline = effects_listed(diagnosis) if len(diagnosis.effects) <= IN_A_SENTENCE else names_listed(diagnosis)
+    return Stage(
+        "model",
+        "Model",
+        capital(headline),
+        ("Started with fitted.yaml, the simulator has this physics.", *_told_together(diagnosis)),
+        pictures,
+        (_table(diagnosis), *step_table(diagnosis)),
+        parts=tuple(_part(diagnosis, place, effect, found) for place, effect in enumerate(diagnosis.effects, start=1)),
     )
-    code = "\n".join(one.equation for one in diagnosis.effects)
-    pictures = tuple(one for one in (_collapse(diagnosis), _intervals(diagnosis)) if one)
-    return Stage("model", "Model", capital(effects_listed(diagnosis)), sentences, pictures, (_table(diagnosis),), code)
+
+
+def _part(diagnosis: Diagnosis, place: int, effect: NamedEffect, found: Mapping[str, Law]) -> Part:
+    """One effect: what it is, how large, where it acts, what it is worth, and its law."""
+    told = missing(effect)
+    title = f"{place}. {capital(told.title)}: {', '.join(told.values)}"
+    acts = f"It acts {SITES[effect.site].words}."
+    law = found.get(effect.id)
+    panel = replace(law_panel(law, LAW_HEIGHT), title="") if law else None
+    pictures = (Picture(f"5-law-{effect.id}", (Group((panel,)),)),) if panel else ()
+    return Part(title, (sentence(effect.statement), acts, worth(diagnosis, effect.id)), pictures, effect.equation)
+
+
+def correlations(diagnosis: Diagnosis) -> Picture | None:
+    """How the fitted parameters' errors depend on each other."""
+    names, matrix = diagnosis.correlation.names, diagnosis.correlation.matrix
+    if len(names) < 2:
+        return None
+    titles = tuple(_parameter_title(name) for name in names)
+    panel = Panel((Cells(titles, np.array(matrix), -1.0, 1.0),), height=CELL * len(names))
+    caption = (
+        "Correlation of the fitted parameters' errors. Near 1 or -1, this recording tells only a combination of the"
+        " two, and either may be wrong with the other."
+    )
+    return Picture(
+        "5-model-correlation", (Group((panel,)),), title="Which parameters are told only together", caption=caption
+    )
+
+
+def _told_together(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """The pairs of parameters that hardly can be told apart, one of the missing physics among them, the closest
+    first."""
+    names, matrix = diagnosis.correlation.names, diagnosis.correlation.matrix
+    pairs = [
+        (abs(matrix[row][column]), names[row], names[column])
+        for row in range(len(names))
+        for column in range(row)
+        if abs(matrix[row][column]) > TOLD_TOGETHER and "." in names[row] + names[column]
+    ]
+    if not pairs:
+        return ()
+    shown = [
+        f"{_parameter_title(one)} with {_parameter_title(other)} ({size:.2f})"
+        for size, one, other in sorted(pairs, reverse=True)[:MOST_PAIRS]
+    ]
+    return (f"Strongly correlated, so less sure each than together: {listed(shown)}.",)
+
+
+def _parameter_title(name: str) -> str:
+    effect, dot, parameter = name.partition(".")
+    return f"{effect_title(effect)}: {words(parameter)}" if dot else words(name)
 
 
 def _collapse(diagnosis: Diagnosis) -> Picture | None:
@@ -92,9 +164,11 @@ def _intervals(diagnosis: Diagnosis) -> Picture | None:
 def _table(diagnosis: Diagnosis) -> Table:
     rows = []
     for effect in diagnosis.effects:
+        told = told_parameters(effect)
         for name, one in effect.parameters.items():
             deviation = with_deviation(one.value, one.std, one.unit)
-            rows.append((f"{effect.id}.{name}", deviation, interval(one.value, one.std, one.unit, SURE)))
-    return Table(
-        ("parameter", "value (± standard deviation)", "95 % interval"), tuple(rows), "Parameters of the added physics"
-    )
+            note = "" if name in told else "not told from zero"
+            si = f"{one.value:.5g} {one.unit.replace('-', '')}".strip()
+            rows.append((f"{effect.id}.{name}", deviation, interval(one.value, one.std, one.unit, SURE), si, note))
+    headings = ("parameter", "value (± standard deviation)", "95 % interval", "SI", "")
+    return Table(headings, tuple(rows), "Parameters of the added physics")

@@ -7,6 +7,7 @@ import numpy as np
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.tournament import ENOUGH, TIE
 from eha_core.effects import effects
+from eha_core.report.finding import IN_A_SENTENCE, counted, names_listed
 from eha_core.report.picture import Bars, Group, Panel, Picture, Upright
 from eha_core.report.stage import Stage, adds_physics
 from eha_core.report.wording import effect_title, listed
@@ -15,6 +16,8 @@ SHOWN = 12
 
 STUB = 1.6
 """How long the bar of what is not behind at all is drawn, as a factor on the logarithmic axis."""
+
+MILLION = 1e6
 
 NULL = "nothing added (recalibrated model)"
 
@@ -42,7 +45,12 @@ def named(effects: tuple[str, ...]) -> str:
 
 
 def _headline(diagnosis: Diagnosis) -> str:
-    winner = named(tuple(one.id for one in diagnosis.effects))
+    count = len(diagnosis.effects)
+    winner = (
+        named(tuple(one.id for one in diagnosis.effects))
+        if count <= IN_A_SENTENCE
+        else f"{counted(count)} effects together: {names_listed(diagnosis)}"
+    )
     return {
         "consistent": "Nothing needs to be added to the model",
         "parameters": "Other parameter values suffice; no physics has to be added",
@@ -52,29 +60,40 @@ def _headline(diagnosis: Diagnosis) -> str:
     }[diagnosis.verdict]
 
 
+def _rung(effects: set[str], chosen: set[str]) -> str:
+    """A hypothesis by its effects; a large set by how it differs from the one that was named."""
+    if len(effects) <= IN_A_SENTENCE:
+        return named(tuple(sorted(effects)))
+    if effects == chosen:
+        return f"the {counted(len(chosen))} named effects"
+    lacks = [f"without {effect_title(one)}" for one in sorted(chosen - effects)]
+    more = [f"with {effect_title(one)}" for one in sorted(effects - chosen)]
+    return f"the named effects {listed([*lacks, *more])}" if chosen & effects else named(tuple(sorted(effects)))
+
+
 def _picture(diagnosis: Diagnosis) -> Picture:
     """How far each hypothesis is behind the best, on a logarithmic axis; the model that adds nothing is among them."""
     best = float(diagnosis.rivals[0][1])
-    ranked = [(named(effects), set(effects), score) for effects, score in diagnosis.rivals[:SHOWN]]
+    chosen = {one.id for one in diagnosis.effects}
+    ranked = [(_rung(set(effects), chosen), set(effects), score) for effects, score in diagnosis.rivals[:SHOWN]]
     if all(effects for _, effects, _ in ranked):
         ranked.append((NULL, set(), 0.0))
     ranked.sort(key=lambda one: -one[2])
     top = max(best, 0.0)
     behind = np.array([top - score for _, _, score in ranked])
-    chosen = {one.id for one in diagnosis.effects}
     tied = [set(one.effects) for one in diagnosis.alternatives]
     roles = tuple(
         "after" if effects == chosen else "calibrated" if effects in tied else "other" for _, effects, _ in ranked
     )
-    texts = tuple("best" if one <= 0.0 else f"{one:,.0f} behind" for one in behind)
+    texts = tuple("best" if one <= 0.0 else f"{_large(one)} behind" for one in behind)
     rungs = Bars(tuple(name for name, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
     decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
-    ticks = tuple((exponent + np.log10(STUB), f"{10**exponent:,}") for exponent in decades)
+    ticks = tuple((exponent + np.log10(STUB), _large(10**exponent)) for exponent in decades)
     panel = Panel(
         (Upright(float(np.log10(TIE * STUB)), "told apart"), rungs),
         "evidence behind the best (log scale)",
         height=50 + 30 * len(ranked),
-        x_range=(0.0, 1.3 * (decades[-1] + np.log10(STUB))),
+        x_range=(0.0, 1.45 * (decades[-1] + np.log10(STUB))),
         x_ticks=ticks,
     )
     caption = (
@@ -83,6 +102,10 @@ def _picture(diagnosis: Diagnosis) -> Picture:
         f" from it. {_screened(diagnosis)}"
     )
     return Picture("4-name", (Group((panel,)),), caption=caption)
+
+
+def _large(value: float) -> str:
+    return f"{value:,.0f}" if value < MILLION else f"{value / MILLION:.3g} million"
 
 
 def _screened(diagnosis: Diagnosis) -> str:

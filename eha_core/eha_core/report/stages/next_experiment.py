@@ -8,9 +8,9 @@ import numpy as np
 
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import scale_for
 from eha_core.report.experiment_file import FILE, channels_to_record, commands
 from eha_core.report.picture import Group, Line, Panel, Picture
-from eha_core.report.quantities import scale_for
 from eha_core.report.series import thinned
 from eha_core.report.stage import Stage
 from eha_core.report.wording import channel_title, effect_title, listed, sentence

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import noise_floor
 from eha_core.report.picture import Group, Line, Mark, Panel, Picture, Spans
-from eha_core.report.quantities import quantity, scale_for
 from eha_core.report.series import thinned
 from eha_core.report.stage import Stage, Table
 from eha_core.report.wording import capital, channel_title, channels_listed, plain, sentence

@@ -6,10 +6,11 @@ import numpy as np
 
 from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.quantities import Scale, quantity, scale_for, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import improvement, left_over
+from eha_core.report.each_recording import recording_tables
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture
-from eha_core.report.quantities import Scale, quantity, scale_for, short
 from eha_core.report.series import autocorrelation, pieces, spread
 from eha_core.report.stage import Stage, Table, adds_physics, judged_spans
 from eha_core.report.wording import capital, channel_title
@@ -29,7 +30,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
         left_over(diagnosis),
         sentences,
         (_overlays(diagnosis), _whiteness(diagnosis), *_over_input(diagnosis)),
-        (error_table(diagnosis), *prediction_table(diagnosis)),
+        (error_table(diagnosis), *recording_tables(diagnosis), *prediction_table(diagnosis)),
     )
 
 
@@ -99,7 +100,7 @@ def _whole(diagnosis: Diagnosis, name: str) -> Group:
     return Group(
         (
             Panel(tuple(values), "time [s]", scale.unit, title, 170),
-            Panel(tuple(left), "time [s]", fine.unit, f"{title}: measured less modelled", 190),
+            Panel(tuple(left), "time [s]", fine.unit, f"{title}: residual", 190),
         )
     )
 

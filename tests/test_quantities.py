@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from eha_core.report.quantities import quantity, unit_text, with_deviation
+from eha_core.quantities import Quantity, quantity, unit_text, with_deviation
 
 
 @pytest.mark.parametrize(
@@ -18,7 +18,12 @@ from eha_core.report.quantities import quantity, unit_text, with_deviation
         (1.4e9, "Pa", "1.40 GPa"),
         (-0.4, "V", "-400 mV"),
         (0.48, "-", "0.480"),
-        (1e-12, "m^3/(s Pa)", "1.00 × 10⁻¹² m³/(s Pa)"),
+        (1e-12, "m^3/(s Pa)", "60.0 ml/min per MPa"),  # 1e-6 m^3/s at 1 MPa
+        (3e10, "Pa s/m^3", "500 kPa per l/min"),  # a litre a minute is 1/60000 m^3/s
+        (2e-8, "m^3/(s Pa^0.5)", "1.20 l/min per √MPa"),  # 2e-5 m^3/s at 1 MPa
+        (1e-4, "m^3/s", "6.00 l/min"),
+        (5e6, "N/m", "5.00 MN/m"),
+        (2.3e-12, "kg m^2", "2.30 × 10⁻¹² kg m²"),
         (0.0, "N", "0 N"),
         (0.0, "Pa", "0 Pa"),
         (1e-3, "m", "1.00 mm"),
@@ -37,7 +42,8 @@ def test_a_value_has_a_fitting_unit_and_three_digits(value: float, unit: str, sh
         (312.44, 3.91, "N", "312.4 ± 3.9 N"),
         (1998.1, 120.0, "N s/m", "1998 ± 120 N s/m"),
         (6.3, 11.2, "N", "6 ± 11 N"),
-        (1.02e-12, 3e-14, "m^3/(s Pa)", "(1.020 ± 0.030) × 10⁻¹² m³/(s Pa)"),
+        (1.02e-12, 3e-14, "m^3/(s Pa)", "61.2 ± 1.8 ml/min per MPa"),
+        (1.02e-12, 3e-14, "kg m^2", "(1.020 ± 0.030) × 10⁻¹² kg m²"),
         (5e-3, 2e-5, "s", "5.000 ± 0.020 ms"),
         (0.0, 1500.0, "Pa", "0.0 ± 1.5 kPa"),
         (250.0, 0.0, "N", "250 N"),
@@ -51,3 +57,9 @@ def test_digits_are_those_that_the_deviation_deserves(value: float, deviation: f
 def test_powers_in_units_are_raised_and_pure_numbers_have_none() -> None:
     assert unit_text("N s^2/m^2") == "N s²/m²"
     assert unit_text("-") == ""
+    assert unit_text("m^(5/2) kg^(-1/2)") == "m²√(m/kg)"
+
+
+def test_a_format_string_shows_a_value_in_a_readable_unit() -> None:
+    shown = "{force} or {force:4}, {ratio:%}".format(force=Quantity(76.41, "N"), ratio=Quantity(0.125, "-"))
+    assert shown == "76.4 N or 76.41 N, 12.5 %"

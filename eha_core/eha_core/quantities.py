@@ -14,7 +14,14 @@ _PREFIXES = {
     "A": ((1e-6, "µA"), (1e-3, "mA"), (1.0, "A")),
     "V": ((1e-6, "µV"), (1e-3, "mV"), (1.0, "V")),
     "N": ((1.0, "N"), (1e3, "kN"), (1e6, "MN")),
+    "N/m": ((1.0, "N/m"), (1e3, "kN/m"), (1e6, "MN/m")),
+    "m^3/s": ((1e-6 / 60.0, "ml/min"), (1e-3 / 60.0, "l/min")),
+    "m^3/(s Pa)": ((1e-12 / 60.0, "ml/min per MPa"), (1e-9 / 60.0, "l/min per MPa")),
+    "m^3/(s Pa^0.5)": ((1e-9 / 60.0, "ml/min per √MPa"), (1e-6 / 60.0, "l/min per √MPa")),
+    "Pa s/m^3": ((6e7, "kPa per l/min"), (6e10, "MPa per l/min")),
 }
+"""The units of an engineer's data sheet, by SI unit, each with its size in that; the smallest first."""
+
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -47,6 +54,8 @@ def scale_for(unit: str, magnitude: float) -> Scale:
 
 def unit_text(unit: str) -> str:
     """A unit with whole powers raised: m^3/(s Pa) as m³/(s Pa); nothing for the unit of pure numbers."""
+    if unit == "m^(5/2) kg^(-1/2)":
+        return "m²√(m/kg)"
     return "" if unit == "-" else re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit)
 
 
@@ -56,6 +65,20 @@ def quantity(value: float, unit: str, digits: int = 3) -> str:
         return "not known"
     scale = scale_for(unit, value)
     return f"{_rounded(value / scale.factor, digits)}{scale.suffix}"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A value in SI that a format string shows in readable units: "{}" with three digits, "{:4}" with four, "{:%}" as
+    percent."""
+
+    value: float
+    unit: str
+
+    def __format__(self, spec: str) -> str:
+        if spec == "%":
+            return f"{_rounded(100.0 * self.value, 3)} %"
+        return quantity(self.value, self.unit, int(spec or 3))
 
 
 def with_deviation(value: float, deviation: float, unit: str) -> str:

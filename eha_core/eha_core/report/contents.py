@@ -1,0 +1,31 @@
+"""What the page and the figures show, made once for both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.first_screen import pictures
+from eha_core.report.laws import laws
+from eha_core.report.picture import Picture
+from eha_core.report.stage import Stage
+from eha_core.report.stages import story
+
+
+@dataclass(frozen=True)
+class Contents:
+    """The pictures of the first screen, and the stages below it."""
+
+    first_screen: tuple[Picture, ...]
+    stages: tuple[Stage, ...]
+
+    @property
+    def figures(self) -> tuple[Picture, ...]:
+        """The pictures that are written as files: those of a stage's parts stand together on the first screen."""
+        return (*self.first_screen, *(picture for stage in self.stages for picture in stage.pictures))
+
+
+def contents_of(diagnosis: Diagnosis) -> Contents:
+    """Everything that there is to see of a diagnosis."""
+    found = laws(diagnosis)
+    return Contents(pictures(diagnosis, found), story(diagnosis, found))

@@ -1,0 +1,34 @@
+"""Several recordings on the page: what each says of the joint model, and how an unseen one is predicted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from eha_core.diagnosis import result
+from eha_core.diagnosis.result import ChannelFit, Diagnosis, Prediction, RecordingFit
+from eha_core.report.each_recording import recording_tables
+from eha_core.report.html import page
+
+
+def test_each_recording_has_its_errors_and_its_own_values(friction: Diagnosis) -> None:
+    assert recording_tables(friction) == ()
+    fits = [{"position": ChannelFit(9e-4, 5e-4, ratio * 1e-5, 1e-5)} for ratio in (1.02, 1.31)]
+    own = ({"constant_load.force": 120.0}, {"constant_load.force": -80.0})
+    triples = zip("ab", own, fits, strict=True)
+    together = tuple(RecordingFit(f"bags/{name}.mcap", values, fit) for name, values, fit in triples)
+    (table,) = recording_tables(replace(friction, together=together))
+    assert table.headings == ("recording", "position [× noise]", "constant load: force")
+    assert table.rows == (("a.mcap", "1.02", "120 N"), ("b.mcap", "1.31", "-80.0 N"))
+
+
+def test_an_unseen_recording_has_every_model_s_errors_beside_the_noise(friction: Diagnosis) -> None:
+    errors = {"nominal": 9e-4, "recalibrated": 5e-4, "augmented": 1.1e-5}
+    prediction = {name: {"position": Prediction({0.25: one}, 2.0 * one)} for name, one in errors.items()}
+    tested = replace(friction, tests=(result.TestedRecording("bags/c.mcap", prediction, {"position": 1e-5}),))
+    (table,) = recording_tables(tested)
+    assert "c.mcap" in table.title
+    assert table.rows == (
+        ("position, 0.25 s ahead", "900 µm", "500 µm", "11.0 µm", "10.0 µm"),
+        ("position, free-running", "1.80 mm", "1.00 mm", "22.0 µm", "10.0 µm"),
+    )
+    assert "Test on c.mcap" in page(tested)

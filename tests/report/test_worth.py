@@ -1,0 +1,133 @@
+"""Several effects told one by one: the order, the values, and what each is worth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eha_core.diagnosis.result import Diagnosis, FittedValue
+from eha_core.report.account import account
+from eha_core.report.claims import left_in_words
+from eha_core.report.finding import headline, told_parameters, warnings
+from eha_core.report.html import page
+from eha_core.report.picture import Bars, Cells, Upright
+from eha_core.report.stages import story
+from eha_core.report.summary import summarise
+from eha_core.report.worth import effect_table, ladder_picture, step_table, worth
+
+
+def bars_of(diagnosis: Diagnosis) -> list[Bars]:
+    picture = ladder_picture(diagnosis)
+    assert picture is not None
+    return [mark for group in picture.groups for mark in group.panels[0].marks if isinstance(mark, Bars)]
+
+
+def test_the_way_to_the_noise_has_every_model_with_what_it_leaves(several: Diagnosis) -> None:
+    added, left_out = bars_of(several)
+    assert added.names == (
+        "nominal model", "recalibrated, nothing added", "+ valve deadband", "+ Coulomb friction", "+ constant load",
+    )  # fmt: skip
+    overall = [one.residual.overall for one in several.steps]
+    assert 10.0 ** added.x[:-1] == pytest.approx(overall[:-1])
+    assert [float(text) for text in added.texts] == pytest.approx(overall, rel=5e-3)
+    assert left_out.names[-1] == "all of them"
+    assert [float(text) for text in left_out.texts[:3]] == pytest.approx(
+        [one.overall for one in several.without.values()], rel=5e-3
+    )
+    picture = ladder_picture(several)
+    assert picture is not None
+    threshold = next(mark for mark in picture.groups[0].panels[0].marks if isinstance(mark, Upright))
+    assert 10.0**threshold.x == pytest.approx(1.2)
+
+
+def test_a_single_effect_has_no_picture_of_the_set_without_it(several: Diagnosis) -> None:
+    alone = replace(several, effects=several.effects[:1], steps=several.steps[:3], without={})
+    assert len(bars_of(alone)) == 1
+    assert ladder_picture(replace(several, steps=(), without={})) is None
+
+
+def test_a_model_that_ran_away_is_not_drawn(several: Diagnosis) -> None:
+    endless = replace(several.steps[0].residual, overall=float("inf"))
+    ran_away = replace(several, steps=(replace(several.steps[0], residual=endless), *several.steps[1:]))
+    assert "nominal model" not in bars_of(ran_away)[0].names
+    assert np.all(np.isfinite(bars_of(ran_away)[0].x))
+
+
+def test_the_table_has_a_row_an_effect_in_their_order(several: Diagnosis) -> None:
+    table = effect_table(several)
+    assert [row[0] for row in table.rows] == ["Valve deadband", "Coulomb friction", "Constant load"]
+    assert table.rows[0][1:] == ("half width 59.60 ± 0.84 µA", "in the valve's flow", "20.0", "30.7")
+    assert table.rows[2][1] == "force -76.4 ± 1.0 N"
+    (steps,) = step_table(several)
+    assert steps.rows[1] == ("recalibrated, nothing added", "46.0", "54.0", "54.0", "51.5")
+    assert steps.rows[-1][0] == "all without constant load"
+
+
+def test_what_an_effect_is_worth_is_said_in_the_figures_own_numbers(several: Diagnosis) -> None:
+    assert worth(several, "valve_deadband") == (
+        "Added to the recalibrated model, it takes what is left from 51.5 to 20.0 times the noise. Without it, the"
+        " others fitted again, 30.7 times the noise are left."
+    )
+    assert "Added to the model with valve deadband, it takes what is left from 20.0 to 5.35" in worth(
+        several, "coulomb_friction"
+    )
+    assert "Added to the model with those above" in worth(several, "constant_load")
+    assert worth(several, "end_stop") == ""
+
+
+def test_the_story_has_a_part_for_each_effect_with_its_law(several: Diagnosis) -> None:
+    stage = {one.name: one for one in story(several)}["model"]
+    assert [part.title.partition(":")[0] for part in stage.parts] == [
+        "1. Valve deadband", "2. Coulomb friction", "3. Constant load",
+    ]  # fmt: skip
+    assert stage.parts[1].sentences[0] == "The seals rub with 200 N."
+    assert stage.parts[1].code == "M_p x_p'' = ... - force sign(x_p')"
+    assert all(part.pictures for part in stage.parts)
+    assert "valve deadband: half width with valve gain (0.95)" in " ".join(stage.sentences)
+    cells = [mark for one in stage.pictures for mark in one.groups[0].panels[0].marks if isinstance(mark, Cells)]
+    assert cells[0].names == ("valve gain", "valve deadband: half width", "constant load: force")
+    assert page(several).count("<article>") == 3
+
+
+def test_of_many_effects_the_first_sentence_has_the_names_and_the_table_the_values(several: Diagnosis) -> None:
+    assert headline(several) == (
+        "The model leaves out three effects: valve deadband, Coulomb friction and constant load."
+    )
+    part = replace(several, explained=replace(several.explained, complete=False))
+    assert "three effects, and more that is not named: valve" in headline(part)
+
+
+def test_what_is_not_told_from_nothing_is_no_finding(several: Diagnosis) -> None:
+    overlap = several.effects[0]
+    assert set(told_parameters(overlap)) == {"half_width"}
+    gradual = {**overlap.parameters, "rounding": FittedValue(9e-5, 3.2e-5, "A")}
+    assert set(told_parameters(replace(overlap, parameters=gradual))) == {"half_width", "rounding"}
+    neither = {name: FittedValue(1e-9, 1e-5, "A") for name in overlap.parameters}
+    assert set(told_parameters(replace(overlap, parameters=neither))) == {"half_width", "rounding"}
+    for text in (account(several), str(summarise(several)), headline(several)):
+        assert "rounding" not in text
+    table = {one.name: one for one in story(several)}["model"].tables[0]
+    assert table.rows[1][0] == "valve_deadband.rounding"
+    assert table.rows[1][-1] == "not told from zero"
+
+
+def test_what_is_left_is_said_with_its_size_and_its_colour(several: Diagnosis) -> None:
+    text = left_in_words(several)
+    ratios = [one.rmse_after / one.noise for one in several.held_out.values()]
+    assert text.startswith(f"What is left is noise: {min(ratios):.2f} to {max(ratios):.2f} times the noise, and white")
+    assert "largest autocorrelation 1.1 standard deviations" in text
+    drifting = replace(several, whiteness={"position": 8.0, "pressure_a": 1.0})
+    assert "not white in position (largest autocorrelation 8.0" in left_in_words(drifting)
+    assert "is noise" not in left_in_words(drifting)
+
+
+def test_a_recording_taken_as_it_is_and_a_damaged_one_are_announced_first(several: Diagnosis) -> None:
+    assert warnings(several) == ()
+    assert 'class="warning"' not in page(several)
+    doubtful = replace(several, remarks=("warning: taken as recorded, although position is in mm",), damaged="cut off")
+    assert warnings(doubtful)[0] == "Warning: taken as recorded, although position is in mm."
+    assert "cut off" in warnings(doubtful)[1]
+    text = page(doubtful)
+    assert text.index("taken as recorded") < text.index("<h1>")
