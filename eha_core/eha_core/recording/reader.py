@@ -11,27 +11,26 @@ from eha_core.errors import RecordingError, printable
 from eha_core.recording.bag import bag_topics, read_bag
 from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
 from eha_core.recording.clocks import on_one_clock, without_leaps
-from eha_core.recording.csv_file import read_csv
 from eha_core.recording.discovery import LEAKAGE_TOPIC, find_rules, leakage_topic
 from eha_core.recording.introspection import value_names
 from eha_core.recording.raw import RawRecording
 from eha_core.recording.recording import CHANNEL_KINDS, Channel, Recording
 from eha_core.recording.samples import Samples, on_one_span, put_in_order
+from eha_core.recording.table_file import channels_of
 from eha_core.recording.topic_columns import TopicColumns
 from eha_core.recording.units import in_model_units
 from eha_core.recording.writer import PARAMETERS_RECORD
+from eha_core.tables import is_table, read_table
 
 STANDARD_ATMOSPHERE = 101325.0
 """Taken from absolute pressures where the recording does not say `atmospheric_pressure` [Pa]."""
-
-_TEXT_ENDINGS = (".csv", ".tsv", ".txt")
 
 
 def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = None) -> Recording:
     """Read a recording.
 
     Args:
-        path: an .mcap or .db3 file, a rosbag2 folder, or a .csv file with a header row.
+        path: an .mcap or .db3 file, a rosbag2 folder, or a table: .csv, .lvm, .mat, .parquet.
         topics: a topics file, or one that is loaded already; without it channels are found by the contract's names.
 
     Raises:
@@ -43,9 +42,10 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
         raise RecordingError(f"{path}: there is no such file or folder")
     if not (path.is_file() or path.is_dir()):
         raise RecordingError(f"{path}: is neither a file nor a folder; name a recording")
-    if path.suffix.lower() in _TEXT_ENDINGS:
-        samples, rules, remarks = read_csv(path, topics_file)
-        return assemble(path, samples, rules, dict.fromkeys(rules, "csv"), RawRecording(), list(remarks))
+    if is_table(path):
+        table = read_table(path)
+        samples, rules, remarks = channels_of(path, table, topics_file)
+        return assemble(path, samples, rules, dict.fromkeys(rules, table.kind), RawRecording(), list(remarks))
     return _from_messages(path, topics_file)
 
 

@@ -1,0 +1,82 @@
+"""Units by the names that loggers write, with what makes SI of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eha_core.errors import RecordingError, remedy
+from eha_core.recording.recording import CHANNEL_KINDS
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit: of which SI unit it is `scale` times, and, for pressures that say so, whether they are gauge."""
+
+    si: str
+    scale: float
+    reference: str | None = None
+
+
+_PSI = 6894.757293168  # 0.45359237 kg x 9.80665 m/s^2 over a square inch
+_GALLON = 3.785411784e-3  # US gallon, 231 cubic inches
+
+UNITS: dict[str, Unit] = {
+    "s": Unit("s", 1.0), "ms": Unit("s", 1e-3), "us": Unit("s", 1e-6), "ns": Unit("s", 1e-9), "min": Unit("s", 60.0),
+    "V": Unit("V", 1.0), "mV": Unit("V", 1e-3),
+    "A": Unit("A", 1.0), "mA": Unit("A", 1e-3), "uA": Unit("A", 1e-6),
+    "m": Unit("m", 1.0), "cm": Unit("m", 1e-2), "mm": Unit("m", 1e-3), "um": Unit("m", 1e-6), "in": Unit("m", 0.0254),
+    "m/s": Unit("m/s", 1.0), "cm/s": Unit("m/s", 1e-2), "mm/s": Unit("m/s", 1e-3), "in/s": Unit("m/s", 0.0254),
+    "Pa": Unit("Pa", 1.0), "kPa": Unit("Pa", 1e3), "MPa": Unit("Pa", 1e6), "bar": Unit("Pa", 1e5),
+    "mbar": Unit("Pa", 1e2), "psi": Unit("Pa", _PSI),
+    "barg": Unit("Pa", 1e5, "gauge"), "bara": Unit("Pa", 1e5, "absolute"),
+    "psig": Unit("Pa", _PSI, "gauge"), "psia": Unit("Pa", _PSI, "absolute"),
+    "N": Unit("N", 1.0), "kN": Unit("N", 1e3), "lbf": Unit("N", 4.4482216152605),
+    "m^3/s": Unit("m^3/s", 1.0), "l/min": Unit("m^3/s", 1e-3 / 60.0), "l/s": Unit("m^3/s", 1e-3),
+    "cm^3/s": Unit("m^3/s", 1e-6), "gpm": Unit("m^3/s", _GALLON / 60.0),
+}  # fmt: skip
+"""What a topics file's `unit` may be."""
+
+_ALSO = {
+    "sec": "s", "second": "s", "seconds": "s", "msec": "ms", "millisecond": "ms", "milliseconds": "ms", "usec": "us",
+    "microseconds": "us", "nsec": "ns", "nanoseconds": "ns", "volt": "V", "volts": "V", "amp": "A", "amps": "A",
+    "ampere": "A", "meter": "m", "metre": "m", "meters": "m", "metres": "m", "inch": "in", "pascal": "Pa",
+    "newton": "N", "newtons": "N", "bar(g)": "barg", "bar(a)": "bara", "bar_g": "barg", "bar_a": "bara",
+    "bar(abs)": "bara", "bar abs": "bara", "bar rel": "barg", "lpm": "l/min", "l/m": "l/min", "ltr/min": "l/min",
+    "m3/s": "m^3/s", "cm3/s": "cm^3/s", "ccm/s": "cm^3/s", "usgpm": "gpm", "mps": "m/s", "mmps": "mm/s",
+}  # fmt: skip
+_LOWER = {name.lower(): name for name in UNITS if name not in ("MPa", "mPa")}
+
+
+def unit_named(text: str) -> Unit | None:
+    """The unit that a logger calls so; None where it is none of those known here."""
+    name = text.strip().replace("µ", "u").replace("μ", "u").replace("³", "^3").replace("²", "^2")
+    if name in UNITS:
+        return UNITS[name]
+    # Case tells milli from mega; only where no other unit is meant by it is it passed over.
+    lower = name.lower()
+    if lower in ("mpa", "mv", "ma") and name not in ("MPA", "MV", "MA"):
+        return UNITS[{"mpa": "MPa", "mv": "mV", "ma": "mA"}[lower]] if name != "mPa" else None
+    known = _ALSO.get(lower) or _LOWER.get(lower)
+    return UNITS[known] if known else None
+
+
+def name_of(unit: Unit) -> str:
+    """The name of a unit in a topics file; its reference is a key of its own there."""
+    return next(name for name, one in UNITS.items() if (one.si, one.scale) == (unit.si, unit.scale))
+
+
+def unit_of_channel(where: str, channel: str, text: str) -> Unit:
+    """The unit that a topics file says of a channel.
+
+    Raises:
+        RecordingError: it is no unit, or one of another quantity.
+    """
+    si = "s" if channel == "time" else CHANNEL_KINDS[channel].unit
+    fitting = [name for name, unit in UNITS.items() if unit.si == si]
+    unit = unit_named(text)
+    if unit is None:
+        raise RecordingError(f"{where}: unit {text!r} is not known; {remedy(text, fitting)}")
+    # A spool's position is told in the amperes that hold it there, and sensed in volts or metres.
+    if unit.si != si:
+        raise RecordingError(f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}")
+    return unit
