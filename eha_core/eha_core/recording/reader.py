@@ -57,7 +57,9 @@ def _from_messages(path: Path, topics_file: TopicsFile | None) -> Recording:
     sinks = {}
     for topic in dict.fromkeys(str(rule.topic) for rule in rules.values()):
         fields = {name: str(rule.field) for name, rule in rules.items() if rule.topic == topic}
-        sinks[topic] = TopicColumns(topics[topic], fields, value_names(path, topics, topic))
+        given = topics_file.channels.keys() & fields.keys() if topics_file else set()
+        optional = fields.keys() - given if given else set()
+        sinks[topic] = TopicColumns(topics[topic], fields, value_names(path, topics, topic), optional)
     raw = read_bag(path, sinks)
     decoded = [sink.finish() for sink in sinks.values()]
     remarks = [*found_remarks, *(remark for topic in decoded for remark in topic.remarks)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,12 +70,19 @@ class TopicColumns:
         topic: the topic.
         fields: paths inside the message by channel name.
         tables: the names of its values by version, for ros2_control's introspection.
+        optional: channels that are left out, with a remark, where it is open which element of the message they are.
 
     Raises:
         RecordingError: the type's definition is missing, or a field is not in the message.
     """
 
-    def __init__(self, topic: RawTopic, fields: Mapping[str, str], tables: Tables | None = None) -> None:
+    def __init__(
+        self,
+        topic: RawTopic,
+        fields: Mapping[str, str],
+        tables: Tables | None = None,
+        optional: Collection[str] = (),
+    ) -> None:
         self._topic = topic
         self._store, remark = recorded_types(topic.type_name, topic.encoding, topic.definition)
         self._steps: dict[str, Steps] = {name: parse_path(topic.name, path) for name, path in fields.items()}
@@ -83,6 +90,7 @@ class TopicColumns:
             check_path(topic.name, fields[name], steps, self._store, topic.type_name)
         self._named = any(uses_names(steps) for steps in self._steps.values())
         self._tables = tables or {}
+        self._optional = optional
         self._remarks = [f"{topic.name}: {remark}"] if remark else []
         self._templates: list[_Template] = []
         self._pending: list[tuple[int, bytes]] = []
@@ -105,7 +113,7 @@ class TopicColumns:
             self._read(whole, starts[part], lengths[part], log_times[part])
 
     def finish(self) -> DecodedTopic:
-        """All messages so far as columns.
+        """The messages since the last call as columns; they are not kept.
 
         Raises:
             RecordingError: which element of a message is meant is open.
@@ -116,7 +124,7 @@ class TopicColumns:
         name, remarks = self._topic.name, list(self._remarks)
         if self._lost:
             remarks.append(f"{name}: {self._lost} messages that do not decode were left out")
-        blocks = self._blocks or [_no_messages(self._steps)]
+        blocks, self._blocks = self._blocks or [_no_messages(self._steps)], []
         logged = np.concatenate([block[0] for block in blocks])
         stamps = np.concatenate([block[1] for block in blocks])
         columns = {channel: np.concatenate([block[2][channel] for block in blocks]) for channel in self._steps}
@@ -201,10 +209,12 @@ class TopicColumns:
         for channel, steps in self._steps.items():
             try:
                 runs[channel] = find(self._topic.name, steps, layout, self._tables, version)
-            except RecordingError:
+            except RecordingError as problem:
                 # What the first message has and a later one lacks is missing there, and no mistake.
-                if not (self._templates or self._blocks):
+                if not self._templates and channel not in self._optional:
                     raise
+                if not self._templates:
+                    self._remarks.append(f"{channel} left out: {problem}")
                 runs[channel] = None
         seconds, nanoseconds = (layout.runs.get(f"header.stamp.{part}") for part in ("sec", "nanosec"))
         places = np.array(sorted(marks), dtype=np.int64)
