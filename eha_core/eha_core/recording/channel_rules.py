@@ -8,9 +8,9 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from eha_core.errors import RecordingError
+from eha_core.errors import RecordingError, remedy
 from eha_core.recording.recording import CHANNEL_KINDS
-from eha_core.recording.unit_names import unit_of_channel
+from eha_core.unit_names import UNITS, Unit, unit_named
 from eha_core.yaml_file import load_yaml
 
 ABSOLUTE, GAUGE = "absolute", "gauge"
@@ -118,7 +118,23 @@ def _rule(path: str | Path, channel: str, entry: Any) -> ChannelRule | None:
     if "unit" in values and "scale" in values:
         raise RecordingError(f"{where}: unit and scale say the same thing; keep one")
     if values.get("unit") is not None:
-        unit = unit_of_channel(where, channel, values["unit"])
+        unit = _unit_of(where, channel, values["unit"])
         values["scale"] = unit.scale
         values.setdefault("reference", unit.reference)
     return ChannelRule(**values)
+
+
+def _unit_of(where: str, channel: str, text: str) -> Unit:
+    """The unit that a topics file says of a channel.
+
+    Raises:
+        RecordingError: it is no unit, or one of another quantity.
+    """
+    si = "s" if channel == "time" else CHANNEL_KINDS[channel].unit
+    fitting = [name for name, unit in UNITS.items() if unit.si == si]
+    unit = unit_named(text)
+    if unit is None:
+        raise RecordingError(f"{where}: unit {text!r} is not known; {remedy(text, fitting)}")
+    if unit.si != si:
+        raise RecordingError(f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}")
+    return unit

@@ -20,8 +20,8 @@ from eha_core.recording.introspection import value_names
 from eha_core.recording.message_types import recorded_types
 from eha_core.recording.raw import RawTopic
 from eha_core.recording.topic_columns import BLOCK, TopicColumns
-from eha_core.recording.unit_names import UNITS, unit_named
 from eha_core.tables import Table, is_table, read_table, unit_in
+from eha_core.unit_names import UNITS, unit_named
 
 MOST_FIELDS = 200
 """Numbers of a topic, or columns of a table, that are listed."""

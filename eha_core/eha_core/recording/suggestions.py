@@ -14,7 +14,7 @@ from eha_core.recording.discovery import find_rules
 from eha_core.recording.inspection import Field, Inspection
 from eha_core.recording.recording import CHANNEL_KINDS
 from eha_core.recording.table_file import EPOCHS, LONGEST_STEP
-from eha_core.recording.unit_names import UNITS, Unit, name_of, unit_named
+from eha_core.unit_names import UNITS, Unit, name_of, unit_named
 
 _FIRST, _SECOND = "(a|1|head|cap|piston|bore|kolben|boden)", "(b|2|rod|annulus|ring|stange)"
 _PRESSURE, _FLOW = "(p|pres|press|pressure|druck|fluid_pressure)", "(q|flow|volumenstrom)"

@@ -12,8 +12,8 @@ from eha_core.errors import RecordingError
 from eha_core.recording.channel_rules import ChannelRule, TopicsFile
 from eha_core.recording.recording import CHANNEL_KINDS
 from eha_core.recording.samples import Samples
-from eha_core.recording.unit_names import unit_named
 from eha_core.tables import Column, Table
+from eha_core.unit_names import unit_named
 
 LONGEST_STEP = 1.0
 """s between samples from which on a time is no second's count: so slow a recording shows no actuator's dynamics."""

@@ -8,7 +8,7 @@ import pytest
 
 from eha_core.errors import RecordingError
 from eha_core.recording import load_topics_file
-from eha_core.recording.unit_names import UNITS, name_of, unit_named
+from eha_core.unit_names import UNITS, name_of, unit_named
 
 
 @pytest.mark.parametrize(

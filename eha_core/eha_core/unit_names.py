@@ -1,11 +1,8 @@
-"""Units by the names that loggers write, with what makes SI of them."""
+"""Units by the names that loggers and data sheets write, with what makes SI of them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-from eha_core.errors import RecordingError, remedy
-from eha_core.recording.recording import CHANNEL_KINDS
 
 
 @dataclass(frozen=True)
@@ -32,11 +29,17 @@ UNITS: dict[str, Unit] = {
     "psig": Unit("Pa", _PSI, "gauge"), "psia": Unit("Pa", _PSI, "absolute"),
     "N": Unit("N", 1.0), "kN": Unit("N", 1e3), "lbf": Unit("N", 4.4482216152605),
     "m^3/s": Unit("m^3/s", 1.0), "l/min": Unit("m^3/s", 1e-3 / 60.0), "l/s": Unit("m^3/s", 1e-3),
-    "cm^3/s": Unit("m^3/s", 1e-6), "gpm": Unit("m^3/s", _GALLON / 60.0),
+    "ml/min": Unit("m^3/s", 1e-6 / 60.0), "cm^3/s": Unit("m^3/s", 1e-6), "gpm": Unit("m^3/s", _GALLON / 60.0),
+    "kg": Unit("kg", 1.0), "t": Unit("kg", 1e3), "lb": Unit("kg", 0.45359237),
+    "m^3": Unit("m^3", 1.0), "l": Unit("m^3", 1e-3), "cm^3": Unit("m^3", 1e-6), "ml": Unit("m^3", 1e-6),
+    "Hz": Unit("Hz", 1.0), "rad/s": Unit("Hz", 0.15915494309189535),  # 1 / (2 pi)
+    "ohm": Unit("ohm", 1.0), "kohm": Unit("ohm", 1e3), "henry": Unit("H", 1.0), "mH": Unit("H", 1e-3),
+    "N/m": Unit("N/m", 1.0), "N/mm": Unit("N/m", 1e3), "Ns/m": Unit("N s/m", 1.0), "GPa": Unit("Pa", 1e9),
 }  # fmt: skip
-"""What a topics file's `unit` may be."""
+"""What a topics file's `unit`, or a value of a data sheet, may be in."""
 
 _ALSO = {
+    "\u03a9": "ohm", "ohms": "ohm", "n s/m": "Ns/m", "n*s/m": "Ns/m", "cc": "cm^3", "cm3": "cm^3", "m3": "m^3",
     "sec": "s", "second": "s", "seconds": "s", "msec": "ms", "millisecond": "ms", "milliseconds": "ms", "usec": "us",
     "microseconds": "us", "nsec": "ns", "nanoseconds": "ns", "volt": "V", "volts": "V", "amp": "A", "amps": "A",
     "ampere": "A", "meter": "m", "metre": "m", "meters": "m", "metres": "m", "inch": "in", "pascal": "Pa",
@@ -63,20 +66,3 @@ def unit_named(text: str) -> Unit | None:
 def name_of(unit: Unit) -> str:
     """The name of a unit in a topics file; its reference is a key of its own there."""
     return next(name for name, one in UNITS.items() if (one.si, one.scale) == (unit.si, unit.scale))
-
-
-def unit_of_channel(where: str, channel: str, text: str) -> Unit:
-    """The unit that a topics file says of a channel.
-
-    Raises:
-        RecordingError: it is no unit, or one of another quantity.
-    """
-    si = "s" if channel == "time" else CHANNEL_KINDS[channel].unit
-    fitting = [name for name, unit in UNITS.items() if unit.si == si]
-    unit = unit_named(text)
-    if unit is None:
-        raise RecordingError(f"{where}: unit {text!r} is not known; {remedy(text, fitting)}")
-    # A spool's position is told in the amperes that hold it there, and sensed in volts or metres.
-    if unit.si != si:
-        raise RecordingError(f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}")
-    return unit
