@@ -39,6 +39,15 @@ def test_the_package_allows_what_is_tested_and_nothing_older() -> None:
             assert [one.version for one in bound.specifier] == [ros[name]], name
 
 
+def test_what_is_optional_allows_what_is_tested() -> None:
+    settings = configparser.ConfigParser()
+    settings.read(ROOT / "eha_core" / "setup.cfg")
+    optional = [Requirement(row) for row in settings["options.extras_require"]["files"].split("\n") if row]
+    develop = pins("develop.txt")
+    assert {one.name for one in optional} == {"h5py", "pyarrow"}
+    assert all(one.specifier.contains(develop[one.name]) for one in optional)
+
+
 def test_the_container_makes_the_environment() -> None:
     settings = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
     assert settings["postCreateCommand"].startswith("make ")

@@ -27,7 +27,7 @@ def test_an_unknown_value_may_go_a_thousandfold():
 @pytest.mark.timeout(400)
 @pytest.mark.parametrize("unknown", [(), ("damping_coefficient",)], ids=["believed", "said to be unknown"])
 def test_damping_far_from_its_guess_is_found_and_the_friction_beside_it(unknown):
-    found = diagnose_together([recorded(RIG, duration=5.0)], NominalModel(nominal_values(), frozenset(unknown)))
+    found = diagnose_together([recorded(RIG, duration=8.0)], NominalModel(nominal_values(), frozenset(unknown)))
     assert [effect.id for effect in found.effects] == ["coulomb_friction"]
     damping = next(one for one in found.parameters if one.name == "damping_coefficient")
     assert damping.fitted == pytest.approx(RIG["damping_coefficient"], rel=0.02)

@@ -61,9 +61,9 @@ def test_gaps_and_words_are_left_out_and_counted(tmp_path: Path) -> None:
     [
         ("", "has no samples"),
         ("time,position\n", "has no samples"),
-        ("t,position\n0,1\n1,2\n", "no column 'time' in the header"),
-        ("0,1\n1,2\n", "the first row holds numbers; add a header row"),
-        ("time,position,position\n0,1,1\n", "share one name"),
+        ("t,position\n0,1\n1,2\n", r"no column 'time' \(t, position\); name the times"),
+        ("0,1\n1,2\n", r"no column 'time' \(column 1, column 2\)"),
+        ("time,position,position\n0,1,1\n", r"2 columns are called position; they are position \(1\) and so on"),
         ("time,place\n0,1\n", "no usable channel"),
         ("time,position\nnoon,1\nlate,2\n", "holds no numbers; it must be the time in s"),
         ("time,position\n0,nan\n1,nan\n", "no usable channel"),

@@ -232,7 +232,7 @@ def test_the_simulators_truth_is_not_read_as_a_measurement(tmp_path: Path) -> No
     [
         ("channels: {pressure_a: {topic: /p}}", "no topic /p for channel pressure_a; recorded are /chamber_a/pressure"),
         ("channels: {presure_a: {topic: /p}}", "unknown channel 'presure_a'; known are voltage_command, current"),
-        ("channels: {position: {topic: /joint_states, unit: mm}}", "unknown key of position 'unit'"),
+        ("channels: {position: {topic: /joint_states, units: mm}}", "unknown key of position 'units'"),
         ("channels: {position: {scale: big}}", "channel position: scale 'big' is no number"),
         ("channels: {pressure_a: {reference: sealed}}", "reference 'sealed'; say absolute or gauge"),
         ("channels: {position: {field: places}}", "no field 'places'; its fields are header, name, position"),

@@ -1,8 +1,8 @@
 # PYTHON_ARGCOMPLETE_OK
 """The command line `eha`: one verb, one file in this folder, no list of them.
 
-A verb's module offers `add_parser(subparsers)`, which adds the verb under the module's name, and
-`run(arguments) -> int`, which returns the exit status.
+A verb's module offers `add_parser(subparsers)`, which adds the verb under the module's name, with a dash where that has
+an underscore, and `run(arguments) -> int`, which returns the exit status.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ class _Parser(argparse.ArgumentParser):
 
 def verbs() -> list[str]:
     """The verbs, which are the modules of this package."""
-    return sorted(module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_"))
+    modules = (module.name for module in pkgutil.iter_modules(__path__))
+    return sorted(name.replace("_", "-") for name in modules if not name.startswith("_"))
 
 
 def _list_verbs(parser: argparse.ArgumentParser, known: Sequence[str]) -> None:
@@ -66,7 +67,7 @@ def main(words: Sequence[str] | None = None) -> int:
     typed = os.environ.get("COMP_LINE", "").split()[1:2] if completing else words[:1]
     wanted = typed if typed and typed[0] in known else known
     subparsers = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
-    modules = {verb: import_module(f"{__name__}.{verb}") for verb in wanted}
+    modules = {verb: import_module(f"{__name__}.{verb.replace('-', '_')}") for verb in wanted}
     for module in modules.values():
         module.add_parser(subparsers)
     if completing:

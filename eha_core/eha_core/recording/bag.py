@@ -12,8 +12,8 @@ from rosbags.rosbag2 import Reader
 from rosbags.rosbag2.errors import ReaderError
 
 from eha_core.errors import RecordingError
-from eha_core.recording.mcap_file import read_mcap
-from eha_core.recording.raw import RawRecording, RawTopic, TopicFilter
+from eha_core.recording.mcap_file import mcap_topics, read_mcap
+from eha_core.recording.raw import RawRecording, RawTopic, Sinks
 from eha_core.recording.unpacking import Ceiling
 from eha_core.yaml_file import load_yaml
 
@@ -22,19 +22,42 @@ _COMPUTED = re.compile(r"generated\s+always|\bas\s*\(|\bvirtual\s+table\b", re.I
 _ROW = 32  # bytes of a row beside its message
 
 
-def read_bag(path: Path, wanted: TopicFilter) -> RawRecording:
-    """Read the topics that `wanted` accepts from a file or a folder.
+def bag_topics(path: Path) -> dict[str, RawTopic]:
+    """The topics of a file or a folder by name.
+
+    Raises:
+        RecordingError: there is nothing that can be read.
+    """
+    if not path.is_dir():
+        return _topics_of_file(path)
+    files = _files_of(path)
+    topics: dict[str, RawTopic] = {}
+    for file in files:
+        try:
+            topics = {**_topics_of_file(file), **topics}
+        except RecordingError:
+            if len(files) == 1:
+                raise
+    return topics
+
+
+def read_bag(path: Path, sinks: Sinks) -> RawRecording:
+    """Read the messages of the topics that `sinks` names from a file or a folder.
 
     Raises:
         RecordingError: there is nothing that can be read.
     """
     if path.is_dir():
-        return _read_files(path, _files_of(path), wanted)
-    return _read_file(path, wanted)
+        return _read_files(path, _files_of(path), sinks)
+    return _read_file(path, sinks)
 
 
-def _read_file(path: Path, wanted: TopicFilter) -> RawRecording:
-    return _read_sqlite(path, wanted) if path.suffix == ".db3" else read_mcap(path, wanted)
+def _topics_of_file(path: Path) -> dict[str, RawTopic]:
+    return _read_sqlite(path, {}).topics if path.suffix == ".db3" else mcap_topics(path)
+
+
+def _read_file(path: Path, sinks: Sinks) -> RawRecording:
+    return _read_sqlite(path, sinks) if path.suffix == ".db3" else read_mcap(path, sinks)
 
 
 def _files_of(folder: Path) -> list[Path]:
@@ -66,11 +89,11 @@ def _numbered(file: Path) -> tuple[int, str]:
     return (int(match[1]) if match else -1, file.name)
 
 
-def _read_files(folder: Path, files: list[Path], wanted: TopicFilter) -> RawRecording:
+def _read_files(folder: Path, files: list[Path], sinks: Sinks) -> RawRecording:
     whole = RawRecording()
     for file in files:
         try:
-            part = _read_file(file, wanted)
+            part = _read_file(file, sinks)
         except RecordingError as error:
             if len(files) == 1:
                 raise
@@ -80,15 +103,15 @@ def _read_files(folder: Path, files: list[Path], wanted: TopicFilter) -> RawReco
         for name, values in part.metadata.items():
             whole.metadata.setdefault(name, {}).update(values)
         for name, topic in part.topics.items():
-            joined = whole.topics.setdefault(name, topic)
-            if joined is not topic:
-                joined.log_times += topic.log_times
-                joined.payloads += topic.payloads
+            whole.topics.setdefault(name, topic)
+        for name, count in part.counts.items():
+            whole.counts[name] = whole.counts.get(name, 0) + count
     return whole
 
 
-def _read_sqlite(path: Path, wanted: TopicFilter) -> RawRecording:
+def _read_sqlite(path: Path, sinks: Sinks) -> RawRecording:
     recording = RawRecording()
+    read = 0
     try:
         ceiling = Ceiling(str(path), path.stat().st_size)
         _refuse_programs(path)
@@ -99,15 +122,16 @@ def _read_sqlite(path: Path, wanted: TopicFilter) -> RawRecording:
                 recording.topics[connection.topic] = RawTopic(
                     connection.topic, connection.msgtype, encoding, definition.data
                 )
-            connections = [connection for connection in reader.connections if wanted(connection.topic)]
+                recording.counts[connection.topic] = connection.msgcount
+            connections = [connection for connection in reader.connections if connection.topic in sinks]
             for connection, log_time, data in reader.messages(connections) if connections else ():
                 ceiling.take(len(data) + _ROW)
-                recording.topics[connection.topic].log_times.append(log_time)
-                recording.topics[connection.topic].payloads.append(bytes(data))
+                sinks[connection.topic].add(log_time, bytes(data))
+                read += 1
     except FileNotFoundError:
         raise RecordingError(f"{path}: there is no such file") from None
     except (ReaderError, apsw.Error, OSError, ValueError, TypeError, LookupError, AttributeError) as error:
-        if not any(topic.payloads for topic in recording.topics.values()):
+        if not read:
             raise RecordingError(f"{path}: cannot be read as a rosbag2 file ({error})") from error
         recording.damage.append(f"reading stopped at a damaged place ({error})")
     return recording

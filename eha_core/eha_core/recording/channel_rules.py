@@ -8,8 +8,9 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from eha_core.errors import RecordingError
+from eha_core.errors import RecordingError, remedy
 from eha_core.recording.recording import CHANNEL_KINDS
+from eha_core.unit_names import UNITS, Unit, unit_named
 from eha_core.yaml_file import load_yaml
 
 ABSOLUTE, GAUGE = "absolute", "gauge"
@@ -17,15 +18,16 @@ ABSOLUTE, GAUGE = "absolute", "gauge"
 
 @dataclass(frozen=True)
 class ChannelRule:
-    """How one channel is taken from a topic's field or a CSV column: value = scale * raw + offset.
+    """How one channel is taken from a topic's field or a table's column: value = scale * raw + offset.
 
     Attributes:
         topic: full topic name; None where the channel's default topic serves.
         field: path inside the message, for example `position[0]`; None where the default field serves.
-        column: CSV column; None where it is named like the channel.
+        column: a table's column; None where it is named like the channel.
         scale: factor to SI units.
         offset: added after scaling [SI unit].
         reference: for pressures, "absolute" or "gauge"; None where nothing was said, which counts as absolute.
+        unit: the unit that was named, which `scale` and `reference` already stand for.
     """
 
     topic: str | None = None
@@ -34,6 +36,7 @@ class ChannelRule:
     scale: float = 1.0
     offset: float = 0.0
     reference: str | None = None
+    unit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -109,7 +112,29 @@ def _rule(path: str | Path, channel: str, entry: Any) -> ChannelRule | None:
                 raise RecordingError(f"{where}: {name} {values[name]:g} makes no numbers of what was recorded")
     if values.get("reference") not in (None, ABSOLUTE, GAUGE):
         raise RecordingError(f"{where}: reference {values['reference']!r}; say {ABSOLUTE} or {GAUGE}")
-    for name in ("topic", "field", "column"):
-        if name in values:
+    for name in ("topic", "field", "column", "unit"):
+        if values.get(name) is not None:
             values[name] = str(values[name])
+    if "unit" in values and "scale" in values:
+        raise RecordingError(f"{where}: unit and scale say the same thing; keep one")
+    if values.get("unit") is not None:
+        unit = _unit_of(where, channel, values["unit"])
+        values["scale"] = unit.scale
+        values.setdefault("reference", unit.reference)
     return ChannelRule(**values)
+
+
+def _unit_of(where: str, channel: str, text: str) -> Unit:
+    """The unit that a topics file says of a channel.
+
+    Raises:
+        RecordingError: it is no unit, or one of another quantity.
+    """
+    si = "s" if channel == "time" else CHANNEL_KINDS[channel].unit
+    fitting = [name for name, unit in UNITS.items() if unit.si == si]
+    unit = unit_named(text)
+    if unit is None:
+        raise RecordingError(f"{where}: unit {text!r} is not known; {remedy(text, fitting)}")
+    if unit.si != si:
+        raise RecordingError(f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}")
+    return unit

@@ -12,14 +12,6 @@ LEAKAGE_TOPIC = "internal_leakage"
 _MEASURED = ("joint_states", "chamber_a/pressure", "chamber_b/pressure")
 
 
-def may_matter(topic: str, topics_file: TopicsFile | None) -> bool:
-    """Whether a topic's messages may be needed, judged by its name alone."""
-    if topics_file and any(rule and rule.topic == topic for rule in topics_file.channels.values()):
-        return True
-    relative_names = {rule.topic for rule in (*DEFAULT_RULES.values(), *STATE_RULES.values())} | {LEAKAGE_TOPIC}
-    return any(_namespace(topic, str(name)) is not None for name in relative_names)
-
-
 def _namespace(topic: str, relative: str) -> str | None:
     """The namespace in which `topic` is the relative name, without slashes at its ends; None if it is another topic."""
     name = topic.strip("/")

@@ -5,27 +5,31 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import IO, Any
 
+import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader, breakup_chunk
+from mcap.stream_reader import StreamReader
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 from zstandard import ZstdError
 
 from eha_core.errors import RecordingError
-from eha_core.recording.raw import RawRecording, RawTopic, TopicFilter
+from eha_core.recording.raw import RawRecording, RawTopic, Sink, Sinks
 from eha_core.recording.unpacking import LARGEST_CHUNK, Ceiling, unpacked, unpacked_start
 
 # What parsing of arbitrary bytes raises: ends too early, bad lengths and text, checksums, broken compression.
 _UNREADABLE = (McapError, ZstdError, struct.error, ValueError, RuntimeError, MemoryError, OverflowError, LookupError)
 _RECORD_HEAD = struct.Struct("<BQ")  # kind, length
+_MESSAGE_HEAD = struct.Struct("<BQHIQQ")  # kind, length, channel, sequence, log time, publish time
 _CHECKSUM_SIZE = 4
 _KINDS: dict[int, Any] = {
     Opcode.FOOTER: Footer, Opcode.SCHEMA: Schema, Opcode.CHANNEL: Channel, Opcode.MESSAGE: Message,
@@ -36,26 +40,22 @@ _FOOTER_SIZE = _RECORD_HEAD.size + 8 + 8 + _CHECKSUM_SIZE + len(MCAP0_MAGIC)
 
 
 class _Collector:
-    """Sorts records into topics."""
+    """Sorts records into topics, and hands messages to those who want them."""
 
-    def __init__(self, wanted: TopicFilter, ceiling: Ceiling) -> None:
+    def __init__(self, sinks: Sinks, ceiling: Ceiling) -> None:
         self.recording = RawRecording()
         self.ceiling = ceiling
         self.message_count = 0
         self.bad_chunks = 0
         self.lost_messages = 0
-        self._wanted = wanted
+        self._sinks = sinks
         self._schemas: dict[int, Schema] = {}
-        self._topics: dict[int, RawTopic | None] = {}
+        self._topics: dict[int, tuple[str, Sink | None]] = {}
 
     def add(self, record: McapRecord) -> None:
         if isinstance(record, Message):
-            self.message_count += 1
-            if record.channel_id not in self._topics:
-                self.lost_messages += 1
-            elif topic := self._topics[record.channel_id]:
-                topic.log_times.append(record.log_time)
-                topic.payloads.append(record.data)
+            if sink := self._count(record.channel_id, 1):
+                sink.add(record.log_time, record.data)
         elif isinstance(record, Schema):
             self._schemas[record.id] = record
         elif isinstance(record, Channel):
@@ -63,17 +63,91 @@ class _Collector:
         elif isinstance(record, Metadata):
             self.recording.metadata.setdefault(record.name, {}).update(record.metadata)
 
+    def add_content(self, content: bytes, is_cut: bool = False) -> None:
+        """Take the records of a chunk, all or none; of one whose end is missing those that are whole.
+
+        Raises one of _UNREADABLE where they are damaged.
+        """
+        found = _walk(content, is_cut)
+        for record in found.others:
+            self.add(record)
+        for channel, (starts, ends, log_times) in found.messages.items():
+            if sink := self._count(channel, len(starts)):
+                first = np.array(starts, dtype=np.int64)
+                logged = np.array(log_times, dtype=np.uint64).astype(np.int64)
+                sink.add_block(content, first, np.array(ends, dtype=np.int64) - first, logged)
+
+    def _count(self, channel: int, count: int) -> Sink | None:
+        """Count messages of a channel; return who wants them."""
+        self.message_count += count
+        if channel not in self._topics:
+            self.lost_messages += count
+            return None
+        topic, sink = self._topics[channel]
+        self.recording.counts[topic] = self.recording.counts.get(topic, 0) + count
+        return sink
+
     def _add_channel(self, channel: Channel) -> None:
         schema = self._schemas.get(channel.schema_id)
         type_name = schema.name if schema else ""
         definition = schema.data.decode("utf-8", errors="replace") if schema else ""
         topic = RawTopic(channel.topic, type_name, schema.encoding if schema else "", definition)
-        topic = self.recording.topics.setdefault(channel.topic, topic)
-        self._topics[channel.id] = topic if channel.message_encoding == "cdr" and self._wanted(channel.topic) else None
+        self.recording.topics.setdefault(channel.topic, topic)
+        sink = self._sinks.get(channel.topic) if channel.message_encoding == "cdr" else None
+        self._topics[channel.id] = (channel.topic, sink)
 
 
-def read_mcap(path: Path, wanted: TopicFilter) -> RawRecording:
-    """Read the topics that `wanted` accepts.
+@dataclass
+class _Found:
+    """The records of a chunk: where each channel's messages begin and end, when they were recorded, and the rest."""
+
+    messages: dict[int, tuple[list[int], list[int], list[int]]]
+    others: list[McapRecord]
+
+
+def _walk(content: bytes, is_cut: bool) -> _Found:
+    found = _Found({}, [])
+    position, size = 0, len(content)
+    unpack, head = _MESSAGE_HEAD.unpack_from, _MESSAGE_HEAD.size
+    while position < size:
+        if content[position] == Opcode.MESSAGE and position + head <= size:
+            _, length, channel, _, log_time, _ = unpack(content, position)
+            start, position = position + head, position + _RECORD_HEAD.size + length
+            if not start <= position <= size:
+                break
+            rows = found.messages.get(channel)
+            if rows is None:
+                rows = found.messages[channel] = ([], [], [])
+            rows[0].append(start)
+            rows[1].append(position)
+            rows[2].append(log_time)
+            continue
+        record, position = next(_records(BytesIO(content), position, size), (None, size + 1))
+        if record is not None:
+            found.others.append(record)
+    if position != size and not is_cut:
+        raise ValueError("its records do not fill the chunk")
+    return found
+
+
+def mcap_topics(path: Path) -> dict[str, RawTopic]:
+    """The topics of a file by name: from its summary, or where that is missing from its whole length.
+
+    Raises:
+        RecordingError: as `read_mcap`.
+    """
+    with _opened(path) as (stream, size):
+        summary = _summary(stream, size)
+        collector = _Collector({}, Ceiling(str(path), size))
+        if summary is None:
+            return _read_records(stream, size, collector).topics
+        for record in (*summary.schemas.values(), *summary.channels.values()):
+            collector.add(record)
+        return collector.recording.topics
+
+
+def read_mcap(path: Path, sinks: Sinks) -> RawRecording:
+    """Read the messages of the topics that `sinks` names.
 
     Chunks with a wrong checksum are left out, and after broken structure reading goes on at the next chunk that the
     summary knows; `damage` of the result then says what was lost.
@@ -81,6 +155,12 @@ def read_mcap(path: Path, wanted: TopicFilter) -> RawRecording:
     Raises:
         RecordingError: the file cannot be opened, is no MCAP, or unpacks to more than a file of its size may.
     """
+    with _opened(path) as (stream, size):
+        return _read_records(stream, size, _Collector(sinks, Ceiling(str(path), size)))
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[tuple[IO[bytes], int]]:
     try:
         with path.open("rb") as stream:
             magic = stream.read(len(MCAP0_MAGIC))
@@ -88,8 +168,7 @@ def read_mcap(path: Path, wanted: TopicFilter) -> RawRecording:
                 raise RecordingError(f"{path}: the file is empty; record again")
             if magic != MCAP0_MAGIC:
                 raise RecordingError(f"{path}: not an MCAP file (it starts with other bytes)")
-            size = path.stat().st_size
-            return _read_records(stream, size, _Collector(wanted, Ceiling(str(path), size)))
+            yield stream, path.stat().st_size
     except OSError as error:
         raise RecordingError(f"{path}: cannot be read ({error.strerror})") from error
 
@@ -175,12 +254,12 @@ def _parse(kind: int, content: bytes) -> McapRecord:
 def _add_chunk(chunk: Chunk, collector: _Collector) -> None:
     """Hand all records of a chunk to the collector, or none and count it if it is damaged."""
     try:
-        records = breakup_chunk(unpacked(chunk, collector.ceiling), validate_crc=True)
+        content = unpacked(chunk, collector.ceiling)
+        if chunk.uncompressed_crc not in (0, zlib.crc32(content)):
+            raise ValueError("the chunk has another checksum")
+        collector.add_content(content)
     except _UNREADABLE:
         collector.bad_chunks += 1
-        return
-    for record in records:
-        collector.add(record)
 
 
 def _add_cut_chunk(stream: IO[bytes], start: int, collector: _Collector) -> None:
@@ -197,9 +276,7 @@ def _add_cut_chunk(stream: IO[bytes], start: int, collector: _Collector) -> None
     if len(content) >= chunk.uncompressed_size:
         return
     collector.ceiling.take(len(content))
-    for record, _ in _records(BytesIO(content), 0, len(content)):
-        if record:
-            collector.add(record)
+    collector.add_content(content, is_cut=True)
 
 
 def _summary(stream: IO[bytes], size: int) -> Summary | None:

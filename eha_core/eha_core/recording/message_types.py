@@ -151,21 +151,17 @@ def _elements(types: Any, type_name: str, levels: int) -> int:
     return total
 
 
-class Decoder:
-    """Reads CDR bytes of one message type by the definition that its recording carries.
+def recorded_types(type_name: str, encoding: str, definition: str) -> tuple[Typestore, str | None]:
+    """The types by which a recording's messages are read, and a remark where they are not its own.
 
     A recording without definitions (the SQLite bags of older distributions) is read by the installed ones, and so is
-    one whose definition is damaged; `remark` then says so.
+    one whose definition is damaged.
+
+    Raises:
+        RecordingError: the type is neither defined in the recording nor installed.
     """
-
-    def __init__(self, type_name: str, encoding: str, definition: str) -> None:
-        self.type_name = type_name
-        self.remark: str | None = None
-        store = _recorded_types(type_name, encoding, definition) if definition.strip() else None
-        self._store = store or require_type(type_name)
-        if definition.strip() and store is None:
-            self.remark = f"the definition of {type_name} in the file cannot be used; the installed one was taken"
-
-    def __call__(self, data: bytes) -> Any:
-        """The message as an object with the fields as attributes; raises rosbags' SerdeError for malformed bytes."""
-        return self._store.deserialize_cdr(data, self.type_name)
+    store = _recorded_types(type_name, encoding, definition) if definition.strip() else None
+    if store is not None:
+        return store, None
+    remark = f"the definition of {type_name} in the file cannot be used; the installed one was taken"
+    return require_type(type_name), remark if definition.strip() else None

@@ -1,38 +1,53 @@
-"""What the file formats hand over: messages by topic, not decoded yet."""
+"""What the file formats hand over: which topics there are, and their messages, not decoded, to whoever wants them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Protocol
 
-TopicFilter = Callable[[str], bool]
+import numpy as np
+from numpy.typing import NDArray
 
 
-@dataclass
+@dataclass(frozen=True)
 class RawTopic:
-    """The messages of one topic in the order of the file.
+    """One topic.
 
     Attributes:
         name: full topic name.
         type_name: "package/msg/Name".
         encoding: "ros2msg" or "ros2idl".
         definition: the type's definition as stored; empty where the file has none.
-        log_times: when each message was recorded [ns].
-        payloads: each message's CDR bytes.
     """
 
     name: str
     type_name: str
     encoding: str
     definition: str
-    log_times: list[int] = field(default_factory=list)
-    payloads: list[bytes] = field(default_factory=list)
+
+
+class Sink(Protocol):
+    """Takes the messages of one topic in the order of the file."""
+
+    def add(self, log_time: int, payload: bytes) -> None:
+        """Take one message's CDR bytes, recorded at `log_time` [ns]."""
+
+    def add_block(
+        self, content: bytes, starts: NDArray[np.int64], lengths: NDArray[np.int64], log_times: NDArray[np.int64]
+    ) -> None:
+        """Take many messages, each some bytes of `content`."""
+
+
+Sinks = Mapping[str, Sink]
+"""Who takes the messages, by topic; those of other topics are passed over."""
 
 
 @dataclass
 class RawRecording:
-    """All topics of a recording (messages only of those asked for), its metadata records, and what was damaged."""
+    """All topics of a recording, its metadata records, how many messages each topic has, and what was damaged."""
 
     topics: dict[str, RawTopic] = field(default_factory=dict)
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
     damage: list[str] = field(default_factory=list)

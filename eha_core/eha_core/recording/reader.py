@@ -8,21 +8,22 @@ from pathlib import Path
 import numpy as np
 
 from eha_core.errors import RecordingError, printable
-from eha_core.recording.bag import read_bag
+from eha_core.recording.bag import bag_topics, read_bag
 from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
-from eha_core.recording.csv_file import read_csv
-from eha_core.recording.decoding import decode, on_one_clock, without_leaps
-from eha_core.recording.discovery import LEAKAGE_TOPIC, find_rules, leakage_topic, may_matter
+from eha_core.recording.clocks import on_one_clock, without_leaps
+from eha_core.recording.discovery import LEAKAGE_TOPIC, find_rules, leakage_topic
+from eha_core.recording.introspection import value_names
 from eha_core.recording.raw import RawRecording
 from eha_core.recording.recording import CHANNEL_KINDS, Channel, Recording
 from eha_core.recording.samples import Samples, on_one_span, put_in_order
+from eha_core.recording.table_file import channels_of
+from eha_core.recording.topic_columns import TopicColumns
 from eha_core.recording.units import in_model_units
 from eha_core.recording.writer import PARAMETERS_RECORD
+from eha_core.tables import is_table, read_table
 
 STANDARD_ATMOSPHERE = 101325.0
 """Taken from absolute pressures where the recording does not say `atmospheric_pressure` [Pa]."""
-
-_TEXT_ENDINGS = (".csv", ".tsv", ".txt")
 
 MAY_BE_EMPTY = ("velocity", "force")
 """Channels that a joint's messages may leave out by their definition: that they do is no remark."""
@@ -32,7 +33,7 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
     """Read a recording.
 
     Args:
-        path: an .mcap or .db3 file, a rosbag2 folder, or a .csv file with a header row.
+        path: an .mcap or .db3 file, a rosbag2 folder, or a table: .csv, .lvm, .mat, .parquet.
         topics: a topics file, or one that is loaded already; without it channels are found by the contract's names.
 
     Raises:
@@ -44,23 +45,27 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
         raise RecordingError(f"{path}: there is no such file or folder")
     if not (path.is_file() or path.is_dir()):
         raise RecordingError(f"{path}: is neither a file nor a folder; name a recording")
-    if path.suffix.lower() in _TEXT_ENDINGS:
-        samples, rules, remarks = read_csv(path, topics_file)
-        return assemble(path, samples, rules, dict.fromkeys(rules, "csv"), RawRecording(), list(remarks))
-    raw = read_bag(path, lambda topic: may_matter(topic, topics_file))
-    return _from_messages(path, raw, topics_file)
+    if is_table(path):
+        table = read_table(path)
+        samples, rules, remarks = channels_of(path, table, topics_file)
+        return assemble(path, samples, rules, dict.fromkeys(rules, table.kind), RawRecording(), list(remarks))
+    return _from_messages(path, topics_file)
 
 
-def _from_messages(path: Path, raw: RawRecording, topics_file: TopicsFile | None) -> Recording:
-    rules, found_remarks = find_rules(str(path), raw.topics.keys(), topics_file)
-    if leakage := leakage_topic(raw.topics.keys(), rules):
+def _from_messages(path: Path, topics_file: TopicsFile | None) -> Recording:
+    topics = bag_topics(path)
+    rules, found_remarks = find_rules(str(path), topics.keys(), topics_file)
+    if leakage := leakage_topic(topics.keys(), rules):
         rules[LEAKAGE_TOPIC] = ChannelRule(leakage, "data")
-    remarks = list(found_remarks)
-    decoded = []
+    sinks = {}
     for topic in dict.fromkeys(str(rule.topic) for rule in rules.values()):
         fields = {name: str(rule.field) for name, rule in rules.items() if rule.topic == topic}
-        decoded.append(decode(raw.topics[topic], fields))
-        remarks += decoded[-1].remarks
+        given = topics_file.channels.keys() & fields.keys() if topics_file else set()
+        optional = fields.keys() - given if given else set()
+        sinks[topic] = TopicColumns(topics[topic], fields, value_names(path, topics, topic), optional)
+    raw = read_bag(path, sinks)
+    decoded = [sink.finish() for sink in sinks.values()]
+    remarks = [*found_remarks, *(remark for topic in decoded for remark in topic.remarks)]
     decoded, leap_remarks = without_leaps(decoded)
     decoded, clock_remarks = on_one_clock(decoded)
     samples = {name: Samples(topic.stamps, values) for topic in decoded for name, values in topic.columns.items()}
@@ -68,7 +73,7 @@ def _from_messages(path: Path, raw: RawRecording, topics_file: TopicsFile | None
     for name in MAY_BE_EMPTY:
         if name in samples and name not in asked and not np.isfinite(samples[name].values).any():
             del samples[name]
-    types = {name: raw.topics[str(rule.topic)].type_name for name, rule in rules.items()}
+    types = {name: topics[str(rule.topic)].type_name for name, rule in rules.items()}
     return assemble(path, samples, rules, types, raw, [*remarks, *leap_remarks, *clock_remarks])
 
 
@@ -108,9 +113,7 @@ def assemble(
     duration = (max(int(series.stamps[-1]) for series in ordered.values()) - start) / 1e9
     return Recording(
         path=path,
-        channels={
-            name: _channel(name, series, start, rules[name], types[name]) for name, series in ordered.items()
-        },
+        channels={name: _channel(name, series, start, rules[name], types[name]) for name, series in ordered.items()},
         start_stamp=start,
         duration=duration,
         parameters=parameters,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from io import BytesIO
 
 import lz4.frame
@@ -36,8 +35,8 @@ class Ceiling:
             )
 
 
-def unpacked(chunk: Chunk, ceiling: Ceiling) -> Chunk:
-    """The chunk with its records uncompressed.
+def unpacked(chunk: Chunk, ceiling: Ceiling) -> bytes:
+    """The records of a chunk, uncompressed.
 
     Raises:
         ValueError: it does not unpack to the size that it says, or to too large a one for a chunk.
@@ -49,7 +48,7 @@ def unpacked(chunk: Chunk, ceiling: Ceiling) -> Chunk:
     content = unpacked_start(chunk, chunk.uncompressed_size + 1)
     if len(content) != chunk.uncompressed_size:
         raise ValueError("the chunk has another size than it says")
-    return replace(chunk, compression="", data=content)
+    return content
 
 
 def unpacked_start(chunk: Chunk, most: int) -> bytes:

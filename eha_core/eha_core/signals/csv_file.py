@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.csv_table import read_csv_columns
 from eha_core.errors import ParameterError, RecordingError
 from eha_core.signals.signal import FloatArray, Signal, described
+from eha_core.tables import read_table
 
 
 @dataclass(frozen=True)
@@ -35,14 +35,14 @@ class CsvFile(Signal):
     @cached_property
     def _rows(self) -> tuple[FloatArray, FloatArray]:
         try:
-            header, columns = read_csv_columns(Path(self.path))
+            columns = read_table(Path(self.path)).columns
         except RecordingError as error:
             raise ParameterError(f"csv_file.path: {error}") from error
-        others = [name for name in header if name != "time"]
+        others = [name for name in columns if name != "time"]
         column = self.column or (others[0] if others else "")
         for name in ("time", column):
             if name not in columns:
-                raise ParameterError(f"csv_file: {self.path} has no column {name!r}; it has {', '.join(header)}")
+                raise ParameterError(f"csv_file: {self.path} has no column {name!r}; it has {', '.join(columns)}")
         usable = np.isfinite(columns["time"]) & np.isfinite(columns[column])
         time, values = columns["time"][usable], columns[column][usable]
         if not len(time) or np.any(np.diff(time) <= 0.0):

@@ -1,0 +1,70 @@
+"""`eha init-rig`: make a rig's nominal file from what its data sheets say."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from eha_core.errors import EhaError
+from eha_core.rig import DATA, Datum, nominal_text, parameters_of, quantity
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb."""
+    parser = subparsers.add_parser(
+        "init-rig",
+        help="make a rig's nominal file from data-sheet values",
+        description=__doc__,
+        epilog="Values have their unit, as in --bore 40mm. On a terminal, without any value, each is asked for; Enter"
+        " leaves it unknown, which `eha diagnose --nominal` takes.",
+    )
+    add = parser.add_argument
+    add("--out", type=Path, required=True, metavar="FILE", help="the nominal file that is written")
+    add("--ask", action="store_true", help="ask for what no option gives, also where the answers come from a pipe")
+    add("--assume", action="store_true", help="write the catalogue's value, marked as assumed, in place of unknown")
+    for datum in DATA:
+        add(f"--{datum.name.replace('_', '-')}", metavar=f"'{datum.example}'", help=datum.meaning.replace("%", "%%"))
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the verb."""
+    if arguments.out.exists():
+        raise EhaError(f"{arguments.out}: exists already; choose another name")
+    texts = {datum.name: getattr(arguments, datum.name) for datum in DATA}
+    given = {datum.name: quantity(datum, texts[datum.name]) for datum in DATA if texts[datum.name] is not None}
+    if arguments.ask or (sys.stdin.isatty() and not given):
+        given |= _asked([datum for datum in DATA if datum.name not in given])
+    entries = parameters_of(given)
+    text = nominal_text(entries, arguments.assume)
+    try:
+        with arguments.out.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise EhaError(f"{arguments.out}: cannot be written ({error.strerror}); choose another --out") from error
+    print(text, end="")
+    unknown = [] if arguments.assume else [entry.name for entry in entries if entry.value is None]
+    print(f"\n{arguments.out}: {len(entries) - len(unknown)} values, {len(unknown)} unknown")
+    print(f"Go on with: eha diagnose RECORDING --nominal {arguments.out}")
+    return 0
+
+
+def _asked(data: list[Datum]) -> dict[str, float]:
+    """What a person answers; a wrong answer is asked again, Enter and the end of all answers mean unknown."""
+    print("Each value with its unit; Enter where nobody knows it.", file=sys.stderr)
+    answers: dict[str, float] = {}
+    for datum in data:
+        while True:
+            print(f"{datum.meaning} [{datum.example}]: ", end="", file=sys.stderr, flush=True)
+            line = sys.stdin.readline()
+            if not line:
+                return answers
+            if not line.strip():
+                break
+            try:
+                answers[datum.name] = quantity(datum, line)
+            except EhaError as error:
+                print(f"  {error}", file=sys.stderr)
+                continue
+            break
+    return answers

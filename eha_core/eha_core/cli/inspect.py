@@ -1,0 +1,89 @@
+"""`eha inspect`: list what is in a log file, and write a topics file that says which channels it holds."""
+
+from __future__ import annotations
+
+import argparse
+from math import isnan
+from pathlib import Path
+
+from eha_core.errors import printable
+from eha_core.recording.inspection import Field, Inspection, inspect_file
+from eha_core.recording.suggestions import Suggestions, rate_of, suggest, used
+from eha_core.recording.topics_text import topics_text, write_topics
+
+DAMAGED = 3
+"""Exit status where the file was damaged and the list rests on the part that could be read."""
+WIDEST = 60
+"""Characters of a name in the list; the topics file has it in full."""
+_KINDS = {
+    "csv": "text table", "lvm": "LabVIEW measurement file", "mat": "MAT file", "parquet": "Parquet file",
+    "bag": "recording of ROS 2 messages",
+}  # fmt: skip
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb."""
+    parser = subparsers.add_parser(
+        "inspect",
+        help="list what is in a log file and write a topics file for it",
+        description=__doc__,
+        epilog="A channel is certain where one column or topic alone is called so and its unit is stated; everything"
+        " else becomes a question in the topics file, with its answers as comments.",
+    )
+    add = parser.add_argument
+    add("file", type=Path, metavar="FILE", help=".mcap, .db3, rosbag2 folder, .csv, .txt, .lvm, .mat or .parquet")
+    add("--topics", type=Path, metavar="FILE", help="write a topics file there, for `eha diagnose --topics`")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the verb."""
+    inspection = inspect_file(arguments.file)
+    suggestions = suggest(inspection)
+    print("\n".join(_listing(inspection, suggestions)))
+    if arguments.topics is not None:
+        write_topics(arguments.topics, topics_text(inspection, suggestions))
+        print(f"\n{arguments.topics}: {_counted(suggestions)}")
+        answered = " once they are answered" if suggestions.questions else ""
+        print(f"Go on{answered} with: eha diagnose {arguments.file} --topics {arguments.topics}")
+    else:
+        print(f"\n{_counted(suggestions)}; --topics FILE writes them down")
+    return DAMAGED if inspection.damaged else 0
+
+
+def _counted(suggestions: Suggestions) -> str:
+    certain = sum(reading.channel != "time" for reading in suggestions.certain)
+    asked = len(suggestions.questions)
+    return f"{certain} channel{'' if certain == 1 else 's'} certain, {asked} question{'' if asked == 1 else 's'}"
+
+
+def _listing(inspection: Inspection, suggestions: Suggestions) -> list[str]:
+    rate = rate_of(inspection, suggestions)
+    rows: list[tuple[str, ...]] = [("name", "values", "rate [Hz]", "lowest", "highest", "unit", "channel")]
+    channels = used(suggestions)
+    unknown = {
+        (one.field.topic, one.field.path) for asked in suggestions.questions if asked.is_open for one in asked.readings
+    }
+    sure = {(reading.field.topic, reading.field.path) for reading in suggestions.certain}
+    for field in inspection.fields:
+        place = (field.topic, field.path)
+        likely = " or ".join(channels.get(place, ["-"])) if place not in unknown else ""
+        rows.append(_row(field, rate, likely if place in sure or place not in channels else f"{likely}?"))
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    right = (False, True, True, True, True, False, False)
+    lines = [f"{printable(str(inspection.path))}: {_KINDS[inspection.kind]}"]
+    for row in rows:
+        cells = [
+            cell.rjust(width) if to_right else cell.ljust(width)
+            for cell, width, to_right in zip(row, widths, right, strict=True)
+        ]
+        lines.append("  ".join(cells).rstrip())
+    lines += [f"note: {remark}" for remark in inspection.remarks]
+    return lines + ([f"damaged: {inspection.damaged}"] if inspection.damaged else [])
+
+
+def _row(field: Field, rate: float, channel: str) -> tuple[str, ...]:
+    name = printable(f"{field.topic} {field.path}".strip())
+    name = name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}"
+    shown = field.rate if field.topic else rate
+    numbers = ["-" if isnan(value) else f"{value:.5g}" for value in (shown, field.low, field.high)]
+    return (name, str(field.count), *numbers, printable(field.unit) or "-", channel)

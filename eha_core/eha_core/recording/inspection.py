@@ -1,0 +1,279 @@
+"""Lists what a file holds: every number that could be a channel, how often, in which range and unit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf, nan
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.errors import RecordingError, printable
+from eha_core.recording.bag import bag_topics, read_bag
+from eha_core.recording.cdr_layout import Layout, layout_of
+from eha_core.recording.channel_rules import ABSOLUTE
+from eha_core.recording.fields import Tables
+from eha_core.recording.introspection import value_names
+from eha_core.recording.message_types import recorded_types
+from eha_core.recording.raw import RawTopic
+from eha_core.recording.topic_columns import BLOCK, TopicColumns
+from eha_core.tables import Table, is_table, read_table, unit_in
+from eha_core.unit_names import UNITS, unit_named
+
+MOST_FIELDS = 200
+"""Numbers of a topic, or columns of a table, that are listed."""
+LONGEST_ARRAY = 12
+"""Numbers of an unnamed array that are listed one by one; longer ones are images, scans or covariances."""
+_OF_TYPE = {
+    ("sensor_msgs/msg/JointState", "position["): "m",
+    ("sensor_msgs/msg/JointState", "velocity["): "m/s",
+    ("sensor_msgs/msg/JointState", "effort["): "N",
+    ("sensor_msgs/msg/FluidPressure", "fluid_pressure"): "Pa",
+    ("geometry_msgs/msg/Wrench", "force."): "N",
+    ("geometry_msgs/msg/WrenchStamped", "wrench.force."): "N",
+}
+"""Units that a message's definition states, by its type and how the path begins."""
+_NO_CHANNEL = (".sec", ".nanosec", "variance", "names_version")
+_ABSOLUTE = "sensor_msgs/msg/FluidPressure"
+"""The message whose definition says that its pressure is absolute."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """One number of a file over time.
+
+    Attributes:
+        topic: its topic; empty in a table.
+        path: the path inside the message, or the column.
+        count: finite values.
+        low: lowest value, as recorded.
+        high: highest value.
+        rate: values in a second of the topic's stamps; NaN in a table, which has one time for all.
+        unit: what the file, the message's type or the name states; empty where nothing does.
+        first: the first value; NaN where there is none.
+        step: the usual step from one value to the next; zero where they do not increase all the way.
+        reference: "absolute" for a pressure whose message says so; else None.
+    """
+
+    topic: str
+    path: str
+    count: int
+    low: float
+    high: float
+    rate: float
+    unit: str
+    first: float = nan
+    step: float = 0.0
+    reference: str | None = None
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """What a file holds.
+
+    Attributes:
+        path: the file.
+        kind: "csv", "lvm", "mat", "parquet" or "bag".
+        fields: its numbers.
+        topics: message types by topic; empty for a table.
+        remarks: what was left out.
+        damaged: what of a bag could not be read; None where it is sound.
+    """
+
+    path: Path
+    kind: str
+    fields: tuple[Field, ...]
+    topics: Mapping[str, str]
+    remarks: tuple[str, ...]
+    damaged: str | None = None
+
+
+def inspect_file(path: str | Path) -> Inspection:
+    """List what a file, or a rosbag2 folder, holds.
+
+    Raises:
+        RecordingError: nothing in it can be read.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise RecordingError(f"{path}: there is no such file or folder")
+    if not (path.is_file() or path.is_dir()):
+        raise RecordingError(f"{path}: is neither a file nor a folder; name a recording")
+    return _of_table(path, read_table(path)) if is_table(path) else _of_bag(path)
+
+
+def _of_table(path: Path, table: Table) -> Inspection:
+    fields = [_column(name, np.asarray(values), table) for name, values in table.columns.items()]
+    remarks = list(table.remarks)
+    if len(fields) > MOST_FIELDS:
+        remarks.append(f"{len(fields) - MOST_FIELDS} columns more are not listed")
+    return Inspection(path, table.kind, tuple(fields[:MOST_FIELDS]), {}, tuple(map(printable, remarks)))
+
+
+def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
+    numbers = values.astype(np.float64)
+    numbers = numbers[np.isfinite(numbers)]
+    if not len(numbers):
+        return Field("", name, 0, nan, nan, nan, "")
+    # Whole numbers are told apart as they are: ns since 1970 are more than a float holds.
+    steps = np.diff(values if values.dtype.kind == "i" else numbers).astype(np.float64)
+    step = float(np.median(steps)) if len(steps) and np.all(steps >= 0.0) and steps.any() else 0.0
+    unit = table.units.get(name) or unit_of_name(name)
+    return Field("", name, len(numbers), float(numbers.min()), float(numbers.max()), nan, unit, float(numbers[0]), step)
+
+
+def unit_of_name(name: str) -> str:
+    """The unit that a name states, in brackets or at its end, as `x_mm` and `p_A (bar)` do; empty where it has none."""
+    if stated := unit_in(name):
+        return stated
+    # One letter may be part of the name, as in p_A and x_m; it is a unit after a word, or where it is the usual one.
+    match = re.search(r"[_/\s]([A-Za-z]{1,4}(?:\^?\d)?(?:/(?:s|min))?)$", name)
+    if match is None or unit_named(match[1]) is None or (len(match[1]) == 1 and match[1] not in UNITS):
+        return ""
+    before = name[: match.start()].lower()
+    usual = (match[1], before[:1]) in (("V", "u"), ("V", "v"), ("N", "f"), ("s", "t"), ("A", "i"))
+    return match[1] if len(match[1]) > 1 or usual or re.search(r"[a-z]{3}$", before) else ""
+
+
+def _of_bag(path: Path) -> Inspection:
+    topics = bag_topics(path)
+    watches = {name: _Watch(topic, value_names(path, topics, name)) for name, topic in topics.items()}
+    raw = read_bag(path, watches)
+    remarks = [remark for watch in watches.values() for remark in watch.remarks]
+    damaged = printable("; ".join(raw.damage)) if raw.damage else None
+    types = {name: topic.type_name for name, topic in topics.items()}
+    fields = [field for watch in watches.values() for field in watch.fields()]
+    return Inspection(path, "bag", tuple(fields), types, tuple(map(printable, remarks)), damaged)
+
+
+class _Watch:
+    """Takes the messages of one topic and keeps the range of each number in them."""
+
+    def __init__(self, topic: RawTopic, tables: Tables) -> None:
+        self.remarks: list[str] = []
+        self._topic = topic
+        self._tables = tables
+        self._columns: TopicColumns | None = None
+        self._ranges: dict[str, tuple[int, float, float]] = {}
+        self._span: tuple[int, int] | None = None
+        self._count = 0
+        self._unread = False
+
+    def add(self, log_time: int, payload: bytes) -> None:
+        if self._opened(payload):
+            assert self._columns is not None
+            self._columns.add(log_time, payload)
+            self._count += 1
+            if self._count % BLOCK == 0:
+                self._reduce()
+
+    def add_block(
+        self, content: bytes, starts: NDArray[np.int64], lengths: NDArray[np.int64], log_times: NDArray[np.int64]
+    ) -> None:
+        if self._opened(content[int(starts[0]) : int(starts[0] + lengths[0])]):
+            assert self._columns is not None
+            for first in range(0, len(starts), BLOCK):
+                part = slice(first, first + BLOCK)
+                self._columns.add_block(content, starts[part], lengths[part], log_times[part])
+                self._reduce()
+
+    def _opened(self, payload: bytes) -> bool:
+        """Whether the topic's numbers are known, from its first message that can be read."""
+        if self._columns is None and not self._unread:
+            topic = self._topic
+            try:
+                store, _ = recorded_types(topic.type_name, topic.encoding, topic.definition)
+                paths = _paths(layout_of(store, topic.type_name, payload), topic.type_name, self._tables)
+            except RecordingError as error:
+                self.remarks.append(str(error))
+                self._unread = True
+                return False
+            except ValueError:
+                return False
+            if len(paths) > MOST_FIELDS:
+                self.remarks.append(f"{topic.name}: {len(paths) - MOST_FIELDS} numbers more are not listed")
+            self._columns = TopicColumns(topic, {path: path for path in paths[:MOST_FIELDS]}, self._tables)
+        return self._columns is not None
+
+    def _reduce(self) -> None:
+        if self._columns is None:
+            return
+        decoded = self._columns.finish()
+        if len(decoded.stamps):
+            ends = (int(decoded.stamps.min()), int(decoded.stamps.max()))
+            self._span = ends if self._span is None else (min(self._span[0], ends[0]), max(self._span[1], ends[1]))
+        for path, values in decoded.columns.items():
+            finite = values[np.isfinite(values)]
+            count, low, high = self._ranges.get(path, (0, inf, -inf))
+            if len(finite):
+                low, high = min(low, float(finite.min())), max(high, float(finite.max()))
+            self._ranges[path] = (count + len(finite), low, high)
+
+    def fields(self) -> list[Field]:
+        """The topic's numbers; none where it has none, or no message of it can be read."""
+        try:
+            self._reduce()
+        except RecordingError as error:
+            self.remarks.append(str(error))
+            return []
+        found = []
+        for path, (count, low, high) in self._ranges.items():
+            seconds = (self._span[1] - self._span[0]) * 1e-9 if self._span else 0.0
+            rate = (count - 1) / seconds if seconds > 0.0 and count > 1 else nan
+            unit = _unit_of_type(self._topic.type_name, path)
+            reference = ABSOLUTE if self._topic.type_name == _ABSOLUTE and path == "fluid_pressure" else None
+            found.append(Field(self._topic.name, path, count, low, high, rate, unit, reference=reference))
+        return found
+
+
+def _unit_of_type(type_name: str, path: str) -> str:
+    for (of_type, start), unit in _OF_TYPE.items():
+        if of_type == type_name and path.startswith(start):
+            return unit
+    # An interface of ros2_control is called by its joint and its kind; what a command's effort is, the hardware says.
+    if "command_interface" in path:
+        return ""
+    return {"position": "m", "velocity": "m/s", "effort": "N"}.get(path.rpartition("/")[2].partition("]")[0], "")
+
+
+def _paths(layout: Layout, type_name: str, tables: Tables) -> list[str]:
+    """Paths of the numbers of a message that could be a channel, elements by their names where they have some."""
+    paths = []
+    for path, run in layout.runs.items():
+        if path.startswith("header.") or path.endswith(_NO_CHANNEL):
+            continue
+        named = _by_names(path, layout)
+        if run.count is None:
+            paths.append(named)
+            continue
+        names = _element_names(path, run.count, layout, tables if type_name.endswith("StatisticsValues") else {})
+        if names or run.count <= LONGEST_ARRAY:
+            paths += [f"{named}[{names[k] if names else k}]" for k in range(run.count)]
+    return paths
+
+
+def _by_names(path: str, layout: Layout) -> str:
+    """The path with the numbers of parts that have a name replaced by it: `statistics[3].value` by its name."""
+
+    def name(match: re.Match[str]) -> str:
+        text = layout.texts.get(f"{match[1]}.name", "")
+        return f"{match[1].rpartition('[')[0]}[{text}]." if _fits(text) else match[0]
+
+    return re.sub(r"^([^.]*\[\d+\])\.", name, path)
+
+
+def _element_names(path: str, count: int, layout: Layout, tables: Tables) -> list[str]:
+    names = [layout.texts.get(f"name[{k}]", "") for k in range(count)]
+    for listed in tables.values() if path == "values" else ():
+        if len(listed) == count:
+            names = list(listed)
+            break
+    return names if names and all(map(_fits, names)) and len(set(names)) == len(names) else []
+
+
+def _fits(name: str) -> bool:
+    """Whether a name can stand in a path."""
+    return bool(name) and not name.isdigit() and not re.search(r"[\[\]\n]", name)

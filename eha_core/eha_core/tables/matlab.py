@@ -1,0 +1,245 @@
+"""Reads MAT files: version 5 by SciPy, version 7.3, which is HDF5, by h5py."""
+
+from __future__ import annotations
+
+import struct
+import warnings
+import zlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eha_core.errors import RecordingError
+from eha_core.tables.optional import required
+from eha_core.tables.table import LARGEST, MOST_CELLS, MOST_COLUMNS, Column, Table, as_column, distinct
+
+DEEPEST = 8
+"""Levels of structures in structures; a logged Simulink data set has four."""
+MOST_ELEMENTS = 2**16
+"""Elements of all structure and cell arrays; a recorder writes one for each signal."""
+UNPACKED = 2**31
+"""Bytes that the compressed variables of a version 5 file may unpack to; the format ends at that for one variable."""
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_COMPRESSED = 15
+_LABELS = ("Name", "name", "label", "SignalName")
+_VALUES = ("Data", "data", "values", "Values")
+_BEYOND_READING = (
+    ValueError, TypeError, KeyError, IndexError, OSError, RuntimeError, OverflowError, MemoryError, AttributeError,
+    NotImplementedError, RecursionError, struct.error, zlib.error, AssertionError, UnicodeError,
+)  # fmt: skip
+"""What SciPy and h5py raise for damaged files."""
+
+
+def read_mat_table(path: Path) -> Table:
+    """Read the vectors of a MAT file, those inside structures by their path, such as `rec.Y.pressure`.
+
+    A structure array whose elements have a name and data, as recorders write signals, gives one column a signal. A
+    matrix gives one column for each of its rows or columns, whichever are fewer.
+
+    Raises:
+        RecordingError: the file is damaged, none, or larger than a table that is read at once.
+    """
+    try:
+        if path.stat().st_size > LARGEST:
+            raise RecordingError(f"{path}: is larger than {LARGEST / 1e9:.1f} GB; cut it, or convert it to MCAP")
+        with path.open("rb") as file:
+            head = file.read(520)
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror})") from error
+    # MATLAB puts its own 512 bytes before those of HDF5.
+    read = _version_73 if _HDF5 in (head[:8], head[512:]) else _version_5
+    gathered = _Gathered(str(path))
+    try:
+        read(path, gathered)
+    except _BEYOND_READING as error:
+        raise RecordingError(f"{path}: cannot be read as a MAT file ({error})") from error
+    if not gathered.columns:
+        raise RecordingError(f"{path}: holds no vector of numbers")
+    names, remarks = distinct([name for name, _ in gathered.columns])
+    columns = {name: values for name, (_, values) in zip(names, gathered.columns, strict=True)}
+    return Table("mat", columns, {n: unit for n, unit in gathered.units.items() if n in columns}, remarks)
+
+
+class _Gathered:
+    """The columns found so far, within the ceilings."""
+
+    def __init__(self, where: str) -> None:
+        self.columns: list[tuple[str, Column]] = []
+        self.units: dict[str, str] = {}
+        self._where = where
+        self._cells = 0
+        self._elements = 0
+
+    def count(self, cells: int) -> None:
+        """Count numbers before they are read. Raises RecordingError where they are too many."""
+        self._cells += cells
+        if self._cells > MOST_CELLS or len(self.columns) > MOST_COLUMNS:
+            raise RecordingError(
+                f"{self._where}: has more than {MOST_CELLS} numbers or {MOST_COLUMNS} columns; keep fewer"
+            )
+
+    def element(self) -> None:
+        """Count an element of a structure or cell array."""
+        self._elements += 1
+        if self._elements > MOST_ELEMENTS:
+            raise RecordingError(f"{self._where}: its structures have more than {MOST_ELEMENTS} elements; keep fewer")
+
+    def add(self, path: str, values: Any) -> None:
+        """Take an array: a vector as one column, a matrix as several; what is no array of numbers is passed over."""
+        array = np.squeeze(np.asarray(values))
+        column = as_column(array)
+        if column is None or array.ndim not in (1, 2) or max(array.shape) < 2:
+            return
+        self.count(array.size)
+        if array.ndim == 1:
+            self.columns.append((path, column))
+            return
+        rows = column if column.shape[0] <= column.shape[1] else column.T
+        for k, row in enumerate(rows[:MOST_COLUMNS]):
+            self.columns.append((f"{path}[{k}]", row))
+
+
+def _version_5(path: Path, gathered: _Gathered) -> None:
+    from scipy.io import loadmat
+
+    _refuse_bombs(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        variables = loadmat(path, squeeze_me=True, struct_as_record=True, chars_as_strings=True)
+    for name, value in variables.items():
+        if not name.startswith("__"):
+            _walk_5(name, value, gathered, DEEPEST)
+
+
+def _refuse_bombs(path: Path) -> None:
+    """Raise RecordingError for a file whose compressed variables unpack to more than any recording does."""
+    left = UNPACKED
+    with path.open("rb") as file:
+        order = ">" if file.read(128)[126:128] == b"MI" else "<"
+        while len(tag := file.read(8)) == 8:
+            kind, size = struct.unpack(f"{order}II", tag)
+            if kind != _COMPRESSED:
+                file.seek(size, 1)
+                continue
+            unpacker = zlib.decompressobj()
+            for start in range(0, size, 2**16):
+                part = file.read(min(2**16, size - start))
+                while part and not unpacker.eof:
+                    left -= len(unpacker.decompress(part, 2**20))
+                    part = unpacker.unconsumed_tail
+                    if left < 0:
+                        raise RecordingError(
+                            f"{path}: unpacks to more than {UNPACKED / 1e9:.1f} GB; keep fewer variables"
+                        )
+
+
+def _walk_5(path: str, value: Any, gathered: _Gathered, levels: int) -> None:
+    gathered.element()
+    fields = getattr(getattr(value, "dtype", None), "names", None)
+    if fields is None:
+        if isinstance(value, np.ndarray) and value.dtype.kind == "O" and levels:
+            for k, one in enumerate(np.ravel(value)):
+                _walk_5(f"{path}{{{k}}}", one, gathered, levels - 1)
+        elif isinstance(value, np.ndarray):
+            gathered.add(path, value)
+        return
+    if not levels:
+        return
+    elements = [value] if np.ndim(value) == 0 else list(np.ravel(value))
+    for k, element in enumerate(elements):
+        entries = {field: _unboxed(element[field]) for field in fields}
+        _structure(path if len(elements) == 1 else f"{path}({k + 1})", path, entries, gathered, levels)
+
+
+def _unboxed(value: Any) -> Any:
+    """A field's value, which SciPy puts into an array of one object where the structure is alone."""
+    return value.item() if isinstance(value, np.ndarray) and value.dtype.kind == "O" and value.ndim == 0 else value
+
+
+def _structure(path: str, parent: str, entries: Mapping[str, Any], gathered: _Gathered, levels: int) -> None:
+    """A structure's fields; one that has a name and data is a signal, and a column of that name."""
+    label = next((str(entries[key]) for key in _LABELS if isinstance(entries.get(key), str) and entries[key]), None)
+    data = next((key for key in _VALUES if isinstance(entries.get(key), np.ndarray)), None)
+    if label is not None and data is not None:
+        name = f"{parent}.{label}"
+        gathered.add(name, entries[data])
+        unit = next((entries[key] for key in ("Unit", "unit", "Units") if isinstance(entries.get(key), str)), "")
+        if unit:
+            gathered.units[name] = unit
+        return
+    for key, value in entries.items():
+        _walk_5(f"{path}.{key}", value, gathered, levels - 1)
+
+
+def _version_73(path: Path, gathered: _Gathered) -> None:
+    h5py = required("h5py", path, "MAT files of version 7.3")
+    with h5py.File(path, "r") as file:
+        for name, item in _own_items(h5py, file):
+            if name not in ("#refs#", "#subsystem#"):
+                _walk_73(h5py, name, item, gathered, DEEPEST)
+
+
+def _own_items(h5py: Any, group: Any) -> Iterator[tuple[str, Any]]:
+    """What a group itself holds: links could lead to other files of this machine."""
+    for name in group:
+        if isinstance(group.get(name, getlink=True), h5py.HardLink):
+            yield str(name), group[name]
+
+
+def _walk_73(h5py: Any, path: str, item: Any, gathered: _Gathered, levels: int) -> None:
+    gathered.element()
+    if not levels:
+        return
+    if isinstance(item, h5py.Group):
+        entries = {name: _value_73(h5py, one, gathered) for name, one in _own_items(h5py, item)}
+        if all(isinstance(one, list) for one in entries.values()) and entries:
+            elements = [dict(zip(entries, one, strict=True)) for one in zip(*entries.values(), strict=False)]
+            for k, element in enumerate(elements):
+                values = {name: _value_73(h5py, one, gathered) for name, one in element.items()}
+                _structure_73(h5py, f"{path}({k + 1})", path, values, gathered, levels)
+        else:
+            _structure_73(h5py, path, path, entries, gathered, levels)
+        return
+    value = _value_73(h5py, item, gathered)
+    if isinstance(value, list):
+        for k, one in enumerate(value):
+            _walk_73(h5py, f"{path}{{{k}}}", one, gathered, levels - 1)
+    elif isinstance(value, np.ndarray):
+        gathered.add(path, value)
+
+
+def _structure_73(
+    h5py: Any, path: str, parent: str, entries: Mapping[str, Any], gathered: _Gathered, levels: int
+) -> None:
+    label = next((entries[key] for key in _LABELS if isinstance(entries.get(key), str) and entries[key]), None)
+    data = next((key for key in _VALUES if isinstance(entries.get(key), np.ndarray)), None)
+    if label is not None and data is not None:
+        _structure(path, parent, entries, gathered, levels)
+        return
+    for key, value in entries.items():
+        if isinstance(value, np.ndarray):
+            gathered.add(f"{path}.{key}", value)
+        elif isinstance(value, list):
+            for k, one in enumerate(value):
+                _walk_73(h5py, f"{path}.{key}{{{k}}}", one, gathered, levels - 1)
+        elif isinstance(value, h5py.Group):
+            _walk_73(h5py, f"{path}.{key}", value, gathered, levels - 1)
+
+
+def _value_73(h5py: Any, item: Any, gathered: _Gathered) -> Any:
+    """A data set's text, numbers, or the items that it refers to as a list; a group stays one."""
+    if not isinstance(item, h5py.Dataset):
+        return item
+    # What lies outside of the file, or is put together from elsewhere, is none of its data.
+    if item.external or item.is_virtual or "MATLAB_empty" in item.attrs:
+        return None
+    gathered.count(item.size)
+    if item.dtype == h5py.ref_dtype:
+        for _ in range(item.size):
+            gathered.element()
+        return [item.file[reference] for reference in np.ravel(item[()]) if reference]
+    if item.attrs.get("MATLAB_class") in (b"char", "char"):
+        return "".join(map(chr, np.ravel(item[()]).tolist()[:1000]))
+    return item[()] if item.dtype.kind in "biuf" else None

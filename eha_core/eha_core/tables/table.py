@@ -1,0 +1,62 @@
+"""What every kind of file with columns is read into."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Column = NDArray[Any]
+"""One dimension, of float64; or of int64 where every value is a whole number that float64 may not hold."""
+
+MOST_COLUMNS = 1000
+"""No logger of a rig writes more; a table grows with columns times rows, whatever the file's size."""
+MOST_CELLS = 2**27
+"""Numbers of a table, which take 1 GB: three hours of ten channels at 1 kHz."""
+LARGEST = 2**30
+"""Bytes of a file; what is larger is converted to MCAP or cut."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns by name.
+
+    Attributes:
+        kind: what the file is, as "csv", "lvm", "mat" or "parquet".
+        columns: the columns in the order of the file; of one length, except in files that hold variables.
+        units: units that the file itself states, by column; "ns" for dates and times of day.
+        remarks: what was left out or renamed.
+    """
+
+    kind: str
+    columns: Mapping[str, Column]
+    units: Mapping[str, str] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+
+
+def as_column(values: Any) -> Column | None:
+    """Values as a column: int64 for whole numbers, else float64; None for what are no numbers."""
+    array = np.asarray(values)
+    if array.dtype.kind in "mM":
+        return array.astype("datetime64[ns]" if array.dtype.kind == "M" else "timedelta64[ns]").astype(np.int64)
+    if array.dtype.kind in "iu" and array.dtype.itemsize == 8:
+        return array.astype(np.int64)
+    return array.astype(np.float64) if array.dtype.kind in "biuf" else None
+
+
+def distinct(names: list[str]) -> tuple[list[str], tuple[str, ...]]:
+    """The names with those that occur twice numbered, so that none is taken for another; and a remark on them."""
+    doubled = sorted({name for name in names if names.count(name) > 1}) if len(set(names)) < len(names) else []
+    counts: dict[str, int] = {}
+    made = []
+    for position, name in enumerate(names):
+        name = name or f"column {position + 1}"
+        counts[name] = counts.get(name, 0) + 1
+        made.append(f"{name} ({counts[name]})" if name in doubled else name)
+    remarks = tuple(
+        f"{counts[name]} columns are called {name}; they are {name} (1) and so on" for name in doubled if name
+    )
+    return made, remarks
