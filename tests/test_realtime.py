@@ -139,6 +139,18 @@ def test_lateness_is_measured_against_the_due_time(hand: Hand) -> None:
     assert health.lateness_max == pytest.approx(0.3e-3)
 
 
+def test_lateness_is_told_by_percentiles(hand: Hand) -> None:
+    """A thousand and one ticks, each a microsecond later than the one before it."""
+    pace = pacer(hand)
+    start = hand.now
+    for tick in range(1, 1002):
+        hand.now = start + 2 * tick * MILLISECOND + 1000 * (tick - 1)
+        pace.due()
+    health = pace.report()
+    percentiles = health.lateness_p50, health.lateness_p99, health.lateness_p999, health.lateness_max
+    assert percentiles == pytest.approx((500e-6, 990e-6, 999e-6, 1000e-6), rel=1e-6)
+
+
 @pytest.mark.parametrize("voltage", [math.nan, math.inf, -math.inf])
 def test_what_is_no_number_is_refused_and_counted(voltage: float) -> None:
     command = CommandInput(limit=10.0, timeout=0.5)

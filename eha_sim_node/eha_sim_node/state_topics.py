@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy
 from typing import Any
 
@@ -15,7 +16,7 @@ from std_msgs.msg import Float64
 from eha_core.plant import COLUMNS, Row
 from eha_interfaces.msg import ActuatorState
 from eha_sim_node.joints import JOINT
-from eha_sim_node.stamps import set_stamp
+from eha_sim_node.serialised import Serialised
 
 OUTPUT_QUALITY = QoSProfile(depth=500)
 """Reliable, a second of samples: what a recorder whose machine is busy may fall behind without loss. Best-effort
@@ -48,12 +49,9 @@ class StateTopics:
         self._pressure_b_publisher = publisher(FluidPressure, "chamber_b/pressure")
         self._state_publisher = publisher(ActuatorState, "state")
         self._leakage_publisher = node.create_publisher(Float64, "internal_leakage", LATCHED)
-        self._clock = Clock()
-        self._joint = JointState(name=[JOINT])
-        self._pressure = FluidPressure()
-        self._state = ActuatorState()
-        for message in (self._joint, self._pressure, self._state):
-            message.header.frame_id = frame_id
+        clock = Clock()
+        self._clock = Serialised(clock, clock.clock)
+        self._joint, self._pressure, self._state = _joint(frame_id), _pressure(frame_id), _state(frame_id)
         self._leakage: float | None = None
 
     @property
@@ -69,26 +67,23 @@ class StateTopics:
         return sum(publisher.get_subscription_count() for publisher in publishers if publisher is not None)
 
     def publish(self, state: Row, atmospheric_pressure: float, stamp: int) -> None:
-        """Publish a state that belongs to `stamp` [ns]; joint_states comes last, for controllers answer that."""
+        """Publish a state that belongs to `stamp` [ns] where somebody hears it.
+
+        joint_states comes last, for controllers answer that.
+        """
         self._publish_clock(stamp)
         self.publish_leakage(state.internal_leakage)
-        pressure = self._pressure
-        set_stamp(pressure.header.stamp, stamp)
-        pressure.fluid_pressure = state.measured_pressure_a + atmospheric_pressure
-        self._pressure_a_publisher.publish(pressure)
-        pressure.fluid_pressure = state.measured_pressure_b + atmospheric_pressure
-        self._pressure_b_publisher.publish(pressure)
-        truth = self._state
-        set_stamp(truth.header.stamp, stamp)
-        for name, value in zip(COLUMNS, state, strict=True):
-            setattr(truth, name, value)
-        self._state_publisher.publish(truth)
-        joint = self._joint
-        set_stamp(joint.header.stamp, stamp)
-        joint.position = [state.measured_position]
-        joint.velocity = [state.measured_velocity]
-        joint.effort = [state.hydraulic_force]
-        self._joint_publisher.publish(joint)
+        if self._pressure_a_publisher.get_subscription_count():
+            absolute = state.measured_pressure_a + atmospheric_pressure
+            self._pressure_a_publisher.publish(self._pressure.with_values(stamp, (absolute,)))
+        if self._pressure_b_publisher.get_subscription_count():
+            absolute = state.measured_pressure_b + atmospheric_pressure
+            self._pressure_b_publisher.publish(self._pressure.with_values(stamp, (absolute,)))
+        if self._state_publisher.get_subscription_count():
+            self._state_publisher.publish(self._state.with_values(stamp, state))
+        if self._joint_publisher.get_subscription_count():
+            seen = state.measured_position, state.measured_velocity, state.hydraulic_force
+            self._joint_publisher.publish(self._joint.with_values(stamp, seen))
 
     def _publish_clock(self, stamp: int) -> None:
         if self._clock_publisher is None:
@@ -98,8 +93,7 @@ class StateTopics:
         if last is not None and 0 < stamp - last < self._clock_period:
             return
         self._clock_stamp = stamp
-        set_stamp(self._clock.clock, stamp)
-        self._clock_publisher.publish(self._clock)
+        self._clock_publisher.publish(self._clock.with_values(stamp))
 
     def troubles(self) -> list[str]:
         """Others that publish /clock beside this node: two clocks make every other node's time jump."""
@@ -111,3 +105,34 @@ class StateTopics:
         if coefficient != self._leakage:
             self._leakage = coefficient
             self._leakage_publisher.publish(Float64(data=coefficient))
+
+
+def _joint(frame_id: str) -> Serialised:
+    message = JointState(name=[JOINT])
+    message.header.frame_id = frame_id
+
+    def put(numbers: Sequence[float]) -> None:
+        message.position, message.velocity, message.effort = ([number] for number in numbers)
+
+    return Serialised(message, message.header.stamp, put, 3)
+
+
+def _pressure(frame_id: str) -> Serialised:
+    message = FluidPressure()
+    message.header.frame_id = frame_id
+
+    def put(numbers: Sequence[float]) -> None:
+        (message.fluid_pressure,) = numbers
+
+    return Serialised(message, message.header.stamp, put, 1)
+
+
+def _state(frame_id: str) -> Serialised:
+    message = ActuatorState()
+    message.header.frame_id = frame_id
+
+    def put(numbers: Sequence[float]) -> None:
+        for name, number in zip(COLUMNS, numbers, strict=True):
+            setattr(message, name, number)
+
+    return Serialised(message, message.header.stamp, put, len(COLUMNS))

@@ -46,10 +46,11 @@ def test_without_a_compiler_the_row_says_so(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_sleep_loop_measures_how_late_it_wakes() -> None:
-    from benchmarks.sleep_loop import lateness_p99
+    from benchmarks.sleep_loop import lateness
 
     # A wake cannot come early, and no loop at 100 Hz on a machine that lives is a second late.
-    assert 0.0 <= lateness_p99(100.0, 0.2) < 1.0
+    half, most, nearly_all = lateness(100.0, 0.2)
+    assert 0.0 <= half <= most <= nearly_all < 1.0
 
 
 def test_run_too_short_to_measure_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -35,6 +35,29 @@ def test_advance_holds_the_voltage() -> None:
     assert plant.state == pytest.approx(tuple(rows.values[-1]), rel=0.0, abs=0.0)
 
 
+@pytest.mark.parametrize("acting", [{}, {"effects_from": 0.0105, "effects_until": 0.0612}, {"effects_until": 0.02}])
+def test_ticks_of_any_length_are_the_run_to_the_last_bit(acting: dict[str, float]) -> None:
+    effects = {"coulomb_friction.force": 300.0, "position_sensor_lag.time_constant": 0.01, **acting}
+    ticking, running = Plant(effects), Plant(effects)
+    lengths = [10] * 30 + [1] * 40 + [7] * 20 + [400]
+    voltages = 0.05 * np.sin(np.arange(len(lengths)))
+    rows = running.run(np.repeat(voltages, lengths)).values[np.cumsum(lengths) - 1]
+    for voltage, steps, row in zip(voltages, lengths, rows, strict=True):
+        ticking.advance(voltage, steps)
+        assert ticking.state == tuple(row)
+    assert ticking.time == running.time
+
+
+def test_a_tick_under_no_number_is_refused_and_changes_nothing() -> None:
+    plant = Plant()
+    plant.advance(0.02, 10)
+    before = plant.state
+    for voltage in (np.nan, np.inf):
+        with pytest.raises(ParameterError, match="voltage command is not finite"):
+            plant.advance(voltage, 10)
+    assert (plant.state, plant.step_count) == (before, 10)
+
+
 def test_reset_returns_to_the_start_and_keeps_the_parameters() -> None:
     plant = Plant({"moving_mass": 20.0}, initial_position=0.01)
     first = plant.run(sine(300)).values

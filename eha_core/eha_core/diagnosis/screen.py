@@ -13,11 +13,17 @@ import numpy as np
 
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypotheses import Start
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.parallel import each
+from eha_core.diagnosis.normal_matrix import Eliminated
+from eha_core.diagnosis.numbers import Array, Integers
+from eha_core.diagnosis.parallel import each, threads
 from eha_core.diagnosis.per_recording import named
 from eha_core.diagnosis.problem import LINK, Linearised, Problem, changes, linearise, normal_equations
 from eha_core.diagnosis.shooting import STATE_SIZE
+from eha_core.plant.lane_rows import LANES
+
+MOST_SPANS = 100
+"""Where there are more windows, neighbours are taken together to ask since when and until when an effect acts, for the
+answer has a number for each pair. A fit of the instants follows, so nothing hangs on a hundredth of the record."""
 
 
 @dataclass(frozen=True)
@@ -44,51 +50,117 @@ def screen_spells(problem: Problem, calibrated: Fit, starts: Sequence[Start]) ->
     normal, gradient = normal_equations(problem, calibrated.free, calibrated.q, calibrated.states, linear)
     system = normal.eliminate(1e-9)
     towards = system.solve(gradient)
-    at = calibrated.values, calibrated.states
-    columns, shifts = changes(problem, at, [({**at[0], **start.values}, at[1]) for start in starts])
-
-    def promises(place: int) -> list[Promise]:
-        start, change = starts[place], columns[:, place]
-        if not np.all(np.isfinite(change)):
-            return [Promise(start, 0.0, 0.0)]
-        energy, along, overlap = _by_window(problem, calibrated, linear, change, shifts[:, :, place])
-        along, imitated = along - towards @ overlap, overlap.T @ system.solve(overlap)
-        shooting = problem.shooting
-        if len(shooting.first_windows) > 1 and any(name in shooting.per_recording for name in start.values):
-            return [_in_each_recording(start, energy, along, imitated, shooting.recordings)]
-        return _best_spells(start, energy, along, imitated, shooting.recordings)
-
-    found = [one for several in each(promises, range(len(starts))) for one in several]
+    spans = _spans(problem.shooting.recordings)
+    found: list[Promise] = []
+    turns = -(-len(starts) // (threads() * (LANES - 1)))  # so that a long record's changes need not all be kept
+    room = -(-len(starts) // max(1, turns)) or 1
+    for first in range(0, len(starts), room):
+        some = starts[first : first + room]
+        found += _promises(problem, calibrated, linear, some, spans, (system, towards))
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
-def _by_window(
-    problem: Problem, calibrated: Fit, linear: Linearised, change: Array, shift: Array
-) -> tuple[Array, Array, Array]:
-    """What an effect changes in each window alone: its energy (windows,), its product with the residual (windows,),
-    and with every column that can imitate it (columns, windows)."""
-    shooting, size, parameters = problem.shooting, problem.shooting.free_states, len(calibrated.free)
-    windows = shooting.windows
+def _promises(
+    problem: Problem,
+    calibrated: Fit,
+    linear: Linearised,
+    starts: Sequence[Start],
+    spans: Integers,
+    solution: tuple[Eliminated, Array],
+) -> list[Promise]:
+    """The promises of a few starts. `solution`: the calibrated model's equations, and what they are solved by."""
+    (system, towards), shooting = solution, problem.shooting
+    at = calibrated.values, calibrated.states
+    columns, shifts = changes(problem, at, [({**at[0], **start.values}, at[1]) for start in starts])
+    ran_away = ~np.all(np.isfinite(columns), axis=0)
+    columns[:, ran_away], shifts[:, :, ran_away] = 0.0, 0.0
+    found = _by_span(problem, calibrated, linear, columns, shifts, spans)
+    recordings = [range(*np.searchsorted(spans, (one.start, one.stop))) for one in shooting.recordings]
+
+    def promises(place: int) -> list[Promise]:
+        start = starts[place]
+        if ran_away[place]:
+            return [Promise(start, 0.0, 0.0)]
+        energy, overlap = found.energy[:, place], found.overlap(place)
+        along, imitated = found.along[:, place] - towards @ overlap, overlap.T @ system.solve(overlap)
+        if len(recordings) > 1 and any(name in shooting.per_recording for name in start.values):
+            return [_in_each_recording(start, energy, along, imitated, recordings)]
+        return _best_spells(start, spans, energy, along, imitated, recordings)
+
+    return [one for several in each(promises, range(len(starts))) for one in several]
+
+
+def _spans(recordings: Sequence[range]) -> Integers:
+    """The windows at which spans begin, and the end. A span is a window where there are few, and of one recording."""
+    windows = recordings[-1].stop
+    edges = [
+        np.linspace(one.start, one.stop, min(len(one), max(1, round(MOST_SPANS * len(one) / windows))) + 1)
+        for one in recordings
+    ]
+    found: Integers = np.unique(np.round(np.concatenate(edges)).astype(np.int64))
+    return found
+
+
+@dataclass(frozen=True)
+class _Overlaps:
+    """What each start changes in each span of windows alone.
+
+    Attributes:
+        energy: (spans, starts). along: (spans, starts) its product with the residual.
+        by_parameter: (spans, parameters, starts) its product with what each parameter changes.
+        by_state: (windows, states, starts) with what a window's own states change.
+        by_next: (windows, states, starts) with what the states of the window after it change, through the link.
+        span_of: (windows,) the span of each.
+    """
+
+    energy: Array
+    along: Array
+    by_parameter: Array
+    by_state: Array
+    by_next: Array
+    span_of: Integers
+
+    def overlap(self, place: int) -> Array:
+        """One start's product with every column that can imitate it: (columns, spans)."""
+        windows, states, _ = self.by_state.shape
+        spans, parameters, _ = self.by_parameter.shape
+        found = np.zeros((parameters + windows * states, spans))
+        found[:parameters] = self.by_parameter[:, :, place].T
+        rows = parameters + np.arange(windows * states)
+        column = np.repeat(self.span_of, states)
+        found[rows, column] = self.by_state[:, :, place].ravel()
+        found[rows[states:], column[:-states]] += self.by_next[:-1, :, place].ravel()
+        return found
+
+
+def _by_span(
+    problem: Problem, calibrated: Fit, linear: Linearised, columns: Array, shifts: Array, spans: Integers
+) -> _Overlaps:
+    """What `columns` (samples, starts) and `shifts` of the windows' ends have in common with the residual and with what
+    can imitate them."""
+    shooting, size, starts = problem.shooting, problem.shooting.free_states, columns.shape[1]
+    windows, count = shooting.windows, len(calibrated.free)
     bounds = np.searchsorted(linear.window, np.arange(windows + 1))
-    energy, along = np.zeros(windows), np.zeros(windows)
-    overlap = np.zeros((parameters + STATE_SIZE * windows, windows))
-    for window in range(windows):
+    span_of = np.repeat(np.arange(len(spans) - 1), np.diff(spans))
+    energy, along = np.zeros((len(spans) - 1, starts)), np.zeros((len(spans) - 1, starts))
+    by_parameter = np.zeros((len(spans) - 1, count, starts))
+    by_state, by_next = np.zeros((windows, STATE_SIZE, starts)), np.zeros((windows, STATE_SIZE, starts))
+    for window, span in enumerate(span_of):
         piece = slice(bounds[window], bounds[window + 1])
-        place = parameters + STATE_SIZE * window + np.arange(size)
-        part = change[piece]
-        energy[window], along[window] = part @ part, part @ linear.residual[piece]
-        overlap[:parameters, window] = linear.by_parameter[piece].T @ part
-        overlap[place, window] = linear.by_state[piece].T @ part
+        part = columns[piece]
+        energy[span] += np.einsum("ij,ij->j", part, part)
+        along[span] += linear.residual[piece] @ part
+        by_parameter[span] += linear.by_parameter[piece].T @ part
+        by_state[window, :size] = linear.by_state[piece].T @ part
     for window in problem.links():
-        place = parameters + STATE_SIZE * window + np.arange(size)
-        moved = shift[window, :size] / LINK[:size]
-        gap = (linear.ends[window] - calibrated.states[window + 1])[:size] / LINK[:size]
-        overlap[:parameters, window] += (linear.ends_by_parameter[window, :size] / LINK[:size, None]).T @ moved
-        overlap[place, window] += (linear.ends_by_state[window, :size] / LINK[:size, None]).T @ moved
-        overlap[place + STATE_SIZE, window] -= moved / LINK[:size]
-        energy[window] += moved @ moved
-        along[window] -= moved @ gap
-    return energy, along, overlap
+        span = span_of[window]
+        moved = shifts[window, :size] / LINK[:size, None]
+        energy[span] += np.einsum("ij,ij->j", moved, moved)
+        along[span] -= ((linear.ends[window] - calibrated.states[window + 1])[:size] / LINK[:size]) @ moved
+        by_parameter[span] += (linear.ends_by_parameter[window, :size] / LINK[:size, None]).T @ moved
+        by_state[window, :size] += (linear.ends_by_state[window, :size] / LINK[:size, None]).T @ moved
+        by_next[window, :size] = -moved / LINK[:size, None]
+    return _Overlaps(energy, along, by_parameter, by_state, by_next, span_of)
 
 
 def _in_each_recording(
@@ -106,19 +178,19 @@ def _in_each_recording(
 
 
 def _best_spells(
-    start: Start, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
+    start: Start, spans: Integers, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
 ) -> list[Promise]:
-    """The promise over all windows, and the best over some of them in a row, of one recording.
+    """The promise over all spans, and the best over some of them in a row, of one recording.
 
-    `along` is free of what can be imitated; `imitated` (windows, windows) is what can be of each pair's energy.
+    `along` is free of what can be imitated; `imitated` (spans, spans) is what can be of each pair's energy.
     """
-    windows = len(energy)
-    first, last = np.triu_indices(windows)
+    count = len(energy)
+    first, last = np.triu_indices(count)
     stop = last + 1
     begins = np.repeat([one.start for one in recordings], [len(one) for one in recordings])
     total = np.concatenate([[0.0], np.cumsum(energy)])
     towards = np.concatenate([[0.0], np.cumsum(along)])
-    square = np.zeros((windows + 1, windows + 1))
+    square = np.zeros((count + 1, count + 1))
     square[1:, 1:] = imitated.cumsum(axis=0).cumsum(axis=1)
     whole = total[stop] - total[first]
     left = whole - (square[stop, stop] - square[first, stop] - square[stop, first] + square[first, first])
@@ -127,14 +199,14 @@ def _best_spells(
     divisor = np.where(usable, left, 1.0)
     gain = np.where(usable, product * product / divisor, 0.0)
     factor = np.where(usable, product / divisor, 0.0)
-    always = windows - 1  # of the ranges that begin at the first window, the one that ends with the last
+    always = count - 1  # of the ranges that begin at the first span, the one that ends with the last
     promises = [Promise(start, float(gain[always]), float(factor[always]))]
-    if windows > 1:
+    if count > 1:
         gain = np.where(factor < 0.0, gain if _reversible(start) else 0.0, gain)
         gain[always] = -1.0
         gain[begins[first] != begins[last]] = -1.0
         best = int(np.argmax(gain))
-        spell = (int(first[best]), int(stop[best]))
+        spell = (int(spans[first[best]]), int(spans[stop[best]]))
         promises.append(Promise(start, float(gain[best]), float(factor[best]), spell))
     return promises
 

@@ -112,6 +112,7 @@ class Plant:
         self._none = (False,) * len(self._active)
         self._span = span(self._values, step_size)
         self._row = np.zeros((1, len(COLUMNS)))
+        self._held = np.empty(0)  # the voltages of a tick, kept from one to the next
         self.reset(initial_position)
 
     @property
@@ -179,9 +180,22 @@ class Plant:
         return Row(*self._row[0].tolist())
 
     def advance(self, voltage: float, steps: int) -> None:
-        """Hold `voltage` [V] for that many steps."""
-        if steps > 0:
-            self._run(np.full(steps, voltage), steps, self._row)
+        """Hold `voltage` [V] for that many steps.
+
+        This is a simulator's tick: what is checked and cut for whole records would cost it more than the steps do.
+        """
+        if steps <= 0:
+            return
+        if len(self._held) != steps:
+            self._held = np.empty(steps)
+        self._held.fill(voltage)
+        begin, end = self._span
+        if begin > 0 or self.step_count + steps > end or not isfinite(voltage):
+            self._run(self._held, steps, self._row)
+            return
+        self._state[AT.time] = self.time
+        self._take(self._active, self._held, steps, self._row)
+        self.step_count += steps
 
     def run(self, voltages: Array, every: int = 1) -> Trajectory:
         """Apply one voltage a step; return the rows after every `every`-th step (the start is not among them)."""
@@ -201,8 +215,11 @@ class Plant:
             if spell.acting and self.step_count + spell.steps.start == self._span[0] > 0:
                 self._start_memory([True] * len(effects()))
             active = self._active if spell.acting else self._none
-            self._advance(
-                self._state, self._memory, self._history, self._vector, active, self._propagator,
-                voltages[spell.steps], self.step_size, spell.every, rows[spell.rows],
-            )
+            self._take(active, voltages[spell.steps], spell.every, rows[spell.rows])
         self.step_count += len(voltages)
+
+    def _take(self, active: tuple[bool, ...], voltages: Array, every: int, rows: Array) -> None:
+        self._advance(
+            self._state, self._memory, self._history, self._vector, active, self._propagator, voltages,
+            self.step_size, every, rows,
+        )  # fmt: skip

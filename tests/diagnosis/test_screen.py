@@ -1,0 +1,42 @@
+"""Screening a long record: neighbours are taken together, and nothing else changes."""
+
+import numpy as np
+import pytest
+from made import recorded
+
+from eha_core.diagnosis import screen
+from eha_core.diagnosis.facts import gather
+from eha_core.diagnosis.fit import fit
+from eha_core.diagnosis.freedom import nominal_freedom
+from eha_core.diagnosis.hypotheses import candidates, starts
+from eha_core.diagnosis.observation import observe
+from eha_core.diagnosis.problem import whole
+from eha_core.diagnosis.shooting import cut
+from eha_core.parameters import nominal_values
+
+
+def test_windows_taken_together_promise_the_same_and_tell_since_when(monkeypatch):
+    friction = {"coulomb_friction.force": 200.0, "effects_from": 3.0, "effects_until": 6.0}
+    observation, values = observe(recorded(friction, duration=12.0)), nominal_values()
+    problem = whole(cut(observation, values))
+    calibrated = fit(problem, values, nominal_freedom(values, "voltage", 0.0), iterations=3)
+    facts = gather([observation], problem.shooting, calibrated)
+    begin = [one for effect in candidates([observation]) if effect.site == "force" for one in starts(effect, facts)]
+    alone = screen.screen_spells(problem, calibrated, begin)
+    monkeypatch.setattr(screen, "MOST_SPANS", 4)
+    monkeypatch.setattr(screen, "LANES", 3)  # so that the starts are simulated in several turns
+    together = screen.screen_spells(problem, calibrated, begin)
+    always = [{repr(one.start): one.gain for one in found if one.windows is None} for found in (alone, together)]
+    assert len(always[0]) == len(begin)
+    assert [always[1][start] for start in always[0]] == pytest.approx(list(always[0].values()), rel=1e-8)
+    assert alone[0].start.effect.id == together[0].start.effect.id == "coulomb_friction"
+    assert alone[0].windows == together[0].windows == (3, 6)
+    assert {edge for one in together if one.windows for edge in one.windows} <= {0, 3, 6, 9, 12}
+
+
+def test_spans_keep_to_their_recordings_and_are_few():
+    assert np.array_equal(screen._spans([range(40)]), np.arange(41))
+    spans = screen._spans([range(3), range(3, 703), range(703, 2003)])
+    assert {0, 3, 703, 2003} <= set(spans.tolist())
+    assert len(spans) - 1 <= screen.MOST_SPANS + 1
+    assert np.max(np.diff(spans)) <= 21
