@@ -1,0 +1,52 @@
+"""A nominal file read whole: which parts the actuator has, and their parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from eha_core.errors import ParameterError, remedy
+from eha_core.parameters import PAPER_PARTS, PER_RECORDING, read_section, refuse_unknown, split_parts
+from eha_core.plant.composition import Composition, compose
+
+
+@dataclass(frozen=True)
+class NominalPlant:
+    """A composition, and those of its parameters that a file gives, in the names of its parts."""
+
+    composition: Composition
+    values: Mapping[str, float]
+
+    @property
+    def places(self) -> dict[str, float]:
+        """Every parameter of the equations: what the diagnosis and the lock-step take."""
+        whole = self.composition
+        return whole.places(whole.changed(whole.nominal_values(), self.values))
+
+
+def load_nominal(path: str | Path) -> NominalPlant:
+    """Read a parameters file in ROS 2's YAML form, with the parts that it names under `plant:`.
+
+    Raises ParameterError naming the file: it cannot be read, a part is unknown, a value does not fit, or a parameter
+    does not apply to these parts.
+    """
+    values, section = split_parts(read_section(path))
+    values.pop(PER_RECORDING, None)
+    refuse_unknown(path, values)
+    try:
+        made = composition_of(section)
+        complete = made.changed(made.nominal_values(), values)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+    return NominalPlant(made, {name: complete[name] for name in values})
+
+
+def composition_of(section: Mapping[str, object]) -> Composition:
+    """The composition that a section `plant` with `source`, `cylinder` and `load`, or some of them, names."""
+    unknown = [name for name in section if name not in PAPER_PARTS]
+    if unknown:
+        raise ParameterError(f"plant.{unknown[0]} is unknown; {remedy(unknown[0], PAPER_PARTS)}")
+    return compose(**{name: str(value) for name, value in section.items()})
+
+
