@@ -290,7 +290,8 @@ def starting_pressures(
     places: Mapping[str, float], position: float, composition: Composition = PAPER
 ) -> tuple[float, float]:
     """Pressures A and B [Pa] of a plant that starts at rest, of the parameters of the equations."""
-    total = places["supply_pressure"] + places["return_pressure"]
+    back = places["return_pressure"]
+    total = 2.0 * back if composition.source.idle else places["supply_pressure"] + back
     if not composition.cylinder.balanced:
         return 0.5 * total, 0.5 * total
     area_a, area_b = places["piston_area"], places["piston_area_b"]

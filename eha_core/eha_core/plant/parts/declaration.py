@@ -50,6 +50,7 @@ class Source(Part):
         sites: of effects that such a plant has; see `eha_core.effects.sites`.
         ignores: nominal parameters that its equations do not contain.
         hides: columns of `eha_core.plant.state.Row` that it has no value for.
+        idle: whether its chambers rest at the return line's pressure, in place of midway to the supply's.
     """
 
     inputs: tuple[str, ...] = ()
@@ -59,6 +60,7 @@ class Source(Part):
     sites: tuple[str, ...] = ("chamber", "force", "sensor", "schedule")
     ignores: tuple[str, ...] = ()
     hides: tuple[str, ...] = ()
+    idle: bool = False
 
 
 @dataclass(frozen=True)

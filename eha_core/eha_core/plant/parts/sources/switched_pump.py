@@ -44,7 +44,8 @@ PART = Source(
     ),
     inputs=("pump_speed",),
     optional=("voltage_command",),
-    hides=("current", "spool_position", "spool_velocity"),
+    hides=("voltage", "current", "spool_position", "spool_velocity"),
+    idle=True,
 )  # fmt: skip
 
 
