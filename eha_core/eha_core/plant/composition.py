@@ -45,8 +45,12 @@ class Composition:
 
     @property
     def effects(self) -> tuple[Effect, ...]:
-        """The effects of the catalogue that such a plant can have: those at the sites of its source."""
-        return tuple(effect for effect in effects() if effect.site in self.source.sites)
+        """The effects of the catalogue that such a plant can show: those at the sites of its source, and of those the
+        ones that act on what it has."""
+        source = self.source
+        return tuple(
+            effect for effect in effects() if effect.site in source.sites and not set(effect.needs) & set(source.hides)
+        )
 
     @cached_property
     def rows(self) -> Mapping[str, Parameter]:

@@ -64,14 +64,14 @@ def simulate_many(
     voltage that is not finite, and for a result that would take more than MOST_BYTES.
     """
     check_step_size(step_size)
-    command = step_inputs(command, composition.source)
+    held = step_inputs(command, composition.source)
     unknown = set(columns) - set(COLUMNS)
     if unknown:
         raise ParameterError(f"there is no column {min(unknown)}; there are {', '.join(COLUMNS)}")
     if every < 1 or jobs < 1:
         raise ParameterError(f"every = {every} and jobs = {jobs} must both be 1 or more")
     sets = [_complete(number, one, initial_position, composition) for number, one in enumerate(parameters)]
-    shape = (len(sets), len(command) // every, len(columns))
+    shape = (len(sets), len(held) // every, len(columns))
     if 8.0 * np.prod(shape, dtype=np.float64) > MOST_BYTES:
         raise ParameterError(
             f"{shape[0]} plants x {shape[1]} rows x {shape[2]} columns take {8e-9 * np.prod(shape):.1f} GB; "
@@ -83,7 +83,7 @@ def simulate_many(
 
     def fill(first: int) -> None:
         block = sets[first : first + LANES]
-        rows = _rows(block, command, step_size, every, initial_position, len(kept), composition)
+        rows = _rows(block, held, step_size, every, initial_position, len(kept), composition)
         values[first : first + LANES] = rows[:, places, : len(block)].transpose(2, 0, 1)
 
     def fill_alone(first: int) -> None:

@@ -19,7 +19,7 @@ PART = Load(
         ),
         Parameter(
             "rotational_damping", "B_r", "N m s/rad", 10.0, 0.0, 1e7, "viscous damping of vane and load", ASSUMED,
-            typical=10.0, logarithmic=True,
+            typical=10.0,
         ),
         Parameter(
             "rotational_stiffness", "K_r", "N m/rad", 0.0, 0.0, 1e8, "stiffness of the spring that the load turns",

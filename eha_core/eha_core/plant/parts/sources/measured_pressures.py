@@ -18,5 +18,6 @@ PART = Source(
     hides=(
         "voltage", "current", "spool_position", "spool_velocity", "flow_a", "flow_b", "internal_leakage_flow",
         "external_leakage_flow_a", "external_leakage_flow_b", "supply_pressure", "return_pressure", "internal_leakage",
+        "measured_pressure_a", "measured_pressure_b",
     ),
 )  # fmt: skip
