@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -144,34 +145,9 @@ def test_names_and_places_lead_back_to_each_other(composition: Composition) -> N
     assert composition.named(composition.places(values)) == values
 
 
-NEW = '''"""A pump of constant flow that a four-way valve turns: an architecture in one file.
-
-Equation: Q1 = Q2 = q sign(u).
-Sign: a positive signal extends.
-Validity: a pump that nothing stops.
-Source: assumed.
-"""
-from eha_core.compiled import inlined
-from eha_core.parameter import Parameter
-from eha_core.plant.parts.declaration import Source
-
-PART = Source(
-    summary="a constant pump",
-    uses=("supply_pressure", "return_pressure"),
-    parameters=(Parameter("pump_flow", "q", "m^3/s", 1e-5, 0.0, 1.0, "what the pump gives", "assumed"),),
-    inputs=("spool",),
-    hides=("voltage", "current", "spool_position", "spool_velocity"),
-)
-
-
-@inlined
-def contribution(
-    opening, gain, conductance, first, second, pressure_a, pressure_b, supply_pressure, return_pressure, pump_flow
-):
-    """The same flow at both ports."""
-    flow = pump_flow if first > 0.0 else -pump_flow if first < 0.0 else 0.0
-    return flow, flow, 0.0, 0.0, 0.0, 0.0
-'''
+PAGE = Path(__file__).parents[2] / "CONTRIBUTING.md"
+(NEW,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+"""The architecture that CONTRIBUTING.md shows."""
 
 RUN = """
 import numpy as np

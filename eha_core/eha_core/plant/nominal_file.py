@@ -42,6 +42,20 @@ def load_nominal(path: str | Path) -> NominalPlant:
     return NominalPlant(made, {name: complete[name] for name in values})
 
 
+def voltage_driven(path: str | Path) -> dict[str, float]:
+    """Every parameter of the equations, for a reader that knows an actuator on a voltage whose piston slides.
+
+    Raises ParameterError as `load_nominal` does, and for a source or a cylinder of another kind.
+    """
+    nominal = load_nominal(path)
+    source, cylinder = nominal.composition.source, nominal.composition.cylinder
+    if source.valve != "coil":
+        raise ParameterError(f"{path}: plant.source = {source.id} is not taken here; `eha simulate` takes it")
+    if cylinder.motion != "m":
+        raise ParameterError(f"{path}: plant.cylinder = {cylinder.id} is not taken here; `eha simulate` takes it")
+    return nominal.places
+
+
 def composition_of(section: Mapping[str, object]) -> Composition:
     """The composition that a section `plant` with `source`, `cylinder` and `load`, or some of them, names."""
     unknown = [name for name in section if name not in PAPER_PARTS]
