@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 
 from eha_core.errors import EhaError, ParameterError, RecordingError, remedy
-from eha_core.plant import PAPER, Composition, load_nominal
+from eha_core.plant import PAPER, Composition, load_plant
 from eha_core.recording import read_recording
 from eha_core.recording.recording import FloatArray
 from eha_core.recording.simulated import Experiment, Simulated, simulate, simulate_sweep, write_simulated
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     start, changes = _settings(arguments.set)
     composition, parameters = PAPER, start
     if arguments.nominal:
-        nominal = load_nominal(arguments.nominal)
+        nominal = load_plant(arguments.nominal)
         composition, parameters = nominal.composition, {**nominal.values, **start}
     times, voltages, duration, inputs = _driving(arguments, composition)
     experiment = Experiment(

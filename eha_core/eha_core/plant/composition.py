@@ -83,23 +83,28 @@ class Composition:
     def changed(self, values: Mapping[str, float], changes: Mapping[str, object]) -> dict[str, float]:
         """Return `values` with `changes` applied, checked as a whole; ParameterError as `parameters.changed` says, and
         for a parameter that does not apply to these parts."""
+        for name in changes:
+            self.require(name)
         if self.is_papers:
             return changed(values, changes)
         result = dict(values)
         for name, value in changes.items():
-            if name not in self.rows:
-                raise ParameterError(self._refusal(name))
             result[name] = self.rows[name].check(value, name)
         check_supply(result)
         if self.cylinder.check is not None and not self.source.ignores:
             self.cylinder.check(result)
         return result
 
-    def _refusal(self, name: str) -> str:
-        """Why a name is none of this plant's."""
+    def require(self, name: str, where: str = "") -> None:
+        """Raise ParameterError for a name that is no parameter of these parts."""
+        if name in self.rows:
+            return
         if name in catalogue() or name in _all_rows():
-            return f"{name} does not apply to this plant ({self}); leave it out, or name other parts under `plant:`"
-        return f"there is no parameter named {name}; {remedy(name, self.rows, f'the plant is {self}')}"
+            what = f"{name} does not apply to this plant ({self}); leave it out, or name other parts under `plant:`"
+        else:
+            nearest = remedy(name, self.rows, "`eha effects --parameters` lists the names")
+            what = f"there is no parameter named {name}; {nearest}"
+        raise ParameterError(f"{where}{what}")
 
     def places(self, values: Mapping[str, float]) -> dict[str, float]:
         """The parameters of the equations, in the catalogue's order, and after them those of the source alone.

@@ -1,4 +1,4 @@
-"""A nominal file read whole: which parts the actuator has, and their parameters."""
+"""A parameters file read whole: which parts the actuator has, and what their parameters are."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eha_core.plant.composition import Composition, compose
 
 
 @dataclass(frozen=True)
-class NominalPlant:
+class GivenPlant:
     """A composition, and those of its parameters that a file gives, in the names of its parts."""
 
     composition: Composition
@@ -25,7 +25,7 @@ class NominalPlant:
         return whole.places(whole.changed(whole.nominal_values(), self.values))
 
 
-def load_nominal(path: str | Path) -> NominalPlant:
+def load_plant(path: str | Path) -> GivenPlant:
     """Read a parameters file in ROS 2's YAML form, with the parts that it names under `plant:`.
 
     Raises ParameterError naming the file: it cannot be read, a part is unknown, a value does not fit, or a parameter
@@ -39,21 +39,27 @@ def load_nominal(path: str | Path) -> NominalPlant:
         complete = made.changed(made.nominal_values(), values)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
-    return NominalPlant(made, {name: complete[name] for name in values})
+    return GivenPlant(made, {name: complete[name] for name in values})
 
 
 def voltage_driven(path: str | Path) -> dict[str, float]:
     """Every parameter of the equations, for a reader that knows an actuator on a voltage whose piston slides.
 
-    Raises ParameterError as `load_nominal` does, and for a source or a cylinder of another kind.
+    Raises ParameterError as `load_plant` does, and as `require_voltage`.
     """
-    nominal = load_nominal(path)
-    source, cylinder = nominal.composition.source, nominal.composition.cylinder
-    if source.valve != "coil":
-        raise ParameterError(f"{path}: plant.source = {source.id} is not taken here; `eha simulate` takes it")
-    if cylinder.motion != "m":
-        raise ParameterError(f"{path}: plant.cylinder = {cylinder.id} is not taken here; `eha simulate` takes it")
-    return nominal.places
+    found = load_plant(path)
+    require_voltage(found.composition, f"{path}: ")
+    return found.places
+
+
+def require_voltage(composition: Composition, where: str = "") -> None:
+    """Raise ParameterError for an actuator that no voltage drives, or whose piston does not slide."""
+    for kind, one, taken in (
+        ("source", composition.source, composition.source.valve == "coil"),
+        ("cylinder", composition.cylinder, composition.cylinder.motion == "m"),
+    ):
+        if not taken:
+            raise ParameterError(f"{where}plant.{kind} = {one.id} is not taken here; `eha simulate` takes it")
 
 
 def composition_of(section: Mapping[str, object]) -> Composition:
