@@ -16,7 +16,6 @@ from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.nominal import NominalModel, load_nominal, nominal_of
 from eha_core.parameters import NOMINAL
-from eha_core.plant import require_voltage
 from eha_core.recording import Recording, read_recording
 from eha_core.recording.simulated import Experiment
 from eha_core.recording.simulated import simulate as run
@@ -130,11 +129,8 @@ def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]
 def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     """The model that a recording is held against, and which of its parameters are unknown or differ by recording."""
     if isinstance(nominal, (str, Path)):
-        model = load_nominal(nominal)
-        require_voltage(model.composition, f"{nominal}: ")
-        return model
+        return load_nominal(nominal)
     if isinstance(nominal, NominalModel):
-        require_voltage(nominal.composition)
         return nominal
     if nominal is not None:
         return nominal_of(nominal)

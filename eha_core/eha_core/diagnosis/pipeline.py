@@ -30,7 +30,7 @@ Progress = Callable[[str], None]
 def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
     """Run the stages up to the decision. Raises RecordingError where a recording cannot be used."""
     progress("reading and aligning")
-    seen = [observe(recording) for recording in recordings]
+    seen = [observe(recording, model.composition) for recording in recordings]
     check_alike(seen)
     for number, observation in enumerate(seen):
         seen[number], model = reaching(observation, model)

@@ -76,6 +76,11 @@ class Composition:
                 return one.stands_for[name]
         return (name,)
 
+    @cached_property
+    def applicable(self) -> frozenset[str]:
+        """The places of the equations that its parameters take: what a fit may move."""
+        return frozenset(place for name in self.rows for place in self.stands_for(name))
+
     def nominal_values(self) -> dict[str, float]:
         """Every parameter that applies at its nominal value: no effect acts."""
         return {name: row.nominal for name, row in self.rows.items()}
