@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from eha_core.api import known_model, nominal_model
 from eha_core.errors import ParameterError
 from eha_core.nominal import NominalModel, load_nominal, nominal_of
 from eha_core.parameters import load_parameters, nominal_values
+from eha_core.plant import voltage_driven
 from eha_core.recording import read_recording
 
 BAG = Path(__file__).resolve().parent.parent / "bags" / "rig_as_modelled.mcap"
@@ -84,3 +86,50 @@ def test_a_simulation_refuses_unknown_values_and_passes_over_what_differs_by_rec
         load_parameters(write(tmp_path, FILE))
     known = FILE.replace("bulk_modulus: unknown", "bulk_modulus: 1.0e9").replace("    line_volume: Unknown\n", "")
     assert load_parameters(write(tmp_path, known))["bulk_modulus"] == 1e9
+
+
+PARTS = "eha_sim:\n  ros__parameters:\n    plant: {{{parts}}}\n{lines}"
+
+
+def composed(folder: Path, parts: str, *lines: str) -> Path:
+    path = folder / "rig.yaml"
+    path.write_text(PARTS.format(parts=parts, lines="".join(f"    {line}\n" for line in lines)))
+    return path
+
+
+def test_a_file_s_parts_are_the_model_s(tmp_path: Path) -> None:
+    lines = ("piston_area: 1.2e-3", "piston_area_b: 7.8e-4", "moving_mass: unknown", "per_recording: [supply_pressure]")
+    model = load_nominal(composed(tmp_path, "cylinder: single_rod", *lines))
+    assert str(model.composition) == "servo_valve, single_rod, sprung_mass"
+    assert model.values == nominal_values() | {"piston_area": 1.2e-3, "piston_area_b": 7.8e-4}
+    assert model.unknown == {"moving_mass"}
+    assert model.per_recording == ("supply_pressure",)
+
+
+def test_names_of_a_vane_are_brought_to_the_equations(tmp_path: Path) -> None:
+    lines = ("vane_displacement: 2.0e-5", "moment_of_inertia: unknown", "per_recording: [rotational_damping]")
+    model = load_nominal(composed(tmp_path, "cylinder: rotary_vane", *lines))
+    assert model.values["piston_area"] == model.values["piston_area_b"] == 2e-5
+    assert model.values["moving_mass"] == 0.5
+    assert model.unknown == {"moving_mass"}
+    assert model.per_recording == ("damping_coefficient",)
+
+
+@pytest.mark.parametrize(
+    ("parts", "line", "said"),
+    [
+        ("cylinder: rotary_vane", "moving_mass: unknown", "moving_mass does not apply to this plant"),
+        ("source: measured_flow", "per_recording: [valve_gain]", "per_recording: valve_gain does not apply"),
+        ("source: servovalve", "moving_mass: 9.0", "plant.source = servovalve is unknown; did you mean servo_valve?"),
+        ("sauce: servo_valve", "moving_mass: 9.0", "plant.sauce is unknown; did you mean source?"),
+    ],
+)
+def test_parts_and_names_that_do_not_fit_are_refused(tmp_path: Path, parts: str, line: str, said: str) -> None:
+    with pytest.raises(ParameterError, match=re.escape(said)):
+        load_nominal(composed(tmp_path, parts, line))
+
+
+@pytest.mark.parametrize("parts", ["source: switched_pump", "cylinder: rotary_vane"])
+def test_a_reader_of_voltages_refuses_other_plants_in_one_line(tmp_path: Path, parts: str) -> None:
+    with pytest.raises(ParameterError, match=r"rig.yaml: plant\.\w+ = \w+ is not taken here; `eha simulate` takes it"):
+        voltage_driven(composed(tmp_path, parts, "bulk_modulus: 1.0e9"))

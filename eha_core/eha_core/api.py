@@ -128,10 +128,10 @@ def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]
 
 def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     """The model that a recording is held against, and which of its parameters are unknown or differ by recording."""
-    if isinstance(nominal, NominalModel):
-        return nominal
     if isinstance(nominal, (str, Path)):
         return load_nominal(nominal)
+    if isinstance(nominal, NominalModel):
+        return nominal
     if nominal is not None:
         return nominal_of(nominal)
     names = {row.name for row in NOMINAL}

@@ -91,13 +91,23 @@ def changed(values: Mapping[str, float], changes: Mapping[str, object]) -> dict[
             what_to_do = remedy(name, catalogue(), "`eha effects --parameters` lists the names")
             raise ParameterError(f"there is no parameter named {name}; {what_to_do}")
         result[name] = row.check(value, name)
-    if result["supply_pressure"] <= result["return_pressure"]:
-        raise ParameterError(
-            f"supply_pressure = {result['supply_pressure']:g} Pa must exceed "
-            f"return_pressure = {result['return_pressure']:g} Pa; change both together"
-        )
+    check_supply(result)
     return result
 
+
+def check_supply(values: Mapping[str, float]) -> None:
+    """Raise ParameterError where the supply's pressure, if there is one, does not exceed the return line's."""
+    if "supply_pressure" in values and values["supply_pressure"] <= values["return_pressure"]:
+        raise ParameterError(
+            f"supply_pressure = {values['supply_pressure']:g} Pa must exceed "
+            f"return_pressure = {values['return_pressure']:g} Pa; change both together"
+        )
+
+
+PAPER_PARTS = {"source": "servo_valve", "cylinder": "double_rod", "load": "sprung_mass"}
+"""The parts of the paper's actuator, as a file names them under `plant:`; see `eha_core.plant.parts`."""
+PART = "plant."
+"""What begins their names where nested keys are joined by dots."""
 
 NODE_KEYS = ("/**", "/**/eha_sim", "eha_sim", "/eha_sim")
 """Under these keys a ROS parameters file speaks to the simulator; the more particular ones overrule the others."""
@@ -138,10 +148,12 @@ def read_section(path: str | Path) -> dict[str, object]:
         section = document.get(key)
         if isinstance(section, dict) and isinstance(section.get("ros__parameters"), dict):
             found.update(from_node(_flatten(section["ros__parameters"])))
-    if not found:
+    if not found and "plant" not in document:
         raise ParameterError(f"{path}: no parameters for eha_sim; expected `eha_sim: {{ros__parameters: {{...}}}}`")
     if PER_RECORDING in document:
         found.setdefault(PER_RECORDING, document[PER_RECORDING])
+    if isinstance(document.get("plant"), dict):
+        found |= _flatten(document["plant"], PART)
     return {name: _number(value) for name, value in found.items() if name.split(".")[0] not in NODE_ONLY}
 
 
@@ -149,19 +161,36 @@ def load_parameters(path: str | Path) -> dict[str, float]:
     """Read the plant's parameters from a file in ROS 2's YAML form.
 
     Returns only the names that the file gives; see `read_section`. Raises ParameterError naming the file when it cannot
-    be read, or a value is unknown or does not fit.
+    be read, a value is unknown or does not fit, or it names other parts than the paper's actuator has, which
+    `eha_core.plant.plant_file` reads.
     """
-    plant = {name: value for name, value in read_section(path).items() if name != PER_RECORDING}
-    unknown = next((name for name, value in plant.items() if is_unknown(value)), None)
-    if unknown is not None:
-        raise ParameterError(
-            f"{path}: {unknown} is {UNKNOWN}, which only a diagnosis takes; give its value in {_unit_of(unknown)}"
-        )
+    plant, parts = split_parts(read_section(path))
+    plant.pop(PER_RECORDING, None)
+    for kind, name in parts.items():
+        if PAPER_PARTS.get(kind) != name:
+            expected = ", ".join(f"{kind}: {name}" for kind, name in PAPER_PARTS.items())
+            raise ParameterError(f"{path}: plant.{kind} = {name} is not taken here; give {expected}, or leave it out")
+    refuse_unknown(path, plant)
     try:
         complete = changed(nominal_values(), plant)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
     return {name: complete[name] for name in plant}
+
+
+def refuse_unknown(path: str | Path, values: Mapping[str, object]) -> None:
+    """Raise ParameterError, naming the file, where a value is `unknown`."""
+    unknown = next((name for name, value in values.items() if is_unknown(value)), None)
+    if unknown is not None:
+        raise ParameterError(
+            f"{path}: {unknown} is {UNKNOWN}, which only a diagnosis takes; give its value in {_unit_of(unknown)}"
+        )
+
+
+def split_parts(section: Mapping[str, object]) -> tuple[dict[str, object], dict[str, object]]:
+    """The parameters that `read_section` found, and the parts that the file names under `plant:`, by kind."""
+    parts = {name.removeprefix(PART): value for name, value in section.items() if name.startswith(PART)}
+    return {name: value for name, value in section.items() if not name.startswith(PART)}, parts
 
 
 def _unit_of(name: str) -> str:

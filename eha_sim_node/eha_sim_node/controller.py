@@ -12,7 +12,7 @@ from std_srvs.srv import Trigger
 
 from eha_core.control import CONTROLLERS, Controller, Measurement, Target, make_controller
 from eha_core.errors import ParameterError
-from eha_core.parameters import load_parameters
+from eha_core.plant import voltage_driven
 from eha_sim_node.diagnostics import Diagnostics, Report
 from eha_sim_node.joints import value_of
 from eha_sim_node.parameters import ParameterSet, Row, Value, plant_rows, plant_values
@@ -53,7 +53,7 @@ class ControllerNode(rclpy.node.Node):
         given = self.get_parameter("model").value if self.has_parameter("model") else ""
         if not isinstance(given, str):
             raise ParameterError(f"model = {given!r} is no path of a parameters file")
-        return plant_rows(load_parameters(given) if given else None)
+        return plant_rows(voltage_driven(given) if given else None)
 
     def _make(self, values: Mapping[str, Value]) -> Controller:
         return make_controller(

@@ -15,7 +15,9 @@ from rclpy.parameter import Parameter
 from eha_core.errors import EhaError, ParameterError
 from eha_core.node_parameters import from_node, node_name, to_node
 from eha_core.parameter import Parameter as PlantParameter
-from eha_core.parameters import catalogue
+from eha_core.parameters import PAPER_PARTS
+from eha_core.plant import PAPER, Composition, composition_of
+from eha_core.plant.parts import parts
 
 Value = Any  # bool, int, float, str or list of float: whatever the row's default is
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service", "qos_overrides.")
@@ -92,12 +94,25 @@ class Row:
         return descriptor
 
 
-def plant_rows(values: Mapping[str, float] | None = None) -> list[Row]:
+def part_rows() -> list[Row]:
+    """Return the ROS parameters that say which parts the plant is put together from: `plant.source` and so on."""
+    return [
+        Row(f"plant.{kind}", default, f"the actuator's {kind}", fixed=True, choices=tuple(parts(kind)))
+        for kind, default in PAPER_PARTS.items()
+    ]
+
+
+def given_composition(node: Node) -> Composition:
+    """Return the composition that the node was started with, or raise ParameterError."""
+    return composition_of({name: given.value for name, given in node.get_parameters_by_prefix("plant").items()})
+
+
+def plant_rows(values: Mapping[str, float] | None = None, composition: Composition = PAPER) -> list[Row]:
     """Return the ROS parameters of the plant, whose defaults are `values` (catalogue names), else nominal."""
     values = values or {}
-    defaults = to_node({name: values.get(name, row.nominal) for name, row in catalogue().items()})
+    defaults = to_node({name: values.get(name, row.nominal) for name, row in composition.rows.items()})
     rows: dict[str, Row] = {}
-    for name, parameter in catalogue().items():
+    for name, parameter in composition.rows.items():
         rows.setdefault(node_name(name), _plant_row(node_name(name), parameter, defaults[node_name(name)]))
     return list(rows.values())
 
@@ -110,10 +125,10 @@ def _plant_row(name: str, parameter: PlantParameter, default: float | list[float
     return Row(name, default, meaning, parameter.lower, parameter.upper, hint=hint)
 
 
-def plant_values(values: Mapping[str, Value]) -> dict[str, float]:
+def plant_values(values: Mapping[str, Value], composition: Composition = PAPER) -> dict[str, float]:
     """Return those of a node's parameters that are the plant's, under the catalogue's names."""
     found = from_node(values)
-    return {name: float(found[name]) for name in catalogue() if name in found}  # type: ignore[arg-type]
+    return {name: float(found[name]) for name in composition.rows if name in found}  # type: ignore[arg-type]
 
 
 class ParameterSet:

@@ -14,7 +14,15 @@ from eha_core.realtime import NANOSECONDS, CommandInput
 from eha_interfaces.srv import Step
 from eha_sim_node.command_topics import CommandTopics, each, newest
 from eha_sim_node.diagnostics import Diagnostics, Report
-from eha_sim_node.parameters import ParameterSet, Row, Value, plant_rows, plant_values
+from eha_sim_node.parameters import (
+    ParameterSet,
+    Row,
+    Value,
+    given_composition,
+    part_rows,
+    plant_rows,
+    plant_values,
+)
 from eha_sim_node.running import compile_plant, run
 from eha_sim_node.standard_services import StandardServices
 from eha_sim_node.state_topics import StateTopics
@@ -60,6 +68,7 @@ OWN_ROWS = (
         fixed=True,
     ),
     Row("frame_id", "", "frame of the published headers", fixed=True),
+    *part_rows(),
     Row("diagnostics_rate", 1.0, "rate of /diagnostics, in wall-clock time [Hz]", 0.1, 100.0, fixed=True),
 )
 
@@ -69,9 +78,16 @@ class SimNode(rclpy.node.Node):
 
     def __init__(self) -> None:
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        self._settings = ParameterSet(self, (*OWN_ROWS, *plant_rows()))
+        self._parts = given_composition(self)
+        if self._parts.source.valve != "coil":
+            raise ParameterError(
+                f"plant.source = {self._parts.source.id} takes {' and '.join(self._parts.source.inputs)}, and this node"
+                " takes voltages; `eha simulate` takes recorded ones"
+            )
+        self._settings = ParameterSet(self, (*OWN_ROWS, *plant_rows(composition=self._parts)))
         own = self._settings.values
-        self._plant = Plant(plant_values(own), own["step_size"], own["initial_position"])
+        values = plant_values(own, self._parts)
+        self._plant = Plant(values, own["step_size"], own["initial_position"], self._parts)
         self._steps = _steps_per_period(own["step_size"], own["publish_rate"])
         self._step_ns = round(own["step_size"] * NANOSECONDS)
         self._period = self._steps * own["step_size"]
@@ -133,7 +149,7 @@ class SimNode(rclpy.node.Node):
         self._time.command_arrived()
 
     def _apply(self, changes: Mapping[str, Value]) -> None:
-        plant_changes = plant_values(changes)
+        plant_changes = plant_values(changes, self._parts)
         if plant_changes:
             self._plant.set_parameters(plant_changes)
         if "internal_leakage" in plant_changes:

@@ -14,7 +14,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 from eha_core.errors import ParameterError
-from eha_core.parameters import load_parameters
+from eha_core.plant import voltage_driven
 from eha_core.realtime import NANOSECONDS
 from eha_core.twin import Comparison, Settings, Twin
 from eha_interfaces.msg import ActuatorState
@@ -75,7 +75,7 @@ class TwinNode(rclpy.node.Node):
         given = self.get_parameter("model").value if self.has_parameter("model") else ""
         if not isinstance(given, str):
             raise ParameterError(f"model = {given!r} is no path of a parameters file")
-        return plant_rows(load_parameters(given) if given else None)
+        return plant_rows(voltage_driven(given) if given else None)
 
     def _apply(self, changes: Mapping[str, Value]) -> None:
         fixed = [row.name for row in OWN_ROWS if row.name in changes]

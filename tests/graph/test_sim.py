@@ -54,6 +54,19 @@ def test_volts_in_pressures_out(rig: Rig) -> None:
     assert joint.effort[0] == pytest.approx(force, rel=0.02)
 
 
+def test_a_single_rod_cylinder_lives_in_the_node(rig: Rig) -> None:
+    rig.start_sim("plant.cylinder:=single_rod", "piston_area:=1.2e-3", "piston_area_b:=7.8e-4", "internal_leakage:=0.0")
+    states = rig.hear(ActuatorState, "state")
+    rig.wait(lambda: states, "the first state")
+    rig.command(0.02, seconds=1.0)
+    state = states[-1]
+    assert state.velocity > 0.01
+    assert state.flow_a / state.velocity == pytest.approx(1.2e-3, rel=1e-2)
+    assert state.flow_b / state.velocity == pytest.approx(7.8e-4, rel=1e-2)
+    named = rig.call(GetParameters, "eha_sim/get_parameters", names=["plant.source", "plant.cylinder"]).values
+    assert [value.string_value for value in named] == ["servo_valve", "single_rod"]
+
+
 def test_samples_come_at_the_rate_with_even_stamps(rig: Rig) -> None:
     rig.start_sim("publish_rate:=200.0")
     states = rig.hear(ActuatorState, "state")

@@ -29,7 +29,7 @@ def oil(
     for k in range(steps):
         middle = (k + 0.5) * tau * velocity
         pressure_a, pressure_b, *_ = oil_half_step(
-            tau, 0.0, middle, velocity, pressure_a, pressure_b, 2.1e7, 0.0, leakage, vector, active
+            tau, 0.0, 0.0, middle, velocity, pressure_a, pressure_b, 2.1e7, 0.0, leakage, vector, active
         )
         rows.append((pressure_a, pressure_b))
     return np.array(rows)

@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 
 from eha_core.errors import EhaError, ParameterError, RecordingError, remedy
-from eha_core.parameters import load_parameters
+from eha_core.plant import PAPER, Composition, load_plant
 from eha_core.recording import read_recording
 from eha_core.recording.recording import FloatArray
 from eha_core.recording.simulated import Experiment, Simulated, simulate, simulate_sweep, write_simulated
@@ -38,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         required=True,
         metavar="RECORDING|FILE.csv|SIGNAL",
         help=f"voltages of a recording or a CSV file, or a signal such as sine:amplitude=8.4e-3,frequency=1"
-        f" (signals: {', '.join(signals())})",
+        f" (signals: {', '.join(signals())}); under another source than the servo valve, that source's channels",
     )
     parser.add_argument(
         "--out", required=True, type=Path, metavar="FILE", help=f"the recording to write, {MCAP} or {CSV}"
@@ -78,12 +78,14 @@ def run(arguments: argparse.Namespace) -> int:
     started = perf_counter()
     _check(arguments)
     start, changes = _settings(arguments.set)
-    parameters = {**(load_parameters(arguments.nominal) if arguments.nominal else {}), **start}
-    times, voltages, duration = _command(arguments)
-    _warn_of_limit(voltages)
+    composition, parameters = PAPER, start
+    if arguments.nominal:
+        nominal = load_plant(arguments.nominal)
+        composition, parameters = nominal.composition, {**nominal.values, **start}
+    times, voltages, duration, inputs = _driving(arguments, composition)
     experiment = Experiment(
         times, voltages, duration, parameters, changes, arguments.step, arguments.rate, arguments.noise,
-        arguments.seed, arguments.initial_position,
+        arguments.seed, arguments.initial_position, composition, inputs,
     )  # fmt: skip
     if arguments.sweep:
         return _sweep(experiment, arguments)
@@ -181,10 +183,45 @@ def _settings(words: list[str]) -> tuple[dict[str, float], list[tuple[float, str
     return start, changes
 
 
-def _command(arguments: argparse.Namespace) -> tuple[FloatArray, FloatArray, float]:
-    """Instants [s], voltages [V] and the duration [s]."""
+Samples = tuple[FloatArray, FloatArray]
+
+
+def _driving(
+    arguments: argparse.Namespace, composition: Composition
+) -> tuple[FloatArray, FloatArray, float, dict[str, Samples]]:
+    """Instants [s] and voltages [V] of the command, the duration [s]; or what drives another source, by channel."""
+    if composition.source.valve == "coil":
+        times, voltages, duration = _command(arguments, "voltage_command")
+        _warn_of_limit(voltages)
+        return times, voltages, duration, {}
+    if arguments.out.suffix.lower() != CSV:
+        raise EhaError(f"--out {arguments.out}: a plant on {composition.source.id} is recorded as {CSV} alone")
+    wanted = composition.source.inputs
+    if _is_signal(arguments.command) and len(wanted) > 1:
+        raise EhaError(
+            f"--command {arguments.command}: {composition.source.id} takes {' and '.join(wanted)}, a signal is one"
+            " of them; give a file with these columns"
+        )
+    times, values, duration = _command(arguments, wanted[0])
+    inputs = {wanted[0]: (times, values)}
+    for name in wanted[1:]:
+        inputs[name] = _command(arguments, name)[:2]
+    if not _is_signal(arguments.command):
+        channels = read_recording(arguments.command, arguments.topics).channels
+        inputs |= {name: (channels[name].time, channels[name].values) for name in composition.source.optional
+                   if name in channels}  # fmt: skip
+    none = np.empty(0)
+    return none, none, duration, inputs
+
+
+def _is_signal(words: str) -> bool:
+    return words.partition(":")[0] in signals() and not Path(words).exists()
+
+
+def _command(arguments: argparse.Namespace, name: str) -> tuple[FloatArray, FloatArray, float]:
+    """Instants [s], values of that channel and the duration [s]."""
     words: str = arguments.command
-    if words.partition(":")[0] in signals() and not Path(words).exists():
+    if _is_signal(words):
         signal = from_text(words)
         duration = arguments.duration or _SIGNAL_DURATION
         times = np.arange(round(duration * arguments.rate)) / arguments.rate
@@ -192,9 +229,9 @@ def _command(arguments: argparse.Namespace) -> tuple[FloatArray, FloatArray, flo
     if not Path(words).exists():
         shape = words.partition(":")[0]
         raise EhaError(f"--command {words}: neither a file nor a signal; {remedy(shape, signals())}")
-    channel = read_recording(words, arguments.topics).channels.get("voltage_command")
+    channel = read_recording(words, arguments.topics).channels.get(name)
     if channel is None:
-        raise RecordingError(f"{words}: no voltage_command was recorded; a topics file (--topics) can name the topic")
+        raise RecordingError(f"{words}: no {name} was recorded; a topics file (--topics) can name the topic")
     end = float(channel.time[-1])
     duration = arguments.duration or max(np.ceil(end * arguments.rate + 1) / arguments.rate, 1.0 / arguments.rate)
     return channel.time, channel.values, duration

@@ -56,7 +56,7 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     shooting = cut_together(observations, nominal, step_size, per_recording=model.per_recording)
     positions = [channel.values for one in observations for channel in one.measured if channel.name == "position"]
     farthest = max(float(np.max(np.abs(values))) for values in positions)
-    free = nominal_freedom(nominal, shooting.drive, farthest, model.unknown)
+    free = nominal_freedom(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
     first = fit_in_stages(whole(shooting), nominal, free)
     shooting = with_noise(shooting, corrected_noise(shooting, first))
     problem = whole(shooting)

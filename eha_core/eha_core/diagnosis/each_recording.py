@@ -52,7 +52,7 @@ def tested_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recording]
     }
     found = []
     for recording in tests:
-        observation = observe(recording)
+        observation = observe(recording, evidence.observation.composition)
         check_alike([evidence.observation, observation])
         step = evidence.calibration.shooting.step_size
         predicted = {name: predictions(observation, values, step) for name, values in models.items()}

@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.observation import Observation
+from eha_core.diagnosis.observation import WITH_OIL, Observation
 from eha_core.diagnosis.shooting import Shooting, smooth
 from eha_core.plant import COLUMNS
 
@@ -41,7 +41,7 @@ def gather(observations: Sequence[Observation], shooting: Shooting, calibrated: 
         "time": (0.0, max(one.duration for one in observations)),
         "speed": (0.0, speed),
     }
-    if shooting.drive == "voltage":
+    if shooting.drive in WITH_OIL:
         rows, _ = shooting.simulate(calibrated.values, calibrated.states, full=True)
         area = calibrated.values["piston_area"]
         difference = rows[:, COLUMNS.index("pressure_a")] - rows[:, COLUMNS.index("pressure_b")]

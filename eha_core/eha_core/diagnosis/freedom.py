@@ -6,8 +6,10 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from math import exp, log
 
+from eha_core.diagnosis.observation import WITH_OIL
 from eha_core.effects import Effect
 from eha_core.parameters import catalogue
+from eha_core.plant import PAPER, Composition
 
 
 @dataclass(frozen=True)
@@ -102,8 +104,9 @@ FORCE_ONLY = ("spring_stiffness", "moving_mass", "damping_coefficient")
 
 
 def nominal_freedom(
-    nominal: Mapping[str, float], drive: str, travel: float, unknown: Collection[str] = ()
-) -> tuple[Free, ...]:
+    nominal: Mapping[str, float], drive: str, travel: float, unknown: Collection[str] = (),
+    composition: Composition = PAPER,
+) -> tuple[Free, ...]:  # fmt: skip
     """The nominal parameters that a recording with this drive may move; `travel` is the largest |position| seen [m].
 
     Of `unknown` ones the nominal value is only where the search begins.
@@ -111,11 +114,11 @@ def nominal_freedom(
     free = []
     for name, trust in NOMINAL_TRUST.items():
         known = _not_known(trust) if name in unknown else trust
-        if drive != "voltage" and name not in FORCE_ONLY:
+        if (drive not in WITH_OIL and name not in FORCE_ONLY) or name not in composition.applicable:
             continue
         row = catalogue()[name]
         reference = nominal[name]
-        if name == "spring_stiffness" and reference == 0.0 and drive != "voltage":
+        if name == "spring_stiffness" and reference == 0.0 and drive not in WITH_OIL:
             continue  # an axis said to have no spring; a spring would only take up what an offset leaves
         logarithmic = known.scale == 0.0 and reference > 0.0
         lower, upper = row.lower, row.upper
@@ -129,7 +132,7 @@ def nominal_freedom(
         if not logarithmic and known.reach:
             upper = min(upper, reference + known.reach * scale)
         free.append(Free(name, reference, logarithmic, scale, known.trust, lower, max(lower, upper)))
-    if nominal["piston_area_b"] != nominal["piston_area"] and drive == "voltage":
+    if nominal["piston_area_b"] != nominal["piston_area"] and drive in WITH_OIL:
         row = catalogue()["piston_area_b"]
         free.append(Free(row.name, nominal[row.name], True, 0.0, 0.3, row.lower, row.upper))
     return tuple(free)

@@ -8,12 +8,13 @@ from itertools import product
 
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.observation import Observation
-from eha_core.effects import Effect, effects
+from eha_core.effects import Effect
 
 SITES_OF_DRIVE = {
     "voltage": ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
     "pressures": ("force", "sensor"),
     "force": ("force", "sensor"),
+    "measured": ("spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
 }
 """Where a recording with this drive can show anything."""
 
@@ -29,7 +30,7 @@ class Start:
 def candidates(observations: Sequence[Observation]) -> tuple[Effect, ...]:
     """The effects that these recordings could show: those of examined sites whose sensor was there."""
     sites = SITES_OF_DRIVE[observations[0].drive]
-    found = [effect for effect in effects() if effect.site in sites and effect.named]
+    found = [effect for effect in observations[0].composition.effects if effect.site in sites and effect.named]
     if not any(channel.name.startswith("pressure") for one in observations for channel in one.measured):
         found = [effect for effect in found if "measured_pressure_a" not in effect.needs]
     return tuple(found)

@@ -12,6 +12,8 @@ from eha_core.diagnosis.noise import estimate_noise, find_outliers
 from eha_core.diagnosis.numbers import Array
 from eha_core.errors import RecordingError
 from eha_core.nominal import NominalModel
+from eha_core.plant import PAPER, Composition
+from eha_core.plant.parts import Source
 from eha_core.recording import CHANNEL_KINDS, Channel, Recording
 
 SHORTEST = 1.0
@@ -19,6 +21,9 @@ SHORTEST = 1.0
 
 FITTED = ("position", "velocity", "pressure_a", "pressure_b")
 """Channels that a simulation is compared with, in the order of the plant's measured columns."""
+
+WITH_OIL = ("voltage", "measured")
+"""Drives under which the oil in the chambers is simulated."""
 
 NOT_COMPARED = dict.fromkeys(CHANNEL_KINDS, "recorded, but compared with nothing") | {
     "velocity": "checked for sign and scale against the position alone, as it may have been computed from it",
@@ -50,7 +55,8 @@ class Observation:
 
     Attributes:
         path: where it was read from.
-        drive: what the simulation is driven by: "voltage", "pressures" or "force".
+        drive: what the simulation is driven by: "voltage", "pressures", "force", or "measured": the channels of the
+        composition's source.
         inputs: the driving channels, as (time, values); voltage is held between samples.
         measured: the channels that are compared.
         leakage: (time [s], change of the internal leakage coefficient since the start [m^3/(s Pa)]) of each change that
@@ -58,6 +64,8 @@ class Observation:
         duration: [s].
         not_examined: what could not be looked at and why, one line each.
         remarks: what was put right or left out, one line each.
+        driving: names of the driving channels.
+        composition: the actuator's parts.
     """
 
     path: str
@@ -69,14 +77,18 @@ class Observation:
     channels: tuple[str, ...]
     not_examined: tuple[str, ...]
     remarks: tuple[str, ...]
+    driving: tuple[str, ...] = ("voltage_command",)
+    composition: Composition = PAPER
 
     def channel(self, name: str) -> Measured | None:
         """The measured channel of that name, if there is one."""
         return next((channel for channel in self.measured if channel.name == name), None)
 
 
-def observe(recording: Recording) -> Observation:
+def observe(recording: Recording, composition: Composition = PAPER) -> Observation:
     """Choose what drives the simulation and what it is compared with; estimate noise; set outliers aside.
+
+    A source that no voltage drives says itself what does.
 
     Raises RecordingError where no equation can be examined: too short, no position, nothing that drives it, or
     constant.
@@ -92,17 +104,17 @@ def observe(recording: Recording) -> Observation:
             f"{where}: no position channel among {', '.join(channels) or 'none'}; map one to `position`"
             " in a topics file"
         )
-    drive, inputs, not_examined = _choose_drive(where, channels)
+    drive, driving, not_examined = _choose_drive(where, channels, composition.source)
+    inputs = tuple((channels[name].time, channels[name].values) for name in driving)
     remarks: list[str] = list(recording.remarks)
     measured = []
     for column, name in enumerate(FITTED):
-        if name not in channels or (drive != "voltage" and name.startswith("pressure")):
+        if name not in channels or (drive not in WITH_OIL and name.startswith("pressure")):
             continue
         # a velocity computed from the position adds nothing and its noise is not independent
         if name == "velocity":
             continue
         measured.append(_measured(channels[name], column, remarks))
-    driving = {"voltage": ("voltage_command",), "force": ("force",), "pressures": ("pressure_a", "pressure_b")}[drive]
     used = {*driving, *(one.name for one in measured)}
     not_examined += [f"{name}: {NOT_COMPARED[name]}" for name in channels if name not in used]
     position = measured[0]
@@ -112,9 +124,9 @@ def observe(recording: Recording) -> Observation:
             f"{position.noise:.3g} m); record a test that moves the piston"
         )
     for name in ("pressure_a", "pressure_b"):
-        if name not in channels and drive == "voltage":
+        if name not in channels and drive in WITH_OIL:
             not_examined.append(f"continuity of chamber {name[-1]}: {name} was not recorded")
-    leakage = _leakage(recording) if drive == "voltage" else ()
+    leakage = _leakage(recording) if drive in WITH_OIL else ()
     if leakage:
         remarks.append(f"internal leakage was changed on purpose {len(leakage)} times; the simulation follows")
     return Observation(
@@ -127,6 +139,8 @@ def observe(recording: Recording) -> Observation:
         tuple(channels),
         tuple(not_examined),
         tuple(remarks),
+        driving,
+        composition,
     )
 
 
@@ -173,9 +187,11 @@ def without_end(observation: Observation, moment: float, why: str) -> Observatio
 
 
 def _choose_drive(
-    where: str, channels: Mapping[str, Channel]
-) -> tuple[str, tuple[tuple[Array, Array], ...], list[str]]:
-    """The best driving signal there is, and what its choice leaves unexamined."""
+    where: str, channels: Mapping[str, Channel], source: Source
+) -> tuple[str, tuple[str, ...], list[str]]:
+    """The best driving signal there is, its channels, and what its choice leaves unexamined."""
+    if source.valve != "coil":
+        return _given_by(where, channels, source)
     if "voltage_command" in channels:
         command = channels["voltage_command"]
         if np.ptp(command.values) == 0.0:
@@ -183,21 +199,30 @@ def _choose_drive(
                 f"{where}: the voltage command is constant at {command.values[0]:.3g} V; record a test that"
                 " excites the rig"
             )
-        return "voltage", ((command.time, command.values),), []
+        return "voltage", ("voltage_command",), []
     unexamined = ["coil, spool and valve flow: no voltage_command was recorded"]
     if "force" in channels:
-        force = channels["force"]
-        return (
-            "force",
-            ((force.time, force.values),),
-            [*unexamined, "continuity of both chambers: force alone was recorded"],
-        )
+        return "force", ("force",), [*unexamined, "continuity of both chambers: force alone was recorded"]
     if "pressure_a" in channels and "pressure_b" in channels:
-        pair = tuple((channels[name].time, channels[name].values) for name in ("pressure_a", "pressure_b"))
-        return "pressures", pair, [*unexamined, "continuity of both chambers: their flows are not known"]
+        unexamined.append("continuity of both chambers: their flows are not known")
+        return "pressures", ("pressure_a", "pressure_b"), unexamined
     raise RecordingError(
         f"{where}: nothing there drives the piston; record voltage_command, or force, or both chamber pressures"
     )
+
+
+def _given_by(
+    where: str, channels: Mapping[str, Channel], source: Source
+) -> tuple[str, tuple[str, ...], list[str]]:
+    """The channels of a source that no voltage drives."""
+    missing = next((name for name in source.inputs if name not in channels), None)
+    if missing is not None:
+        raise RecordingError(
+            f"{where}: no {missing} was recorded, and plant.source = {source.id} is driven by"
+            f" {' and '.join(source.inputs)}; map it in a topics file, or name another source"
+        )
+    driving = (*source.inputs, *(name for name in source.optional if name in channels))
+    return source.given or "measured", driving, [f"what brings about {' and '.join(driving)}: it was taken as measured"]
 
 
 def _measured(channel: Channel, column: int, remarks: list[str]) -> Measured:

@@ -47,7 +47,7 @@ def examine(recordings: Sequence[Recording], model: NominalModel, progress: Prog
 
 def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:
     progress("reading and aligning")
-    seen = [observe(recording) for recording in recordings]
+    seen = [observe(recording, model.composition) for recording in recordings]
     check_alike(seen)
     for number, observation in enumerate(seen):
         seen[number], model = reaching(observation, model)

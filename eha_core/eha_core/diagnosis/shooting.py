@@ -15,11 +15,12 @@ import numpy as np
 from scipy.signal import savgol_filter
 
 from eha_core.diagnosis.numbers import Array, Integers
-from eha_core.diagnosis.observation import Measured, Observation
+from eha_core.diagnosis.observation import WITH_OIL, Measured, Observation
 from eha_core.diagnosis.per_recording import values_of
 from eha_core.effects import effects
+from eha_core.plant import PAPER, Composition
 from eha_core.plant.composite import compiled_step
-from eha_core.plant.lockstep import LockStep
+from eha_core.plant.one_by_one import side_by_side
 from eha_core.plant.simulator import LONGEST_DELAY, pack
 from eha_core.plant.spells import span, spells
 from eha_core.plant.state import AT, COLUMNS, PISTON, SEEN, Places
@@ -56,7 +57,7 @@ class Shooting:
 
     Attributes:
         step_size: [s]; `every` steps make a row.
-        inputs: (1 or 2, steps) voltage, or both pressures, or force, held over each step.
+        inputs: (1 or 2, steps) voltage, both pressures, force, or what else drives the source, held over each step.
         edges: (windows + 1,) first step of each window, and the end.
         leakage: (windows,) what is added to the internal leakage coefficient in each, as the recording tells.
         samplings: one a measured channel, sorted by time.
@@ -64,6 +65,7 @@ class Shooting:
         measured.
         first_windows: the first window of each recording; there all that runs through begins anew, time too.
         per_recording: the parameters that have a value in each recording.
+        composition: the actuator's parts.
     """
 
     drive: str
@@ -78,6 +80,7 @@ class Shooting:
     free_states: int
     first_windows: tuple[int, ...] = (0,)
     per_recording: tuple[str, ...] = ()
+    composition: Composition = PAPER
 
     @property
     def windows(self) -> int:
@@ -105,6 +108,9 @@ class Shooting:
 
         Rows: (steps / every, 4) position, velocity, pressure A, pressure B as the sensors say; all columns if `full`.
         """
+        if not self.composition.has_lockstep:
+            together, ends_together = self._together([(values, states)], len(COLUMNS if full else SEEN))
+            return together[:, :, 0], ends_together[:, :, 0]
         steps = int(self.edges[-1])
         rows = np.empty((steps // self.every, len(COLUMNS if full else SEEN)))
         ends = np.empty((self.windows, STATE_SIZE))
@@ -163,15 +169,18 @@ class Shooting:
         Rows (steps / every, 4, lanes), the first lanes those of the sets, and the windows' end states (windows, 4,
         sets).
         """
+        return self._together(sets, len(SEEN))
+
+    def _together(self, sets: Sequence[tuple[Mapping[str, float], Array]], width: int) -> tuple[Array, Array]:
         rows: Array | None = None
         ends = np.empty((self.windows, STATE_SIZE, len(sets)))
         starts = np.stack([states for _, states in sets])
         for number, windows in enumerate(self.recordings, 1):
             start = int(self.edges[windows.start])
             own = [values_of(values, number) for values, _ in sets]
-            lanes = LockStep(own, self.step_size, self.inputs[0, start])
+            lanes = side_by_side(own, self.step_size, self.inputs[0, start], self.composition)
             if rows is None:
-                rows = np.empty((int(self.edges[-1]) // self.every, STATE_SIZE, lanes.lanes))
+                rows = np.empty((int(self.edges[-1]) // self.every, width, lanes.lanes))
             lanes.place(starts[:, windows.start])
             lanes.start_memory()
             for window in windows:
@@ -231,9 +240,9 @@ def cut(
     step_times = np.arange(edges[-1]) * step_size
     hold = [
         values_[np.clip(np.searchsorted(time, step_times + 1e-9, side="right") - 1, 0, None)]
-        if observation.drive == "voltage"
+        if name == "voltage_command"
         else np.interp(step_times + 0.5 * step_size, time, values_)
-        for time, values_ in observation.inputs
+        for name, (time, values_) in zip(observation.driving, observation.inputs, strict=True)
     ]
     if observation.drive == "force":
         # the step knows pressures: a force is one chamber's pressure over its area
@@ -249,7 +258,8 @@ def cut(
         samplings,
         tuple(channel.name for channel in observation.measured),
         _initial_states(observation, np.asarray(edges * step_size), values),
-        STATE_SIZE if observation.drive == "voltage" else 2,
+        STATE_SIZE if observation.drive in WITH_OIL else 2,
+        composition=observation.composition,
     )
 
 

@@ -12,9 +12,11 @@ from eha_core.curve import KNOTS
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.fit import Fit, fit
 from eha_core.diagnosis.freedom import Free
+from eha_core.diagnosis.observation import WITH_OIL
 from eha_core.diagnosis.problem import Problem, linearise, normal_equations
+from eha_core.diagnosis.shooting import Shooting
 from eha_core.diagnosis.tournament import Tournament, parameter_cost
-from eha_core.effects import Effect, effects
+from eha_core.effects import Effect
 
 LEFT_OVER = 0.05
 """A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""
@@ -52,7 +54,7 @@ def recover(
         return None
     progress("recovering an unknown law as a curve")
     promises = []
-    for effect, variable, values in _curves(nominal.values, facts, problem.shooting.drive):
+    for effect, variable, values in _curves(nominal.values, facts, problem.shooting):
         free = (*nominal.free, *_knots_free(effect, values, facts))
         promises.append((_promised(problem, nominal, values, free), effect, variable, values, free))
     promises.sort(key=lambda one: -one[0])
@@ -69,9 +71,11 @@ def recover(
     return min(found, key=lambda one: one.fit.objective, default=None)
 
 
-def _curves(values: Mapping[str, float], facts: Facts, drive: str) -> Iterator[tuple[Effect, str, dict[str, float]]]:
-    for effect in effects():
-        if effect.named or (drive != "voltage" and effect.site != "force"):
+def _curves(
+    values: Mapping[str, float], facts: Facts, shooting: Shooting
+) -> Iterator[tuple[Effect, str, dict[str, float]]]:
+    for effect in shooting.composition.effects:
+        if effect.named or (shooting.drive not in WITH_OIL and effect.site != "force"):
             continue
         for place, variable in enumerate(VARIABLES[effect.id]):
             covered = _range(variable, facts)

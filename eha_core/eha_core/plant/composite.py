@@ -1,5 +1,8 @@
 """Compile the step once for the whole catalogue: write its hooks, beside a copy of the step, into a cache folder.
 
+Under a servo valve that is one folder, with the lock-step beside it. All other sources share a second one, which is
+compiled when such a plant is first asked for; there the step asks at run time which of them delivers.
+
 A compiled function caches by its own file alone and would go on calling an effect as it was before an edit. So the
 folder is named by a hash of every source that the composite is made of; what it holds can be read and deleted.
 """
@@ -24,11 +27,12 @@ from eha_core.effects import SITES, effects
 from eha_core.parameters import NOMINAL, catalogue
 from eha_core.plant import hooks, lane_hooks
 from eha_core.plant.lane_rows import LANES, PARAMETERS
+from eha_core.plant.parts import Source, parts
 
 SOURCES = (
     "compiled.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
     "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
-    "plant/composite.py", "effects/*.py",
+    "plant/composite.py", "plant/source.py", "plant/given.py", "plant/parts/sources/*.py", "effects/*.py",
 )
 
 
@@ -52,6 +56,45 @@ def write_hooks() -> str:
         head = list(inspect.signature(getattr(hooks, site)).parameters)
         lines += ["", "", "@inlined", f"def {site}({', '.join(head)}):", *body]
         lines += [f"    return {', '.join(head[: SITES[site].quantities])}"]
+    return "\n".join(lines) + "\n"
+
+
+@cache
+def given_sources() -> tuple[Source, ...]:
+    """The sources whose oil flows by something else than a voltage, in the order in which the step numbers them."""
+    found = [source for source in parts("source").values() if isinstance(source, Source)]
+    return tuple(source for source in found if source.valve != "coil" and not source.given)
+
+
+def given_names() -> tuple[str, ...]:
+    """What such a plant's vector has after the catalogue: each source's own parameters, then two that `given` reads."""
+    own = [f"{source.id}.{row.name}" for source in given_sources() for row in source.own]
+    return (*own, "valve", "source")
+
+
+def write_source() -> str:
+    """The source of the generated `source`: as `given`, with the ports of whichever source the parameters number.
+
+    It is called and not inlined, which keeps the time to compile in bounds.
+    """
+    last = len(given_sources()) - 1
+    own = [name.replace(".", "_") for name in given_names()[:-2]]
+    head = "opening, gain, conductance, {}pressure_a, pressure_b, supply_pressure, return_pressure"
+    full = head.format("first, second, ")
+    lines = ['"""Generated from the sources of oil, and written anew when one changes: do not edit."""', ""]
+    lines += ["from eha_core.compiled import called, inlined"]
+    lines += ["from eha_core.plant.given import current_of, given_at, spool_of, voltage_of"]
+    lines += [
+        f"from eha_core.plant.parts.sources.{one.id} import contribution as {one.id}" for one in given_sources()
+    ]
+    lines += ["", "", "@called", f"def delivered({', '.join(['number', full, *own])}):"]
+    for number, source in enumerate(given_sources()):
+        arguments = ", ".join([full, *(f"{source.id}_{row.name}" for row in source.own)])
+        lines += [f"    if number == {number}.0:"] if number < last else []
+        lines += [f"{'        ' if number < last else '    '}return {source.id}({arguments})"]
+    places = [f"parameters[{len(catalogue()) + k}]" for k in range(len(own))]
+    lines += ["", "", "@inlined", f"def ports(given, {head.format('')}, parameters):"]
+    lines += [f"    return delivered({', '.join(['parameters[-1]', head.format('given[0], given[1], '), *places])})"]
     return "\n".join(lines) + "\n"
 
 
@@ -133,15 +176,21 @@ def _cache_root() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "eha_core"
 
 
-def _write_package(folder: Path) -> None:
+def _texts(given: bool) -> dict[str, str]:
+    """What a package is made of, by file name."""
+    here = Path(__file__).parent
+    copies = ("step.py",) if given else ("step.py", "lanes.py", "source.py")
+    texts = {"__init__.py": "", "hooks.py": write_hooks()}
+    texts |= {name: (here / name).read_text(encoding="utf-8") for name in copies}
+    return texts | ({"source.py": write_source()} if given else {"lane_hooks.py": write_lane_hooks()})
+
+
+def _write_package(folder: Path, given: bool) -> None:
     """Write the package whole or not at all: several processes may start at once."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     draft = Path(tempfile.mkdtemp(dir=folder.parent))
-    (draft / "__init__.py").write_text("", encoding="utf-8")
-    (draft / "hooks.py").write_text(write_hooks(), encoding="utf-8")
-    (draft / "lane_hooks.py").write_text(write_lane_hooks(), encoding="utf-8")
-    for name in ("step.py", "lanes.py"):
-        (draft / name).write_text((Path(__file__).parent / name).read_text(encoding="utf-8"), encoding="utf-8")
+    for name, text in _texts(given).items():
+        (draft / name).write_text(text, encoding="utf-8")
     try:
         draft.rename(folder)
     except OSError:
@@ -150,16 +199,16 @@ def _write_package(folder: Path) -> None:
 
 
 @cache
-def _package() -> str:
+def _package(given: bool) -> str:
     """The generated package's name, under which it is imported."""
-    name = f"eha_composite_{_fingerprint()}"
+    name = f"eha_composite_{_fingerprint()}{'_given' if given else ''}"
     folder = _cache_root() / name
     try:
         if not folder.is_dir():
-            _write_package(folder)
+            _write_package(folder, given)
     except OSError:
         folder = Path(tempfile.mkdtemp()) / name
-        _write_package(folder)
+        _write_package(folder, given)
     specification = importlib.util.spec_from_file_location(
         name, folder / "__init__.py", submodule_search_locations=[str(folder)]
     )
@@ -173,10 +222,16 @@ def _package() -> str:
 @cache
 def compiled_step() -> ModuleType:
     """The step with every effect of the catalogue plugged in: a module with the functions of `eha_core.plant.step`."""
-    return importlib.import_module(f"{_package()}.step")
+    return importlib.import_module(f"{_package(False)}.step")
+
+
+@cache
+def compiled_given_step() -> ModuleType:
+    """The same step under the sources whose input is measured: its `advance`."""
+    return importlib.import_module(f"{_package(True)}.step")
 
 
 @cache
 def compiled_lanes() -> ModuleType:
     """The lock-step with every effect of the catalogue plugged in: the functions of `eha_core.plant.lanes`."""
-    return importlib.import_module(f"{_package()}.lanes")
+    return importlib.import_module(f"{_package(False)}.lanes")

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import expm1, isfinite
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,11 @@ from scipy.linalg import expm
 
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
-from eha_core.parameters import changed, nominal_values
-from eha_core.plant.composite import compiled_step
+from eha_core.parameters import catalogue
+from eha_core.plant.composite import compiled_given_step, compiled_step, given_names, given_sources
+from eha_core.plant.composition import PAPER, Composition
+from eha_core.plant.given import VALVES
+from eha_core.plant.parts import Source
 from eha_core.plant.spells import span, spells
 from eha_core.plant.state import AT, COLUMNS, PISTON, Places, Row
 
@@ -64,21 +67,40 @@ def propagator(
     return (1.0 - decayed, 1.0 / resistance, *map(float, rows[0]), *map(float, rows[1]))
 
 
+@lru_cache(maxsize=4096)
+def held_propagator(damping_ratio: float, frequency: float, step_size: float) -> tuple[float, ...]:
+    """Exact solution of equation (2) over one step under a held current, in the places of `propagator`."""
+    square = frequency * frequency
+    system = np.zeros((3, 3))
+    system[0, 1] = 1.0
+    system[1] = [-square, -2.0 * damping_ratio * frequency, square]
+    response = expm(system * step_size)
+    rows = [[response[i, 0], response[i, 1], 0.0, response[i, 2]] for i in range(2)]
+    return (0.0, 0.0, *map(float, rows[0]), *map(float, rows[1]))
+
+
 Packed = tuple[tuple[float, ...], tuple[bool, ...], tuple[float, ...]]
 
 
-def pack(values: Mapping[str, float], step_size: float) -> Packed:
+def pack(values: Mapping[str, float], step_size: float, composition: Composition = PAPER) -> Packed:
     """Parameters (catalogue order), which effects act (catalogue order), and the valve's propagator.
 
-    Tuples, for the compiled step holds them in registers and does no reference counting on them.
+    Tuples, for the compiled step holds them in registers and does no reference counting on them. `values` are those of
+    the equations, `Composition.places`. Where the source's input is measured, its own parameters and what `given` reads
+    follow those of the catalogue.
     """
-    vector = tuple(values.values())
     active = tuple(effect.is_active(values) for effect in effects())
-    valve = propagator(
-        values["coil_resistance"], values["coil_inductance"], values["valve_damping_ratio"],
-        values["valve_natural_frequency"], step_size,
-    )
-    return vector, active, valve
+    source = composition.source
+    if source.valve == "coil" or source.given:
+        valve = propagator(
+            values["coil_resistance"], values["coil_inductance"], values["valve_damping_ratio"],
+            values["valve_natural_frequency"], step_size,
+        )  # fmt: skip
+        return tuple(values.values()), active, valve
+    valve = held_propagator(values["valve_damping_ratio"], values["valve_natural_frequency"], step_size)
+    own = [values.get(name.partition(".")[2], 0.0) for name in given_names()[:-2]]
+    number = [one.id for one in given_sources()].index(source.id)
+    return (*(values[name] for name in catalogue()), *own, VALVES[source.valve], float(number)), active, valve
 
 
 def check_step_size(step_size: float) -> None:
@@ -93,24 +115,50 @@ def check_voltages(voltages: Array) -> None:
         raise ParameterError("the voltage command is not finite; give volts")
 
 
+def step_inputs(inputs: Array, source: Source) -> Array:
+    """What drives a source as the compiled step takes it: (steps,) voltages, or (steps, 2) of what was measured.
+
+    inputs: (steps,) or (steps, inputs), held over each step. Raises ParameterError for another number of them, and for
+    values that are not finite.
+    """
+    inputs = np.ascontiguousarray(inputs, dtype=np.float64)
+    if source.valve == "coil":
+        check_voltages(inputs)
+        return inputs
+    least, most = len(source.inputs), len(source.inputs) + len(source.optional)
+    columns = inputs[:, None] if inputs.ndim == 1 else inputs
+    if not least <= columns.shape[1] <= most:
+        names = " and ".join(source.inputs)
+        raise ParameterError(f"{source.id} takes {names} for each step; {columns.shape[1]} columns were given")
+    if not np.all(np.isfinite(columns)):
+        raise ParameterError(f"{' or '.join(source.inputs)} is not finite in some step; give numbers")
+    return np.ascontiguousarray(columns[:, [0, columns.shape[1] - 1]])
+
+
 class Plant:
-    """The electro-hydraulic servo actuator of equations (1) to (10) with the catalogue's effects.
+    """The electro-hydraulic actuator of equations (1) to (10) with the catalogue's effects, as its parts make it.
+
+    Parameters are those of the composition, the paper's servo valve, double-rod cylinder and sprung mass by default.
 
     Raises ParameterError for parameters that make no plant, a step that is not 1e-6 to 1e-3 s, or a start outside the
     stroke. The state stays finite and inside the stroke, and absolute pressures at or above zero, for any finite
-    voltage.
+    input.
     """
 
     def __init__(
-        self, parameters: Mapping[str, float] | None = None, step_size: float = 1e-4, initial_position: float = 0.0
+        self,
+        parameters: Mapping[str, float] | None = None,
+        step_size: float = 1e-4,
+        initial_position: float = 0.0,
+        composition: Composition = PAPER,
     ) -> None:
         check_step_size(step_size)
         self.step_size = step_size
-        self._advance = compiled_step().advance
-        self._values = changed(nominal_values(), parameters or {})
-        self._vector, self._active, self._propagator = pack(self._values, step_size)
+        self.composition = composition
+        self._kernel = _kernel(composition.source)
+        self._hidden = [COLUMNS.index(name) for name in composition.source.hides]
+        self._take(composition.changed(composition.nominal_values(), parameters or {}))
         self._none = (False,) * len(self._active)
-        self._span = span(self._values, step_size)
         self._row = np.zeros((1, len(COLUMNS)))
         self._held = np.empty(0)  # the voltages of a tick, kept from one to the next
         self.reset(initial_position)
@@ -120,44 +168,51 @@ class Plant:
         """Every parameter in force, by its full name."""
         return MappingProxyType(self._values)
 
+    def _take(self, values: dict[str, float]) -> None:
+        """Put these values in force."""
+        self._values, self._places = values, self.composition.places(values)
+        self._vector, self._active, self._propagator = pack(self._places, self.step_size, self.composition)
+        self._span = span(self._places, self.step_size)
+
     def set_parameters(self, changes: Mapping[str, float]) -> None:
         """Apply `changes` from the next step on, all of them or, raising ParameterError, none."""
-        values = changed(self._values, changes)
+        values = self.composition.changed(self._values, changes)
         before = self._active
-        self._values = values
-        self._vector, self._active, self._propagator = pack(values, self.step_size)
-        self._span = span(values, self.step_size)
+        self._take(values)
         self._start_memory([now and not then for now, then in zip(self._active, before, strict=True)])
-        stroke = values["actuator_displacement"]
+        stroke = self._places["actuator_displacement"]
         self._state[AT.position] = min(max(self._state[AT.position], -stroke), stroke)
 
     def reset(self, initial_position: float | None = None) -> None:
-        """Back to rest at the initial position, both chambers midway between supply and return, and to time zero."""
+        """Back to rest at the initial position and to time zero, both chambers midway between supply and return, or
+        at the pressures that hold a cylinder of unequal areas at rest."""
         if initial_position is not None:
-            stroke = self._values["actuator_displacement"]
+            stroke, unit = self._places["actuator_displacement"], self.composition.cylinder.motion
             if not abs(initial_position) <= stroke:
                 raise ParameterError(
-                    f"initial_position = {initial_position:g} m is outside the stroke of +-{stroke:g} m"
+                    f"initial_position = {initial_position:g} {unit} is outside the stroke of +-{stroke:g} {unit}"
                 )
             self._initial_position = initial_position
-        supply, back = self._values["supply_pressure"], self._values["return_pressure"]
-        half = 0.5 * (supply + back)
+        supply, back = self._places["supply_pressure"], self._places["return_pressure"]
+        pressures = starting_pressures(self._places, self._initial_position, self.composition)
         self._state = np.zeros(len(Places._fields))
         self._state[AT.supply_pressure], self._state[AT.return_pressure] = supply, back
-        self._state[PISTON] = self._initial_position, 0.0, half, half
+        self._state[PISTON] = self._initial_position, 0.0, *pressures
         self._history = np.zeros(int(LONGEST_DELAY / self.step_size) + 3)
         self._memory = np.zeros(max(1, sum(len(effect.memory) for effect in effects())))
         self._start_memory([True] * len(effects()))
         self.step_count = 0
         self._row[0] = Row(*[0.0] * len(COLUMNS))._replace(
-            position=self._initial_position, pressure_a=half, pressure_b=half, supply_pressure=supply,
-            return_pressure=back, internal_leakage=self._values["internal_leakage"],
-            measured_position=self._initial_position, measured_pressure_a=half, measured_pressure_b=half,
+            position=self._initial_position, pressure_a=pressures[0], pressure_b=pressures[1], supply_pressure=supply,
+            return_pressure=back, internal_leakage=self._places["internal_leakage"],
+            measured_position=self._initial_position, measured_pressure_a=pressures[0],
+            measured_pressure_b=pressures[1],
         )  # fmt: skip
+        self._row[0, self._hidden] = np.nan
 
     def place(self, position: float, velocity: float, pressure_a: float, pressure_b: float) -> None:
         """Put piston and chambers into a measured state [SI]; time, valve, and the effects' own states go on."""
-        stroke = self._values["actuator_displacement"]
+        stroke = self._places["actuator_displacement"]
         self._state[PISTON] = min(max(position, -stroke), stroke), velocity, pressure_a, pressure_b
 
     def _start_memory(self, chosen: Sequence[bool]) -> None:
@@ -176,50 +231,87 @@ class Plant:
 
     @property
     def state(self) -> Row:
-        """The row after the last step."""
+        """The row after the last step; what the source has no value for is not a number."""
         return Row(*self._row[0].tolist())
 
-    def advance(self, voltage: float, steps: int) -> None:
-        """Hold `voltage` [V] for that many steps.
-
-        This is a simulator's tick: what is checked and cut for whole records would cost it more than the steps do.
-        """
+    def advance(self, given: float | Sequence[float], steps: int) -> None:
+        """Hold the voltage [V], or what else drives the source, for that many steps."""
         if steps <= 0:
             return
+        if self.composition.source.valve == "coil" and self._quickly(given, steps):
+            return
+        inputs = np.full((steps, *np.shape(given)), given, dtype=np.float64)
+        self._run(step_inputs(inputs, self.composition.source), steps, self._row)
+
+    def _quickly(self, given: float | Sequence[float], steps: int) -> bool:
+        """A simulator's tick under a voltage: what is checked and cut for whole records would cost it more than the
+        steps do. Whether it could be taken."""
+        begin, end = self._span
+        if not isinstance(given, float | int) or not isfinite(given) or begin > 0 or self.step_count + steps > end:
+            return False
         if len(self._held) != steps:
             self._held = np.empty(steps)
-        self._held.fill(voltage)
-        begin, end = self._span
-        if begin > 0 or self.step_count + steps > end or not isfinite(voltage):
-            self._run(self._held, steps, self._row)
-            return
+        self._held.fill(given)
         self._state[AT.time] = self.time
-        self._take(self._active, self._held, steps, self._row)
+        self._steps(self._held, steps, self._row, self._active)
         self.step_count += steps
+        return True
 
-    def run(self, voltages: Array, every: int = 1) -> Trajectory:
-        """Apply one voltage a step; return the rows after every `every`-th step (the start is not among them)."""
-        voltages = np.ascontiguousarray(voltages, dtype=np.float64)
-        rows = np.empty((len(voltages) // every, len(COLUMNS)))
+    def run(self, inputs: Array, every: int = 1) -> Trajectory:
+        """Apply one input a step; return the rows after every `every`-th step (the start is not among them).
+
+        inputs: (steps,) voltages, or (steps,) or (steps, inputs) of what else drives the source, in SI units.
+        """
+        taken = step_inputs(inputs, self.composition.source)
+        rows = np.empty((len(taken) // every, len(COLUMNS)))
         first = self.step_count
-        self._run(voltages, every, rows)
+        self._run(taken, every, rows)
         if len(rows):
             self._row[0] = rows[-1]
         counts = first + every * np.arange(1, len(rows) + 1, dtype=np.float64)
         return Trajectory(counts * self.step_size, rows)
 
-    def _run(self, voltages: Array, every: int, rows: Array) -> None:
-        check_voltages(voltages)
+    def _run(self, inputs: Array, every: int, rows: Array) -> None:
         self._state[AT.time] = self.time
-        for spell in spells(self.step_count, len(voltages), every, self._span):
+        for spell in spells(self.step_count, len(inputs), every, self._span):
             if spell.acting and self.step_count + spell.steps.start == self._span[0] > 0:
                 self._start_memory([True] * len(effects()))
             active = self._active if spell.acting else self._none
-            self._take(active, voltages[spell.steps], spell.every, rows[spell.rows])
-        self.step_count += len(voltages)
+            self._steps(inputs[spell.steps], spell.every, rows[spell.rows], active)
+        self.step_count += len(inputs)
+        if self._hidden:
+            rows[:, self._hidden] = np.nan
 
-    def _take(self, active: tuple[bool, ...], voltages: Array, every: int, rows: Array) -> None:
-        self._advance(
-            self._state, self._memory, self._history, self._vector, active, self._propagator, voltages,
-            self.step_size, every, rows,
-        )  # fmt: skip
+    def _steps(self, inputs: Array, every: int, rows: Array, active: tuple[bool, ...]) -> None:
+        """Steps throughout which the same effects act."""
+        given = self.composition.source.given
+        if not given:
+            self._kernel.advance(
+                self._state, self._memory, self._history, self._vector, active, self._propagator, inputs,
+                self.step_size, every, rows,
+            )  # fmt: skip
+            return
+        # the step knows pressures: a force is one chamber's pressure over its area
+        pressure_a = inputs[:, 0] / self._places["piston_area"] if given == "force" else inputs[:, 0].copy()
+        pressure_b = 0.0 * pressure_a if given == "force" else inputs[:, 1].copy()
+        self._kernel.advance_driven(
+            self._state, self._memory, self._vector, active, pressure_a, pressure_b, self.step_size, every, rows
+        )
+
+
+def _kernel(source: Source) -> ModuleType:
+    """The compiled step that takes this source's input."""
+    return compiled_step() if source.valve == "coil" or source.given else compiled_given_step()
+
+
+def starting_pressures(
+    places: Mapping[str, float], position: float, composition: Composition = PAPER
+) -> tuple[float, float]:
+    """Pressures A and B [Pa] of a plant that starts at rest, of the parameters of the equations."""
+    back = places["return_pressure"]
+    total = 2.0 * back if composition.source.idle else places["supply_pressure"] + back
+    if not composition.cylinder.balanced:
+        return 0.5 * total, 0.5 * total
+    area_a, area_b = places["piston_area"], places["piston_area_b"]
+    pressure_a = (area_b * total + places["spring_stiffness"] * position) / (area_a + area_b)
+    return pressure_a, total - pressure_a

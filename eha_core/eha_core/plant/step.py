@@ -1,24 +1,15 @@
 """The compiled step of the actuator, equations (1) to (10), with a place for each site's effects.
 
 `scheme` holds the pieces of a step; here the hooks stand between them. This file is compiled as it stands for the
-nominal plant, and once more beside generated `hooks` for the whole catalogue. `lanes` takes the same step for many
-parameter sets at once.
+nominal plant, and once more beside generated `hooks` for the whole catalogue; for sources other than the servo valve,
+also beside a `source` of the same functions. `lanes` takes the same step for many parameter sets at once.
 """
 
 from __future__ import annotations
 
 from eha_core.compiled import compiled, inlined, unowned
 from eha_core.plant.equations import driving_force, external_leakage_flow, hydraulic_force, internal_leakage_flow
-from eha_core.plant.scheme import (
-    coil_current,
-    effective_velocity,
-    friction_force,
-    held_at_the_ends,
-    oil_step,
-    port_flows,
-    spool_step,
-    velocity_step,
-)
+from eha_core.plant.scheme import effective_velocity, friction_force, held_at_the_ends, oil_step, velocity_step
 from eha_core.plant.state import AT, COLUMN
 from eha_core.plant.vector import (
     ACTUATOR_DISPLACEMENT,
@@ -32,22 +23,24 @@ from eha_core.plant.vector import (
     PISTON_AREA,
     PISTON_AREA_B,
     RETURN_PRESSURE,
-    SATURATION_CURRENT,
     SPRING_STIFFNESS,
     SUPPLY_PRESSURE,
     VALVE_GAIN,
 )
 
 from .hooks import chamber, command, force, orifice, schedule, sensor, spool, supply
+from .source import current_of, given_at, ports, spool_of, voltage_of
 
 
 @inlined
-def ports_of(spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active):
-    """The ports' flows, equation (3): see `port_flows`."""
+def ports_of(given, spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active):
+    """The ports' flows: see `scheme.port_flows`."""
     opening, gain, conductance = orifice(
         spool_position, parameters[VALVE_GAIN], 0.0, spool_position, parameters, active
     )
-    return port_flows(opening, gain, conductance, pressure_a, pressure_b, supply_pressure, return_pressure)
+    return ports(
+        given, opening, gain, conductance, pressure_a, pressure_b, supply_pressure, return_pressure, parameters
+    )
 
 
 @inlined
@@ -62,7 +55,7 @@ def chambers_of(bulk, internal_leakage, outside, pressure_a, pressure_b, paramet
 
 @inlined
 def oil_half_step(
-    tau, spool_position, position, velocity, pressure_a, pressure_b, supply_pressure, return_pressure,
+    tau, given, spool_position, position, velocity, pressure_a, pressure_b, supply_pressure, return_pressure,
     internal_leakage, parameters, active,
 ):
     """Equations (4) to (9) over the time tau with the piston moving steadily through `position`.
@@ -74,12 +67,14 @@ def oil_half_step(
         parameters[BULK_MODULUS], internal_leakage, parameters[EXTERNAL_LEAKAGE], pressure_a, pressure_b,
         parameters, active,
     )
-    ports = ports_of(spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active)
+    flows = ports_of(
+        given, spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active
+    )
     pressure_a, pressure_b, stiffness = oil_step(
-        tau, ports, chambers, position, velocity, pressure_a, pressure_b, parameters[PISTON_AREA],
+        tau, flows, chambers, position, velocity, pressure_a, pressure_b, parameters[PISTON_AREA],
         parameters[ACTUATOR_DISPLACEMENT], parameters[LINE_VOLUME], parameters[ATMOSPHERIC_PRESSURE],
     )
-    return pressure_a, pressure_b, ports[4], ports[5], chambers[0], stiffness
+    return pressure_a, pressure_b, flows[4], flows[5], chambers[0], stiffness
 
 
 @inlined
@@ -104,12 +99,19 @@ def piston_step(
 
 
 @inlined
-def valve_step(voltage, target, spool_position, spool_velocity, current, propagator, memory, parameters, active):
-    """Equations (1) and (2) over one step under a held voltage: exact but for the current's saturation."""
-    current = coil_current(current, voltage, propagator[0], propagator[1], parameters[SATURATION_CURRENT])
+def valve_step(
+    voltage, given, target, spool_position, spool_velocity, current, propagator, memory, parameters, active
+):
+    """Equations (1) and (2) over one step under a held input: exact but for the current's saturation.
+
+    Returns the current, what the spool follows, where the spool is as the step begins, and its state at the end.
+    """
+    current = current_of(voltage, given, current, propagator, parameters)
     new_target = spool(current, memory, parameters, active)
-    position, velocity = spool_step(spool_position, spool_velocity, target, new_target, propagator[2:])
-    return current, new_target, position, velocity
+    before, position, velocity = spool_of(
+        given, spool_position, spool_velocity, target, new_target, propagator, parameters
+    )
+    return current, new_target, before, position, velocity
 
 
 @inlined
@@ -119,17 +121,17 @@ def write_seen(row, seen):
 
 
 @inlined
-def write_row(row, voltage, state, hydraulic, friction, leakage, seen, parameters, active):
+def write_row(row, given, state, hydraulic, friction, leakage, seen, parameters, active):
     """Fill one row of COLUMNS from the state at the end of a step."""
     supply_pressure, return_pressure = state[AT.supply_pressure], state[AT.return_pressure]
     spool_position, pressure_a, pressure_b = state[AT.spool_position], state[AT.pressure_a], state[AT.pressure_b]
     flow_a, flow_b, _, _, _, _ = ports_of(
-        spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active
+        given, spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active
     )
     _, _, _, _, _, cross, _, leak_a, leak_b = chambers_of(
         parameters[BULK_MODULUS], leakage, parameters[EXTERNAL_LEAKAGE], pressure_a, pressure_b, parameters, active
     )
-    row[COLUMN.voltage] = voltage
+    row[COLUMN.voltage] = voltage_of(given)
     row[COLUMN.current : COLUMN.flow_a] = state[AT.current :]
     row[COLUMN.flow_a], row[COLUMN.flow_b], row[COLUMN.internal_leakage_flow] = flow_a, flow_b, cross
     row[COLUMN.external_leakage_flow_a] = external_leakage_flow(leak_a, pressure_a)
@@ -137,6 +139,16 @@ def write_row(row, voltage, state, hydraulic, friction, leakage, seen, parameter
     row[COLUMN.supply_pressure], row[COLUMN.return_pressure] = supply_pressure, return_pressure
     row[COLUMN.hydraulic_force], row[COLUMN.friction_force] = hydraulic, friction
     row[COLUMN.internal_leakage] = leakage
+    write_seen(row[COLUMN.measured_position :], seen)
+
+
+@inlined
+def write_driven(row, position, velocity, pressure_a, pressure_b, hydraulic, friction, seen):
+    """Fill those of COLUMNS that a plant driven by its pressures has; the others are zero."""
+    row[:] = 0.0
+    row[COLUMN.position], row[COLUMN.velocity] = position, velocity
+    row[COLUMN.pressure_a], row[COLUMN.pressure_b] = pressure_a, pressure_b
+    row[COLUMN.hydraulic_force], row[COLUMN.friction_force] = hydraulic, friction
     write_seen(row[COLUMN.measured_position :], seen)
 
 
@@ -154,12 +166,13 @@ def keep(
 
 
 @compiled
-def advance(state, memory, history, parameters, active, propagator, voltages, step_size, every, rows):
-    """Advance `state` by one step for each of `voltages`, and write a row after every `every` of them.
+def advance(state, memory, history, parameters, active, propagator, inputs, step_size, every, rows):
+    """Advance `state` by one step for each of `inputs`, and write a row after every `every` of them.
 
     Rows as wide as COLUMNS take them all; rows of four take what the sensors say.
 
     state: see `eha_core.plant.state.Places`.
+    inputs: (steps,) voltages; of other sources than the servo valve, (steps, 2) what `given` says.
     history: ring of past voltages; its last element holds the index of the latest.
     propagator: coil decay, 1 / R_c, then for spool position and rate each: from position, from rate, from the old
     target, from the new target.
@@ -172,21 +185,21 @@ def advance(state, memory, history, parameters, active, propagator, voltages, st
     memory, history = unowned(memory), unowned(history)
     newest, ring = int(history[-1]), history.shape[0] - 1
     stroke, tau = parameters[ACTUATOR_DISPLACEMENT], 0.5 * step_size
-    for index in range(voltages.shape[0]):
+    for index in range(inputs.shape[0]):
+        given = given_at(inputs, index)
         newest = newest + 1 if newest + 1 < ring else 0
-        history[newest] = voltages[index]
-        voltage = command(voltages[index], history, newest, step_size, parameters, active)
+        history[newest] = voltage_of(given)
+        voltage = command(voltage_of(given), history, newest, step_size, parameters, active)
         leakage, damping = schedule(
             parameters[INTERNAL_LEAKAGE], parameters[DAMPING_COEFFICIENT], time + tau, parameters, active
         )
-        before = spool_position
-        current, target, spool_position, spool_velocity = valve_step(
-            voltage, target, spool_position, spool_velocity, current, propagator, memory, parameters, active
+        current, target, before, spool_position, spool_velocity = valve_step(
+            voltage, given, target, spool_position, spool_velocity, current, propagator, memory, parameters, active
         )
         moving = effective_velocity(tau, position, velocity, stroke)
         pressure_a, pressure_b, _, _, area_b, stiffness = oil_half_step(
-            tau, 0.75 * before + 0.25 * spool_position, position + 0.5 * tau * moving, moving, pressure_a, pressure_b,
-            supply_pressure, return_pressure, leakage, parameters, active,
+            tau, given, 0.75 * before + 0.25 * spool_position, position + 0.5 * tau * moving, moving,
+            pressure_a, pressure_b, supply_pressure, return_pressure, leakage, parameters, active,
         )
         position += tau * moving
         velocity, hydraulic, friction = piston_step(
@@ -194,7 +207,7 @@ def advance(state, memory, history, parameters, active, propagator, voltages, st
             memory, parameters, active,
         )
         pressure_a, pressure_b, supply_flow, return_flow, _, _ = oil_half_step(
-            tau, 0.25 * before + 0.75 * spool_position, position + 0.5 * tau * velocity, velocity,
+            tau, given, 0.25 * before + 0.75 * spool_position, position + 0.5 * tau * velocity, velocity,
             pressure_a, pressure_b, supply_pressure, return_pressure, leakage, parameters, active,
         )
         position, velocity = held_at_the_ends(position + tau * velocity, velocity, stroke)
@@ -213,7 +226,7 @@ def advance(state, memory, history, parameters, active, propagator, voltages, st
             if row.shape[0] == 4:
                 write_seen(row, seen)
             else:
-                write_row(row, voltages[index], state, hydraulic, friction, leakage, seen, parameters, active)
+                write_row(row, given, state, hydraulic, friction, leakage, seen, parameters, active)
     history[-1] = newest
     keep(
         state, time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity,
@@ -225,7 +238,8 @@ def advance(state, memory, history, parameters, active, propagator, voltages, st
 def advance_driven(state, memory, parameters, active, pressures_a, pressures_b, step_size, every, rows):
     """Advance position and velocity alone, driven by given chamber pressures held over each step: equation (10).
 
-    `state` is as in `advance`, of which this moves time, position and velocity; rows are those of the sensors.
+    `state` is as in `advance`, of which this moves time, position and velocity. Rows are as there; of those as wide as
+    COLUMNS it fills what such a plant has.
     """
     memory = unowned(memory)
     time, position, velocity = state[AT.time], state[AT.position], state[AT.velocity]
@@ -238,13 +252,17 @@ def advance_driven(state, memory, parameters, active, pressures_a, pressures_b, 
         )
         position += tau * effective_velocity(tau, position, velocity, stroke)
         area_b = chambers_of(1.0, 0.0, 0.0, pressure_a, pressure_b, parameters, active)[0]
-        velocity, _, _ = piston_step(
+        velocity, hydraulic, friction = piston_step(
             step_size, position, velocity, pressure_a, pressure_b, area_b, 0.0, damping, memory, parameters, active
         )
         position, velocity = held_at_the_ends(position + tau * velocity, velocity, stroke)
         time += step_size
         seen = sensor(position, velocity, pressure_a, pressure_b, memory, step_size, parameters, active)
         if (index + 1) % every == 0:
-            write_seen(rows[(index + 1) // every - 1], seen)
+            row = rows[(index + 1) // every - 1]
+            if row.shape[0] == 4:
+                write_seen(row, seen)
+            else:
+                write_driven(row, position, velocity, pressure_a, pressure_b, hydraulic, friction, seen)
     state[AT.time], state[AT.position], state[AT.velocity] = time, position, velocity
     state[AT.pressure_a], state[AT.pressure_b] = pressure_a, pressure_b

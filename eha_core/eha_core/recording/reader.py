@@ -132,6 +132,8 @@ def _channel(name: str, series: Samples, start: int, rule: ChannelRule, type_nam
 def _parameters(raw: RawRecording, remarks: list[str]) -> dict[str, float]:
     parameters = {}
     for name, text in raw.metadata.get(PARAMETERS_RECORD, {}).items():
+        if name.startswith("plant."):  # which parts the actuator has
+            continue
         try:
             parameters[name] = float(text)
         except ValueError:

@@ -41,6 +41,7 @@ CHANNEL_KINDS: dict[str, ChannelKind] = {
         ChannelKind("flow_b", "m^3/s", "flow out of chamber 2", 10.0),
         ChannelKind("pressure_a", "Pa", "pressure of chamber 1, gauge", 1e9),
         ChannelKind("pressure_b", "Pa", "pressure of chamber 2, gauge", 1e9),
+        ChannelKind("pump_speed", "rad/s", "speed of the pump that feeds the cylinder", 1e5),
         ChannelKind("supply_pressure", "Pa", "supply pressure, gauge", 1e9),
         ChannelKind("position", "m", "piston position", 50.0),
         ChannelKind("velocity", "m/s", "piston velocity", 100.0),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.errors import ParameterError
-from eha_core.plant import COLUMNS, Plant, simulate_many
+from eha_core.plant import COLUMNS, PAPER, Composition, Plant, simulate_many
 from eha_core.recording.message_rows import encode_rows
 from eha_core.recording.message_types import encode
 from eha_core.recording.recording import FloatArray
@@ -26,6 +26,9 @@ _DOUBLE = 3  # rcl_interfaces/msg/ParameterType
 _LATCHED = OfferedQuality(durability="transient_local", depth=1)
 _NANOSECONDS = 1_000_000_000
 _BLOCK = 10_000  # messages serialised at once
+
+HELD = ("voltage_command",)
+"""Channels that hold between their samples; others are interpolated."""
 
 POSITION_NOISE = 10e-6
 """Standard deviation at noise 1 [m]."""
@@ -50,6 +53,8 @@ class Experiment:
         noise: sensor noise as a multiple of POSITION_NOISE, VELOCITY_NOISE and PRESSURE_NOISE.
         seed: seed of the noise.
         initial_position: where the piston starts [m].
+        composition: the actuator's parts.
+        inputs: of a source that no voltage drives, (times [s], values [SI]) of each of its channels.
     """
 
     command_times: FloatArray
@@ -62,6 +67,8 @@ class Experiment:
     noise: float = 0.0
     seed: int = 1
     initial_position: float = 0.0
+    composition: Composition = PAPER
+    inputs: Mapping[str, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
 
     @property
     def steps_per_period(self) -> int:
@@ -89,6 +96,8 @@ class Simulated:
         commands: (stamp [ns], voltage [V]) of each command.
         parameters: every parameter in force at the start.
         changes: (stamp [ns], parameter, value).
+        composition: the actuator's parts.
+        inputs: (stamps [ns], values) of each channel that drove it, where no voltage did.
     """
 
     stamps: NDArray[np.int64]
@@ -96,6 +105,13 @@ class Simulated:
     commands: tuple[NDArray[np.int64], FloatArray]
     parameters: Mapping[str, float]
     changes: Sequence[tuple[int, str, float]]
+    composition: Composition = PAPER
+    inputs: Mapping[str, tuple[NDArray[np.int64], FloatArray]] = field(default_factory=dict)
+
+    @property
+    def atmosphere(self) -> float:
+        """Absolute pressure of the return line's reference [Pa]."""
+        return self.composition.places(self.parameters)["atmospheric_pressure"]
 
     def column(self, name: str) -> FloatArray:
         """One of COLUMNS over all rows."""
@@ -108,10 +124,12 @@ def simulate(experiment: Experiment) -> Simulated:
     Raises:
         ParameterError: a parameter, a change or the rate does not fit.
     """
-    plant = Plant(experiment.parameters, experiment.step_size, experiment.initial_position)
+    plant = Plant(
+        experiment.parameters, experiment.step_size, experiment.initial_position, experiment.composition
+    )
     every, periods = experiment.steps_per_period, experiment.periods
     parameters = dict(plant.parameters)
-    voltages = _held_voltages(experiment)
+    driving = _driving(experiment)
     changes = [
         (int(np.ceil(time * experiment.rate - 1e-6)), name, value)
         for time, name, value in sorted(experiment.changes, key=lambda change: change[0])
@@ -120,7 +138,7 @@ def simulate(experiment: Experiment) -> Simulated:
     bounds = sorted({0, periods, *(min(period, periods) for period, _, _ in changes)})
     for start, end in zip(bounds, bounds[1:], strict=False):
         plant.set_parameters({name: value for period, name, value in changes if period == start})
-        pieces.append(plant.run(voltages[start * every : end * every], every).values)
+        pieces.append(plant.run(driving[start * every : end * every], every).values)
     made = [(start, name, value) for start, name, value in changes if start < periods]
     return _recorded(experiment, np.concatenate(pieces), parameters, made)
 
@@ -134,10 +152,12 @@ def simulate_sweep(experiment: Experiment, name: str, values: Sequence[float]) -
     if experiment.changes:
         raise ParameterError("a sweep changes nothing on its way; give every parameter from the start, without @S")
     sets = [{**experiment.parameters, name: value} for value in values]
-    plants = [Plant(one, experiment.step_size, experiment.initial_position) for one in sets]
+    plants = [
+        Plant(one, experiment.step_size, experiment.initial_position, experiment.composition) for one in sets
+    ]
     run = simulate_many(
-        sets, _held_voltages(experiment), step_size=experiment.step_size, every=experiment.steps_per_period,
-        initial_position=experiment.initial_position,
+        sets, _driving(experiment), step_size=experiment.step_size, every=experiment.steps_per_period,
+        initial_position=experiment.initial_position, composition=experiment.composition,
     )  # fmt: skip
     return [
         _recorded(experiment, np.concatenate([[plant.state], rows]), dict(plant.parameters), [])
@@ -148,6 +168,21 @@ def simulate_sweep(experiment: Experiment, name: str, values: Sequence[float]) -
 def _first_steps(experiment: Experiment) -> NDArray[np.int64]:
     """The first step in which each command holds."""
     return np.ceil(experiment.command_times / experiment.step_size - 1e-6).astype(np.int64)
+
+
+def _driving(experiment: Experiment) -> FloatArray:
+    """What drives the source in each step: (steps,) voltages, or (steps, inputs) of what was measured, at mid step."""
+    if not experiment.inputs:
+        return _held_voltages(experiment)
+    steps = np.arange(experiment.periods * experiment.steps_per_period)
+    columns = []
+    for name, (time, values) in experiment.inputs.items():
+        if name in HELD:
+            latest = np.searchsorted(time, steps * experiment.step_size + 1e-9, side="right") - 1
+            columns.append(np.where(latest >= 0, values[latest], 0.0))
+        else:
+            columns.append(np.interp((steps + 0.5) * experiment.step_size, time, values))
+    return np.stack(columns, axis=1)
 
 
 def _held_voltages(experiment: Experiment) -> FloatArray:
@@ -168,6 +203,10 @@ def _recorded(
     period = experiment.steps_per_period * experiment.step_size * _NANOSECONDS
     first_steps = _first_steps(experiment)
     used = first_steps < experiment.periods * experiment.steps_per_period
+    used_inputs = [
+        (name, (time[time < experiment.duration], values[time < experiment.duration]))
+        for name, (time, values) in experiment.inputs.items()
+    ]
     command_stamps = np.round(first_steps[used] * experiment.step_size * _NANOSECONDS).astype(np.int64)
     return Simulated(
         np.round(np.arange(experiment.periods + 1) * period).astype(np.int64),
@@ -175,6 +214,8 @@ def _recorded(
         (command_stamps, experiment.voltages[used]),
         parameters,
         [(round(start * period), name, value) for start, name, value in changes],
+        experiment.composition,
+        {name: (np.round(time * _NANOSECONDS).astype(np.int64), values) for name, (time, values) in used_inputs},
     )
 
 
@@ -204,7 +245,9 @@ def write_simulated(path: str | Path, record: Simulated, instruments_only: bool 
     topics = list(_sensor_messages(record, instruments_only))
     if not instruments_only:
         topics += [_state_messages(record), _leakage_messages(record), _parameter_events(record)]
-    parameters = {} if instruments_only else record.parameters
+    parameters: dict[str, object] = {} if instruments_only else dict(record.parameters)
+    if parameters and not record.composition.is_papers:
+        parameters |= {f"plant.{kind}": name for kind, name in record.composition.names.items()}
     with RecordingWriter(path, parameters, flush_period=inf) as writer:
         for stamp, _, topic, type_name, data in merge(*topics):
             quality = _LATCHED if topic == "/internal_leakage" else None
@@ -231,7 +274,7 @@ def _rows(
 
 
 def _sensor_messages(record: Simulated, instruments_only: bool) -> Iterator[Iterator[Message]]:
-    atmosphere = record.parameters["atmospheric_pressure"]
+    atmosphere = record.atmosphere
     for order, chamber in enumerate("ab", start=2):
         pressure = {"fluid_pressure": record.column(f"measured_pressure_{chamber}") + atmosphere}
         yield _rows(order, f"/chamber_{chamber}/pressure", PRESSURE, record.stamps, pressure)

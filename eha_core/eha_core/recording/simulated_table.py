@@ -33,9 +33,10 @@ STATES = {
 
 def as_recording(record: Simulated, states: bool = False) -> Recording:
     """A simulated record as `write_simulated` and a reader would hand it on; with `states`, those channels too."""
-    columns = SENSORS | (STATES if states else {})
+    hidden, driving = record.composition.source.hides, record.inputs
+    columns = {name: column for name, column in (SENSORS | (STATES if states else {})).items() if column not in hidden}
     samples = {name: Samples(record.stamps, record.column(column)) for name, column in columns.items()}
-    samples["voltage_command"] = Samples(*record.commands)
+    samples |= {name: Samples(*given) for name, given in (driving or {"voltage_command": record.commands}).items()}
     rules = {name: ChannelRule(name, reference=GAUGE) for name in samples}
     stored = {name: repr(float(value)) for name, value in record.parameters.items()}
     raw = RawRecording(metadata={PARAMETERS_RECORD: stored})
@@ -51,7 +52,7 @@ def write_csv(path: str | Path, record: Simulated, instruments_only: bool = Fals
         RecordingError: the file exists already or cannot be written.
     """
     table = as_recording(record, not instruments_only).to_dict()
-    atmosphere = record.parameters["atmospheric_pressure"]
+    atmosphere = record.atmosphere
     columns = {name: values + atmosphere if "pressure" in name else values for name, values in table.items()}
     try:
         with Path(path).open("x", encoding="utf-8") as file:

@@ -52,7 +52,7 @@ class RecordingWriter:
     """
 
     def __init__(
-        self, path: str | Path, parameters: Mapping[str, float] | None = None, flush_period: float = 0.5
+        self, path: str | Path, parameters: Mapping[str, object] | None = None, flush_period: float = 0.5
     ) -> None:
         self.path = Path(path)
         self.message_count = 0
@@ -79,7 +79,7 @@ class RecordingWriter:
             self.add_parameters(self._parameters)
         self.flush()
 
-    def add_parameters(self, parameters: Mapping[str, float]) -> None:
+    def add_parameters(self, parameters: Mapping[str, object]) -> None:
         """Keep the parameters in force (name -> SI value) in the file; also in those that a later split opens."""
         self._parameters.update(parameters)
         self._writer.add_metadata(PARAMETERS_RECORD, {name: str(value) for name, value in parameters.items()})

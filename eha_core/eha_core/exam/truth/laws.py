@@ -1,9 +1,10 @@
 """The truth's equations of motion, compiled, in one file so that a cached copy is never older than a law it calls.
 
-State: position, velocity, pressure A, pressure B (gauge), loss of supply pressure, rise of return pressure, position as
-a lagging sensor sees it, and four bristles. SI throughout. `p` is the record of record.py, `records` an array of that
-one (which a call from the integrator hands over ten times as fast), `mode` the automaton's: motion 0 rests and 1 slips;
-direction of slip -1 or 1; contact with a soft stop -1, 0, 1; held by an end -1, 0, 1.
+State: position, velocity, pressure A, pressure B (gauge), loss of supply pressure (under a pump, of its line's), rise
+of return pressure, position as a lagging sensor sees it, and four bristles. SI throughout. `p` is the record of
+record.py, `records` an array of that one (which a call from the integrator hands over ten times as fast), `mode` the
+automaton's: motion 0 rests and 1 slips; direction of slip -1 or 1; contact with a soft stop -1, 0, 1; held by an end
+-1, 0, 1.
 """
 
 from __future__ import annotations
@@ -59,6 +60,15 @@ def valve_flows(spool, pressure_a, pressure_b, supply, back, p):  # type: ignore
         supply_b += seep * (supply - pressure_b)
         b_return += seep * (pressure_b - back)
     return supply_a - a_return, b_return - supply_b, supply_a + supply_b, a_return + b_return
+
+
+@njit(cache=True)
+def pump_line_rate(line, back, drawn, spool, p):  # type: ignore[no-untyped-def]
+    """Rate of the pressure [Pa/s] in the line between pump and valve, at a flow `drawn` into the valve [m^3/s]."""
+    middle = max(0.0, 1.0 - abs(spool) / p.pump_bypass_spool)
+    lost = p.pump_leakage * (line - back) + p.pump_relief_gain * max(0.0, line - p.supply_pressure)
+    lost += p.pump_bypass_gain * middle * root(line - back, p.transition_pressure)
+    return p.bulk_modulus / p.pump_line_volume * (p.pump_displacement * abs(p.pump_speed) - lost - drawn)
 
 
 @njit(cache=True)
@@ -182,6 +192,8 @@ def derivatives(time, y, rates, spool, mode, records):  # type: ignore[no-untype
     rates[SUPPLY_LOSS] = (p.supply_pressure_droop_resistance * drawn - y[SUPPLY_LOSS]) / (
         p.supply_pressure_droop_time_constant
     )
+    if p.pump_displacement > 0.0:
+        rates[SUPPLY_LOSS] = -pump_line_rate(supply, back, drawn, spool, p)
     rates[RETURN_RISE] = (p.return_back_pressure_resistance * returned - y[RETURN_RISE]) / (
         p.return_back_pressure_time_constant
     )

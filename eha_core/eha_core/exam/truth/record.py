@@ -39,6 +39,23 @@ PLANT: dict[str, float] = {
 }
 """Table 1 of the source paper; the pressure [Pa] below which an orifice's flow turns laminar is assumed."""
 
+PUMP: dict[str, float] = {
+    "pump_displacement": 0.0,
+    "pump_leakage": 0.0,
+    "pump_relief_gain": 0.0,
+    "pump_line_volume": 1e-4,
+    "pump_bypass_gain": 0.0,
+    "pump_bypass_spool": 1e-4,
+    "pump_speed": 0.0,
+}
+"""A pump in place of the constant supply, where its displacement [m^3/rad] is not zero.
+
+Its line, of pump_line_volume [m^3], gets displacement |speed|. It loses pump_leakage [m^3/(s Pa)], what the relief
+valve lets through above supply_pressure (pump_relief_gain [m^3/(s Pa)]), what the valve's lands take and, while the
+spool is within pump_bypass_spool [A] of its middle, a bypass to the tank (pump_bypass_gain [m^(7/2) kg^(-1/2)]): a
+tandem centre. The lands are those of the servo valve. pump_speed [rad/s] is what the recording has at the moment.
+"""
+
 LAWS: dict[str, dict[str, int]] = {
     "stribeck_friction": {"gaussian": 0, "tustin": 1, "hess_soom": 2},
     "presliding_friction": {"lugre": 0, "lugre_tustin": 1, "maxwell_slip": 2},
@@ -104,7 +121,7 @@ EFFECTS = CATALOGUE | OUTSIDE
 
 
 def _field_names() -> list[str]:
-    names = list(PLANT)
+    names = [*PLANT, *PUMP]
     for effect, parameters in EFFECTS.items():
         names += [f"{effect}_{name}" for name in parameters]
         names += [f"{effect}_law"] if effect in LAWS else []
@@ -127,9 +144,10 @@ def neutral_record(plant: Mapping[str, float]) -> NDArray[np.void]:
     for effect, parameters in EFFECTS.items():
         for name, value in parameters.items():
             record[f"{effect}_{name}"] = value
-    for name, value in (PLANT | dict(plant)).items():
-        if name not in PLANT:
-            raise EhaError(f"plant parameter {name!r} is not one the truth knows; give one of {', '.join(PLANT)}")
+    known = PLANT | PUMP
+    for name, value in (known | dict(plant)).items():
+        if name not in known:
+            raise EhaError(f"plant parameter {name!r} is not one the truth knows; give one of {', '.join(known)}")
         record[name] = value
     return record
 

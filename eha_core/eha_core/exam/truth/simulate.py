@@ -51,6 +51,7 @@ COLUMNS = (
     "bristle_2",
     "bristle_3",
     "bristle_4",
+    "pump_speed",
 )
 
 
@@ -63,6 +64,7 @@ def simulate_truth(
     *,
     initial_position: float = 0.0,
     windows: Mapping[str, tuple[float, float]] | None = None,
+    pump_speed: Array | None = None,
 ) -> dict[str, Array]:
     """Simulate a plant with effects and return its columns by name, SI, pressures gauge.
 
@@ -73,6 +75,7 @@ def simulate_truth(
         duration: length [s]; rate: samples a second.
         initial_position: where the piston rests at the start [m]; the pressures there balance each other.
         windows: time span [s] in which an effect acts, by its id; everywhere when absent.
+        pump_speed: [rad/s], one value a sample, held, of a plant with a pump_displacement; see record.PUMP.
 
     Returns:
         Arrays of duration * rate + 1 samples; sample k is at k / rate. flow_a is into chamber A, flow_b out of B.
@@ -83,7 +86,7 @@ def simulate_truth(
     samples = round(duration * rate) + 1
     command = _commands(voltage, samples, rate)
     stepped = SteppedTruth(plant, effects, rate, samples, initial_position=initial_position, windows=windows)
-    return _run(stepped, command, samples)
+    return _run(stepped, command, samples, pump_speed)
 
 
 class SteppedTruth:
@@ -148,9 +151,14 @@ class SteppedTruth:
         pressure_b = state[PRESSURE_B] + record["pressure_sensor_bias_bias_b"]
         return float(position), float(state[VELOCITY]), float(pressure_a), float(pressure_b)
 
-    def hold(self, voltage: float) -> tuple[float, ...]:
-        """Hold a voltage [V] until the next sample; returns the row of this one, in the order of COLUMNS."""
+    def hold(self, voltage: float, pump_speed: float = 0.0) -> tuple[float, ...]:
+        """Hold a voltage [V], and the pump's speed [rad/s], until the next sample; returns the row of this one, in the
+        order of COLUMNS."""
         automaton, time = self._automaton, self._sample / self.rate
+        if pump_speed != automaton.record["pump_speed"]:
+            for _, records in self._plan:
+                records["pump_speed"] = pump_speed
+            automaton.change_record(automaton.records)
         until = (self._sample + 1) / self.rate
         automaton.valve.command(time + self._delay, until + self._delay, voltage, automaton.records)
         self._sample += 1
@@ -191,10 +199,12 @@ def resume_truth(
             valve.command(max(begin, start), end, float(truth["voltage"][k]), records)
     automaton = Automaton(valve, records, _resumed_state(record, row), start)
     resumed = SteppedTruth.resumed(automaton, plan, rate, first, row["sensed_position"])
-    return _run(resumed, truth["voltage"][first:], last + 1 - first)
+    return _run(resumed, truth["voltage"][first:], last + 1 - first, truth["pump_speed"][first:])
 
 
-def _run(stepped: SteppedTruth, command: Array | PositionController, samples: int) -> dict[str, Array]:
+def _run(
+    stepped: SteppedTruth, command: Array | PositionController, samples: int, pump_speed: Array | None
+) -> dict[str, Array]:
     integral = 0.0
     rows = np.empty((samples, len(COLUMNS)))
     for k in range(samples):
@@ -204,7 +214,7 @@ def _run(stepped: SteppedTruth, command: Array | PositionController, samples: in
             integral += error / stepped.rate
         else:
             volts = float(command[k])
-        rows[k] = stepped.hold(volts)
+        rows[k] = stepped.hold(volts, 0.0 if pump_speed is None else float(pump_speed[k]))
     return dict(zip(COLUMNS, rows.T.copy(), strict=True))
 
 
@@ -221,12 +231,15 @@ def _commands(voltage: Voltage, samples: int, rate: float) -> Array | PositionCo
 
 
 def _initial_state(record: np.void, position: float) -> Array:
-    """At rest, with pressures that balance on the piston and sum to the supply's."""
+    """At rest, with pressures that balance on the piston and sum to the supply's; under a pump all are the tank's."""
     state = np.zeros(STATES)
     state[POSITION] = state[SENSED_POSITION] = position
     share = record["piston_area_b"] / (record["piston_area"] + record["piston_area_b"])
-    state[PRESSURE_A] = share * record["supply_pressure"]
-    state[PRESSURE_B] = (1.0 - share) * record["supply_pressure"]
+    pumped = record["pump_displacement"] > 0.0
+    total = 2.0 * record["return_pressure"] if pumped else record["supply_pressure"]
+    state[PRESSURE_A] = share * total
+    state[PRESSURE_B] = (1.0 - share) * total
+    state[SUPPLY_LOSS] = record["supply_pressure"] - record["return_pressure"] if pumped else 0.0
     return state
 
 
@@ -237,7 +250,7 @@ def _resumed_state(record: np.void, row: Mapping[str, float]) -> Array:
     state[PRESSURE_A], state[PRESSURE_B] = row["pressure_a"], row["pressure_b"]
     lags = record["position_sensor_lag_time_constant"] > 0.0
     state[SENSED_POSITION] = row["sensed_position"] if lags else row["position"]
-    if record["supply_pressure_droop_resistance"] > 0.0:
+    if record["supply_pressure_droop_resistance"] > 0.0 or record["pump_displacement"] > 0.0:
         state[SUPPLY_LOSS] = record["supply_pressure"] - row["supply_pressure"]
     if record["return_back_pressure_resistance"] > 0.0:
         state[RETURN_RISE] = row["return_pressure"] - record["return_pressure"]
@@ -289,4 +302,5 @@ def _row(automaton: Automaton, time: float, voltage: float, sensed: float, measu
         target,
         sensed,
         *y[BRISTLE:],
+        record["pump_speed"],
     )

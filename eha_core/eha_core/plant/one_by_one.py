@@ -1,0 +1,96 @@
+"""Plants of sources that the lock-step does not know, advanced one after another behind the lock-step's interface."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.effects import effects
+from eha_core.plant.composite import compiled_given_step
+from eha_core.plant.composition import PAPER, Composition
+from eha_core.plant.lockstep import LockStep
+from eha_core.plant.simulator import Array, pack, step_inputs
+from eha_core.plant.spells import pieces, span
+from eha_core.plant.state import AT, PISTON, Places
+
+
+class OneByOne:
+    """`LockStep` for a composition without one: the same methods, as many lanes as there are parameter sets.
+
+    `before` is what the source was given until then: a current or a spool position at which the valve has settled.
+    """
+
+    def __init__(
+        self, sets: Sequence[Mapping[str, float]], step_size: float, before: float, composition: Composition
+    ) -> None:
+        self.lanes = len(sets)
+        self.step_size = step_size
+        self._composition = composition
+        self._sets = list(sets)
+        self._kernel = compiled_given_step()
+        self._acting = [span(values, step_size) for values in sets]
+        self._kinds = [(effect.site, kind) for effect in effects() for kind in effect.memory]
+        self._states = np.zeros((len(sets), len(Places._fields)))
+        self._memories = np.zeros((len(sets), max(1, len(self._kinds))))
+        self._history = np.zeros(2)  # of voltages, of which there are none
+        settled = before if composition.source.valve else 0.0
+        for state, values in zip(self._states, sets, strict=True):
+            state[[AT.target, AT.current, AT.spool_position]] = settled
+            state[AT.supply_pressure], state[AT.return_pressure] = values["supply_pressure"], values["return_pressure"]
+        self.add_leakage(0.0)
+
+    def place(self, states: Array) -> None:
+        """As `LockStep.place`."""
+        self._states[:, PISTON] = states
+
+    def states(self) -> Array:
+        """As `LockStep.states`."""
+        return self._states[:, PISTON].copy()
+
+    def add_leakage(self, change: float) -> None:
+        """As `LockStep.add_leakage`."""
+        leaking = [{**values, "internal_leakage": values["internal_leakage"] + change} for values in self._sets]
+        self._packed = [pack(values, self.step_size, self._composition) for values in leaking]
+
+    def start_memory(self, lanes: NDArray[np.bool_] | None = None) -> None:
+        """As `LockStep.start_memory`."""
+        for lane in range(self.lanes):
+            if lanes is None or lanes[lane]:
+                for slot, (_, kind) in enumerate(self._kinds):
+                    self._memories[lane, slot] = 0.0 if kind == "zero" else self._states[lane, getattr(AT, kind)]
+
+    def start_sensors(self, position: float) -> None:
+        """As `LockStep.start_sensors`."""
+        for slot, kind in enumerate(self._kinds):
+            if kind == ("sensor", "position"):
+                self._memories[:, slot] = position
+
+    def advance(self, first: int, inputs: Array, every: int, out: Array) -> None:
+        """As `LockStep.advance`, inputs (1 or 2, steps) being those of the source."""
+        given = step_inputs(inputs.T, self._composition.source)
+        self._states[:, AT.time] = first * self.step_size
+        for piece in pieces(first, len(given), every, {instant for pair in self._acting for instant in pair}):
+            begin = first + piece.steps.start
+            starting = np.array([begin == start > 0 for start, _ in self._acting])
+            if starting.any():
+                self.start_memory(starting)
+            for lane, (vector, active, valve) in enumerate(self._packed):
+                acts = self._acting[lane][0] <= begin < self._acting[lane][1]
+                rows = np.empty(out[piece.rows].shape[:2])
+                self._kernel.advance(
+                    self._states[lane], self._memories[lane], self._history, vector,
+                    active if acts else (False,) * len(active), valve, given[piece.steps], self.step_size,
+                    piece.every, rows,
+                )  # fmt: skip
+                out[piece.rows, :, lane] = rows
+
+
+def side_by_side(
+    sets: Sequence[Mapping[str, float]], step_size: float, before: float = 0.0, composition: Composition = PAPER
+) -> LockStep | OneByOne:
+    """Plants that advance together: in lock-step where their composition has one, else one after another."""
+    if composition.has_lockstep:
+        return LockStep(sets, step_size, before)
+    return OneByOne(sets, step_size, before, composition)

@@ -1,0 +1,1 @@
+"""What turns pressure into motion."""

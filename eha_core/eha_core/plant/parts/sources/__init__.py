@@ -1,0 +1,1 @@
+"""Where the oil comes from, or what takes its place."""
