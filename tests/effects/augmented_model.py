@@ -29,6 +29,7 @@ class Laws:
     air: float = 0.0
     area_ratio: float = 1.0
     quadratic: float = 0.0
+    one_way: float = 0.0
     load: float = 0.0
     cubic: float = 0.0
     stop: tuple[float, float, float, float] = (-1.0, 1.0, 0.0, 0.0)
@@ -87,6 +88,7 @@ def derivatives(time: float, y: np.ndarray, voltage: float, laws: Laws) -> np.nd
     past = leak * (a - b) + laws.turbulent * (a - b) / ((a - b) ** 2 + 1e6) ** 0.25  # rounded below 1 kPa
     area_b = 645e-6 * laws.area_ratio
     force = 645e-6 * a - area_b * b - 2000.0 * (1.0 - laws.damping_lost * warmth) * velocity - 10.0 * position
+    force -= 2000.0 * laws.one_way * abs(velocity)
     force += -laws.quadratic * velocity * abs(velocity) - laws.load - laws.cubic * position**3
     force += stop_force(position, velocity, laws.stop)
     bending = 0.0

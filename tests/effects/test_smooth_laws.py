@@ -24,6 +24,7 @@ CASES = {
     "entrained_air": ({"air_fraction": 0.2}, Laws(air=0.2)),
     "unequal_piston_area": ({"ratio": 0.8}, Laws(area_ratio=0.8)),
     "quadratic_damping": ({"coefficient": 5e4}, Laws(quadratic=5e4)),
+    "directional_damping": ({"ratio": 0.6}, Laws(one_way=0.6)),
     "constant_load": ({"force": 400.0}, Laws(load=400.0)),
     "hardening_spring": ({"coefficient": 2e9}, Laws(cubic=2e9)),
     "end_stop": (

@@ -37,6 +37,7 @@ SITES = {
     "pressure_sensor_bias": "sensor",
     "leakage_onset": "schedule",
     "thermal_drift": "schedule",
+    "directional_damping": "force",
     "position_ripple": "force",
     "periodic_force": "force",
     "direction_friction": "force",
@@ -174,6 +175,7 @@ DRAWS: dict[str, Draw] = {
         "leakage_ratio": u(0.05, 0.2) * _conductance(s) / s.rig.values["internal_leakage"],
         "time_constant": u(0.2, 0.5) * s.duration,
     },
+    "directional_damping": lambda s, u, sign: {"ratio": sign() * u(0.25, 0.6)},
     "position_ripple": lambda s, u, sign: {
         "force": u(0.01, 0.04) * s.force,
         "pitch": u(0.2, 0.6) * s.amplitude,
@@ -225,6 +227,7 @@ SIZES: dict[str, tuple[str, ...]] = {
     "pressure_sensor_bias": ("bias_a", "bias_b"),
     "leakage_onset": ("internal_leakage",),
     "thermal_drift": ("damping_ratio", "leakage_ratio"),
+    "directional_damping": ("ratio",),
     "position_ripple": ("force",),
     "periodic_force": ("force",),
     "direction_friction": ("forward", "backward"),

@@ -159,6 +159,7 @@ def smooth_force(y, elapsed, rates, mode, p):  # type: ignore[no-untyped-def]
     x, v = y[POSITION], y[VELOCITY]
     warmth = 1.0 - np.exp(-elapsed / p.thermal_drift_time_constant)
     damping = p.damping_coefficient * (1.0 - p.thermal_drift_damping_ratio * warmth)
+    damping += np.sign(v) * p.directional_damping_ratio * damping
     damping += p.position_damping_coefficient * x * x + p.quadratic_damping_coefficient * abs(v)
     force = p.piston_area * y[PRESSURE_A] - p.piston_area_b * y[PRESSURE_B]
     force -= damping * v + p.spring_stiffness * x + p.hardening_spring_coefficient * x * x * x

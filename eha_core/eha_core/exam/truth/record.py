@@ -79,6 +79,7 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "pressure_sensor_bias": {"bias_a": 0.0, "bias_b": 0.0},
     "leakage_onset": {"time": 0.0, "internal_leakage": 0.0},
     "thermal_drift": {"damping_ratio": 0.0, "leakage_ratio": 0.0, "time_constant": 1.0},
+    "directional_damping": {"ratio": 0.0},
 }
 """Neutral values of the catalogue's effects."""
 
