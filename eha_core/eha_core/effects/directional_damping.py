@@ -15,8 +15,8 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="force",
-    statement="viscous friction differs by direction: its coefficient is (1 + {ratio:.3g}) times the mean one while "
-    "extending, (1 - {ratio:.3g}) times while retracting",
+    statement="viscous friction differs by direction: {ratio:+.1%} of its mean while extending, and as much the other "
+    "way while retracting",
     equation="M_p x_p'' = ... - B_s (1 + ratio sign(x_p')) x_p'",
     parameters=(
         Parameter(
