@@ -23,13 +23,13 @@ def velocity(time: np.ndarray) -> np.ndarray:
 
 
 def recording(force: np.ndarray, noise: float = 2.0, seed: int = 3, **channels: np.ndarray) -> Recording:
-    """A recording of position (2 um of noise) and force."""
+    """A recording of position (0.2 um of noise) and force."""
     generator = np.random.default_rng(seed)
     return Recording.from_arrays(
         time=TIME,
         pressures="gauge",
         name="bench",
-        position=position(TIME) + 2e-6 * generator.standard_normal(len(TIME)),
+        position=position(TIME) + 2e-7 * generator.standard_normal(len(TIME)),
         force=force + noise * generator.standard_normal(len(TIME)),
         **channels,
     )

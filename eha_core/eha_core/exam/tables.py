@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from html import escape
 
-from eha_core.exam.real import Shown
 from eha_core.exam.scoring import Mark, Proportion
+from eha_core.exam.shipped import Shown
 from eha_core.exam.summary import Summary
 from eha_core.exam.tiers import MEANINGS
 

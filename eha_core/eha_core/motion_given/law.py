@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, nnls
 
 from eha_core.motion_given.motion import Array, Flags, Indices, Motion
 from eha_core.motion_given.terms import TERMS, Shape, Term, dry_state, moving_average
@@ -15,8 +15,8 @@ from eha_core.motion_given.terms import TERMS, Shape, Term, dry_state, moving_av
 BLOCKS = 12
 """Blocks into which a recording is cut, of which every third is held out (assumed; the diagnosis holds out as much)."""
 
-ROWS = 3000
-"""Samples of a recording that a fit looks at, evenly spread; friction's states still see all (assumed)."""
+ROWS = 4000
+"""Samples that a fit looks at, evenly spread over its recordings; friction's states still see all (assumed)."""
 
 STEP = 1e-4
 """Relative step of the derivatives with respect to shapes and sizes."""
@@ -62,8 +62,10 @@ def shapes_of(terms: Sequence[Term]) -> tuple[Shape, ...]:
     return tuple(shape for term in terms for shape in term.shapes)
 
 
-def columns_of(terms: Sequence[Term], motion: Motion, shape: Sequence[float] | Array) -> Array:
-    """The (n, sizes) columns of the law over one motion."""
+def columns_of(
+    terms: Sequence[Term], motion: Motion, shape: Sequence[float] | Array, rows: Indices | None = None
+) -> Array:
+    """The columns (n, sizes) of the law over one motion, or over the `rows` of it that are wanted."""
     own: dict[str, tuple[float, ...]] = {}
     place = 0
     for term in terms:
@@ -71,11 +73,15 @@ def columns_of(terms: Sequence[Term], motion: Motion, shape: Sequence[float] | A
         place += len(term.shapes)
     rubbing = next((term for term in terms if term.kind == "dry friction"), None)
     dry = dry_state(rubbing, motion, own[rubbing.id] if rubbing else ())
+    smooth = own.get("smoothed_force")
+    if smooth is None and rows is not None:
+        motion, dry = motion.at(rows), dry[rows]
     columns = [column for term in terms for column in term.columns(motion, dry, own[term.id])]
-    if "smoothed_force" in own and motion.period is not None:
-        samples = max(1.0, own["smoothed_force"][0] * motion.period / motion.step)
-        columns = [moving_average(column, samples) for column in columns]
-    return np.stack(columns, axis=1) if columns else np.zeros((len(motion.time), 0))
+    if smooth is not None and motion.period is not None:
+        samples = max(1.0, smooth[0] * motion.period / motion.step)
+        columns = [moving_average(column, samples, rows) for column in columns]
+    length = len(motion.time) if rows is None else len(rows)
+    return np.stack(columns, axis=1) if columns else np.zeros((length, 0))
 
 
 def predict(law: Law, motion: Motion) -> Array:
@@ -83,10 +89,10 @@ def predict(law: Law, motion: Motion) -> Array:
     return np.asarray(columns_of(law.terms, motion, law.shape) @ np.array(law.sizes))
 
 
-def blocks_of(motion: Motion) -> tuple[Indices, Indices]:
-    """The samples of a motion that are looked at, and to which block each belongs."""
+def blocks_of(motion: Motion, most: int = ROWS) -> tuple[Indices, Indices]:
+    """The samples of a motion that are looked at, `most` at most, and to which block each belongs."""
     rows: Indices = np.flatnonzero(motion.used).astype(np.int64)
-    rows = rows[:: max(1, len(rows) // ROWS)]
+    rows = rows[:: max(1, len(rows) // most)]
     return rows, (BLOCKS * np.arange(len(rows), dtype=np.int64)) // len(rows)
 
 
@@ -103,7 +109,7 @@ class Regression:
     @classmethod
     def of(cls, motions: Sequence[Motion]) -> Regression:
         """The regression of recordings of one rig."""
-        cuts = [blocks_of(motion) for motion in motions]
+        cuts = [blocks_of(motion, ROWS // len(motions)) for motion in motions]
         block = np.concatenate([BLOCKS * index + own for index, (_, own) in enumerate(cuts)])
         force = np.concatenate([motion.force[rows] for motion, (rows, _) in zip(motions, cuts, strict=True)])
         return cls(tuple(motions), tuple(rows for rows, _ in cuts), force, block, block % 3 == 1)
@@ -111,7 +117,7 @@ class Regression:
     def columns(self, terms: Sequence[Term], shape: Sequence[float] | Array) -> Array:
         """The columns of a law over what is looked at."""
         pairs = zip(self.motions, self.rows, strict=True)
-        return np.concatenate([columns_of(terms, motion, shape)[rows] for motion, rows in pairs])
+        return np.concatenate([columns_of(terms, motion, shape, rows) for motion, rows in pairs])
 
     @property
     def fastest(self) -> float:
@@ -129,6 +135,20 @@ def solve(columns: Array, force: Array) -> Array:
     length = np.sqrt(np.sum(columns**2, axis=0))
     length = np.where(length > 0.0, length, 1.0)
     return np.asarray(np.linalg.lstsq(columns / length, force, rcond=None)[0] / length)
+
+
+def solve_for(terms: Sequence[Term], columns: Array, force: Array) -> Array:
+    """Least squares in which no friction, spring or mass comes out negative."""
+    sizes = solve(columns, force)
+    signed = np.array([term.signed for term in terms for _ in term.sizes], dtype=bool)
+    if not np.any(sizes[~signed] < 0.0):
+        return sizes
+    length = np.sqrt(np.sum(columns**2, axis=0)) + 1e-300
+    both_ways = np.concatenate([columns / length, -(columns / length)[:, signed]], axis=1)
+    found = nnls(both_ways, force)[0]
+    sizes = found[: len(length)]
+    sizes[signed] -= found[len(length) :]
+    return np.asarray(sizes / length)
 
 
 def _bounds(shapes: Sequence[Shape], fastest: float) -> tuple[Array, Array]:
@@ -161,7 +181,7 @@ def search_shape(regression: Regression, terms: Sequence[Term], rows: Flags, kno
 
     def residual(logarithms: Array) -> Array:
         columns = regression.columns(terms, np.exp(logarithms))[rows]
-        return np.asarray((columns @ solve(columns, force) - force) / np.sqrt(force @ force))
+        return np.asarray((columns @ solve_for(terms, columns, force) - force) / np.sqrt(force @ force))
 
     low, high = _bounds(shapes, regression.fastest)
     fits = []
@@ -171,19 +191,20 @@ def search_shape(regression: Regression, terms: Sequence[Term], rows: Flags, kno
     return np.asarray(np.exp(min(fits, key=lambda fit: fit.cost).x))
 
 
-def passive(terms: Sequence[Term], sizes: Array) -> bool:
-    """Whether no size is negative that cannot be."""
-    signed = [term.signed for term in terms for _ in term.sizes]
-    return not np.any(sizes[~np.array(signed, dtype=bool)] < 0.0)
+def at_work(terms: Sequence[Term], sizes: Array) -> bool:
+    """Whether every size is there; dry friction may all be the pressure's, and then has only its shape."""
+    pressed = any(term.kind == "friction under pressure" for term in terms)
+    needed = [not (pressed and term.kind == "dry friction") for term in terms for _ in term.sizes]
+    return bool(np.all(sizes[np.array(needed, dtype=bool)] != 0.0))
 
 
 def held_out_errors(regression: Regression, terms: Sequence[Term], shape: Sequence[float] | Array) -> Array:
     """The mean squared error [N^2] of each held-out block, with the sizes fitted to the others; infinite where a
-    friction, spring or mass comes out negative."""
+    friction, spring or mass would have to be negative."""
     columns = regression.columns(terms, shape)
-    sizes = solve(columns[~regression.held_out], regression.force[~regression.held_out])
+    sizes = solve_for(terms, columns[~regression.held_out], regression.force[~regression.held_out])
     blocks = np.unique(regression.block[regression.held_out])
-    if not passive(terms, sizes):
+    if not at_work(terms, sizes):
         return np.full(len(blocks), np.inf)
     square = (columns @ sizes - regression.force) ** 2
     return np.array([np.mean(square[regression.block == block]) for block in blocks])
@@ -209,7 +230,7 @@ def finish(regression: Regression, terms: Sequence[Term], known: Law | None = No
     start = Law(tuple(terms), tuple(shape), (), share_left, 0.0)
     shape = search_shape(regression, terms, np.ones_like(training), start)
     columns = regression.columns(terms, shape)
-    sizes = solve(columns, regression.force)
+    sizes = solve_for(terms, columns, regression.force)
     residual = columns @ sizes - regression.force
     deviations = _deviations(regression, terms, shape, sizes, residual) if terms else np.empty(0)
     return Law(

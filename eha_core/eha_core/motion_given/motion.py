@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 
 import numpy as np
@@ -53,6 +53,14 @@ class Motion:
     period: float | None
     noise: float
     moving: float
+
+    def at(self, rows: Indices) -> Motion:
+        """The values at some of the instants; what needs an even axis, the step among it, is lost."""
+        arrays = {
+            name: getattr(self, name)[rows]
+            for name in ("time", "position", "velocity", "acceleration", "force", "used")
+        }
+        return replace(self, **arrays, pressure=None if self.pressure is None else self.pressure[rows])
 
     @property
     def step(self) -> float:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from eha_core.motion_given.law import (
     Law,
@@ -15,6 +14,7 @@ from eha_core.motion_given.law import (
     held_out_errors,
     ordered,
     search_shape,
+    solve_for,
 )
 from eha_core.motion_given.motion import Array, Motion
 from eha_core.motion_given.terms import TERMS, Term
@@ -72,11 +72,9 @@ def _linear(regression: Regression, able: Sequence[Term]) -> tuple[Term, ...]:
     """The linear terms that are at work where all are fitted at once, with no friction, spring or mass below zero."""
     terms = [term for term in able if not term.shapes and term.id not in CONTAINED]
     columns = regression.columns(terms, ())
-    length = np.sqrt(np.sum(columns**2, axis=0)) + 1e-300
-    owners = [term for term in terms for _ in term.sizes]
-    bounds = np.array([-np.inf if term.signed else 0.0 for term in owners])
-    sizes = lsq_linear(columns / length, regression.force, (bounds, np.inf)).x
-    at_work = {term.id for term, size in zip(owners, sizes, strict=True) if abs(size) > AT_WORK * np.max(np.abs(sizes))}
+    sizes = solve_for(terms, columns, regression.force) * np.sqrt(np.sum(columns**2, axis=0))
+    owners = [term.id for term in terms for _ in term.sizes]
+    at_work = {owner for owner, size in zip(owners, sizes, strict=True) if abs(size) > AT_WORK * np.max(np.abs(sizes))}
     return ordered([term for term in terms if term.id in at_work])
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.motion_given.motion import Array, Motion
+from eha_core.motion_given.motion import Array, Indices, Motion
 from eha_core.motion_given.states import bouc_wen, direction
 
 Columns = Callable[[Motion, Array, tuple[float, ...]], list[Array]]
@@ -54,12 +54,19 @@ class Term:
 
 
 DISTANCE = Shape("distance", "m", (3e-5, 3e-4, 2e-3), 1e-6, 0.05)
-CREEP = Shape("creep_speed", "m/s", (0.03, 0.1), 1e-3, 2.0, by_speed=True)
+CREEP = Shape("creep_speed", "m/s", (0.03, 0.1), 0.003, 2.0, by_speed=True)
 
 
 def _pressed(motion: Motion) -> Array:
     assert motion.pressure is not None
     return np.abs(motion.pressure)
+
+
+BAR = 1e5
+
+ELASTIC = 2.0 / 3.0
+"""Power of the load with which friction of smooth elastic contact grows (Hertz; J. F. Archard, "Elastic deformation and
+the laws of friction", Proceedings of the Royal Society A 243, 1957)."""
 
 
 def _stribeck(motion: Motion, dry: Array, shape: tuple[float, ...]) -> list[Array]:
@@ -82,7 +89,7 @@ TERMS = (
          "dry friction of {force} is {excess} higher at rest, and falls over {stribeck_velocity}",
          "(force + excess exp(-(v / stribeck_velocity)^2)) sign(v)",
          (("force", "N"), ("excess", "N")), _stribeck,
-         (Shape("stribeck_velocity", "m/s", (0.05, 0.2), 1e-3, 2.0, by_speed=True),)),
+         (Shape("stribeck_velocity", "m/s", (0.05, 0.2), 0.02, 2.0, by_speed=True),)),
     Term("bouc_wen_friction", "dry friction",
          "dry friction of {force} is hysteretic and rises with the speed: it turns over within {distance} after each"
          " reversal, and has risen to 71 % of its height at {creep_speed} (Bouc-Wen with creep)",
@@ -91,12 +98,16 @@ TERMS = (
     Term("load_friction", "friction under pressure", "dry friction grows with the chamber's pressure by {coefficient}",
          "coefficient |P| sign(v), or z where dry friction is hysteretic", (("coefficient", "m^2"),),
          lambda motion, dry, shape: [_pressed(motion) * dry], needs_pressure=True),
+    Term("contact_friction", "friction under pressure",
+         "dry friction grows with the chamber's pressure to the power 2/3, as of an elastic seal: {force} at 1 bar",
+         "force (|P| / 1 bar)^(2/3) sign(v), or z where dry friction is hysteretic", (("force", "N"),),
+         lambda motion, dry, shape: [(_pressed(motion) / BAR) ** ELASTIC * dry], needs_pressure=True),
     Term("constant_load", "load", "a steady force of {force} pushes against positive motion", "force",
          (("force", "N"),), lambda motion, dry, shape: [np.ones_like(motion.time)], signed=True),
     Term("pressure_load", "pressed area", "the pressure acts on an area that is {area} less than stated", "area P",
          (("area", "m^2"),), lambda motion, dry, shape: [_pressed(motion)], needs_pressure=True, signed=True),
     Term("spring", "spring", "a spring of {stiffness} pushes back", "stiffness x", (("stiffness", "N/m"),),
-         lambda motion, dry, shape: [motion.position - motion.position.mean()]),
+         lambda motion, dry, shape: [motion.position]),
     Term("moving_mass", "inertia", "a mass of {mass} is accelerated", "mass dv/dt", (("mass", "kg"),),
          lambda motion, dry, shape: [motion.acceleration]),
     Term("smoothed_force", "smoothing",
@@ -114,10 +125,20 @@ def dry_state(term: Term | None, motion: Motion, shape: tuple[float, ...]) -> Ar
     return np.asarray(direction(motion.velocity, motion.moving))
 
 
-def moving_average(values: Array, samples: float) -> Array:
-    """The centred mean over a window of so many samples, which need not be whole; shorter at the ends."""
+def moving_average(values: Array, samples: float, rows: Indices | None = None) -> Array:
+    """The centred mean over a window of so many samples, which need not be whole; shorter at the ends.
+
+    `rows`: where it is wanted; everywhere by default.
+    """
     running = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]))])
-    place = np.arange(len(values))
-    low = np.clip(place - 0.5 * samples, 0.0, len(values) - 1.0)
-    high = np.clip(place + 0.5 * samples, 0.0, len(values) - 1.0)
-    return np.asarray((np.interp(high, place, running) - np.interp(low, place, running)) / (high - low))
+    place = np.arange(len(values)) if rows is None else rows
+    last = len(values) - 1.0
+    low, high = np.clip(place - 0.5 * samples, 0.0, last), np.clip(place + 0.5 * samples, 0.0, last)
+    return np.asarray((_between(running, high) - _between(running, low)) / (high - low))
+
+
+def _between(values: Array, place: Array) -> Array:
+    """Linear interpolation between the samples of an even axis."""
+    before = np.minimum(place.astype(np.int64), len(values) - 2)
+    share = place - before
+    return np.asarray(values[before] * (1.0 - share) + values[before + 1] * share)
