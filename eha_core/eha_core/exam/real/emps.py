@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from scipy.io import loadmat
 
 from eha_core.errors import EhaError
@@ -26,7 +25,7 @@ from eha_core.exam.real.axis import (
     simulate,
 )
 from eha_core.exam.real.question import Question
-from eha_core.exam.real.sealing import seal
+from eha_core.exam.real.sealing import seal, write_csv
 from eha_core.exam.shipped import diagnose, named
 
 RIG = "EMPS axis"
@@ -50,17 +49,15 @@ WINDOW, LARGEST_ERROR = 0.25, 1e-4
 """s and m RMS: what one set of values has to reach on both recordings (0.19 mm with a load)."""
 
 AHEAD, EVERY, BETTER = 1.0, 0.1, 2.0 / 3.0
-"""s ahead of measured starts, s between these, and the share of the error of load and Coulomb friction that may be left."""
+"""s ahead of measured starts, s between these, and the share of the error of load and Coulomb friction that may be
+left."""
 
 
 def ask(data: Path, out: Path) -> list[Question]:
     """The axis' questions; `out` takes the diagnosed files and the sealed prediction."""
-    out.mkdir(parents=True, exist_ok=True)
     for name in (FOUND_ON, TEST):
-        _as_csv(data, name, out)
-    (out / "topics.json").write_text(
-        json.dumps({"channels": {name: {"column": name} for name in ("force", "position")}}), encoding="utf-8"
-    )
+        time, force, position = read(data, name, "t", "force", "qm")
+        write_csv(out / f"{name}.csv", {"time": time, "force": force, "position": position})
     diagnosis = _diagnose(out, VISCOUS_ONLY)
     names = named(diagnosis)
     return [
@@ -93,16 +90,11 @@ def read(data: Path, name: str, *wanted: str) -> list[Array]:
     ]
 
 
-def _as_csv(data: Path, name: str, out: Path) -> None:
-    table = np.column_stack(read(data, name, "t", "force", "qm"))
-    np.savetxt(out / f"{name}.csv", table, delimiter=",", header="time,force,position", comments="", fmt="%.9g")
-
-
 def _diagnose(out: Path, nominal: Mapping[str, float]) -> Mapping[str, Any]:
     """What `eha diagnose` says of the first recording, held against a model."""
     file = out / "nominal.yaml"
     file.write_text(json.dumps({"eha_sim": {"ros__parameters": dict(nominal)}}), encoding="utf-8")
-    words = [str(out / f"{FOUND_ON}.csv"), "--topics", str(out / "topics.json"), "--nominal", str(file)]
+    words = [str(out / f"{FOUND_ON}.csv"), "--nominal", str(file)]
     return diagnose(words)[0]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from eha_core.errors import EhaError
 from eha_core.exam.real.question import Question
-from eha_core.exam.real.sealing import Array, seal
+from eha_core.exam.real.sealing import Array, seal, write_csv
 from eha_core.motion_given import Law, Motion, find_law, fit_law, motion_of, predict
 from eha_core.recording import Recording
 
@@ -27,6 +27,10 @@ HYSTERETIC = "bouc_wen_friction"
 
 def ask(data: Path, out: Path) -> list[Question]:
     """The damper's questions; `out` takes the sealed predictions."""
+    for current in CURRENTS:
+        time, position, velocity, force = read(data, FOUND_ON, current, (0, 1, 2, 3))
+        columns = {"time": time, "position": 1e-3 * position, "velocity": 1e-3 * velocity, "force": force}
+        write_csv(out / f"{FOUND_ON}{current}.csv", columns)
     laws = {current: find_law([_motion(data, FOUND_ON, current)]) for current in CURRENTS}
     return [*_parts(laws), _growth(laws), _recording(data), *_frequencies(data, out)]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.errors import EhaError
 from eha_core.exam.real.question import Question
-from eha_core.exam.real.sealing import Array, seal
+from eha_core.exam.real.sealing import Array, seal, write_csv
 from eha_core.motion_given import Motion, find_law, fit_law, motion_of, predict
 from eha_core.recording import Recording
 
@@ -20,6 +20,9 @@ SEALS = {"O-ring": "NAPN", "NAPN": "O-ring"}
 PRESSURES = (1, 3, 5, 7)
 AREA = pi * 0.0125**2
 """m^2 of the 25 mm cylinder."""
+
+ATMOSPHERE = 101325.0
+"""Pa that a gauge pressure is short of an absolute one."""
 
 DROPPED = 15
 """Samples at the start that its authors drop."""
@@ -32,6 +35,11 @@ PRESSED = ("load_friction", "contact_friction")
 
 def ask(data: Path, out: Path) -> list[Question]:
     """The seals' questions; `out` takes the sealed predictions."""
+    for name in SEALS:
+        for pressure in PRESSURES:
+            time, displacement, bar = read(data, name, pressure, (0, 4, 5))
+            columns = {"time": 1e-3 * time, "position": -1e-3 * displacement, "pressure_a": 1e5 * bar + ATMOSPHERE}
+            write_csv(out / f"{name}_{pressure}bar.csv", {**columns, "force": friction(data, name, pressure)})
     forms = {}
     questions = []
     for name in SEALS:

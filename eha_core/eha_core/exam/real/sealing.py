@@ -1,8 +1,9 @@
-"""Predictions that are written down before the answer is read."""
+"""What the court writes: predictions, before the answer is read, and recordings in a form that can be read again."""
 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,6 +47,13 @@ def seal(folder: Path, name: str, prediction: Array) -> Sealed:
     with (folder / "sealed.txt").open("a", encoding="utf-8") as stream:
         stream.write(f"{digest}  {path.name}\n")
     return Sealed(path, digest)
+
+
+def write_csv(path: Path, columns: Mapping[str, Array]) -> None:
+    """A recording as `eha diagnose` reads it, so that everybody can ask further: SI, pressures absolute."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(path, table, delimiter=",", header=",".join(columns), comments="", fmt="%.9g")
 
 
 def _digest(path: Path) -> str:
