@@ -60,6 +60,7 @@ OTHER_LAWS: dict[str, tuple[Parameters, ...]] = {
     "presliding_friction": ({"law": "lugre_tustin"}, {"law": "maxwell_slip"}),
     "entrained_air": ({"law": "nykanen"},),
     "end_stop": ({"law": "hunt_crossley"},),
+    "load_friction": ({"law": "elastic"},),
     "valve_deadband": ({"law": "rounded"},),
     "valve_null_leakage": ({"law": "underlap"},),
 }
@@ -175,6 +176,7 @@ DRAWS: dict[str, Draw] = {
         "leakage_ratio": u(0.05, 0.2) * _conductance(s) / s.rig.values["internal_leakage"],
         "time_constant": u(0.2, 0.5) * s.duration,
     },
+    "load_friction": lambda s, u, sign: {"coefficient": u(0.1, 0.3) * s.rig.values["piston_area"]},
     "directional_damping": lambda s, u, sign: {"ratio": sign() * u(0.25, 0.6)},
     "position_ripple": lambda s, u, sign: {
         "force": u(0.01, 0.04) * s.force,
@@ -186,7 +188,6 @@ DRAWS: dict[str, Draw] = {
         "forward": u(0.005, 0.015) * s.force,
         "backward": u(0.025, 0.05) * s.force,
     },
-    "load_friction": lambda s, u, sign: {"ratio": u(0.1, 0.3)},
     "position_damping": lambda s, u, sign: {
         "coefficient": u(1.0, 4.0) * s.rig.values["damping_coefficient"] / s.amplitude**2
     },
@@ -228,10 +229,10 @@ SIZES: dict[str, tuple[str, ...]] = {
     "leakage_onset": ("internal_leakage",),
     "thermal_drift": ("damping_ratio", "leakage_ratio"),
     "directional_damping": ("ratio",),
+    "load_friction": ("coefficient",),
     "position_ripple": ("force",),
     "periodic_force": ("force",),
     "direction_friction": ("forward", "backward"),
-    "load_friction": ("ratio",),
     "position_damping": ("coefficient",),
     "one_sided_spring": ("stiffness",),
     "gap_leakage": ("coefficient",),

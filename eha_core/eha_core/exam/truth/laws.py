@@ -21,6 +21,10 @@ END_GAP = 1e-12
 matters, and a root that is not already there when the piston sets off.
 """
 
+ELASTIC_PRESSURE = 1e6
+"""Pa at which the friction of an elastic seal, which grows with the power 2/3 of its load, equals the proportional one
+(assumed)."""
+
 MAXWELL_WEIGHTS = (0.4, 0.3, 0.2, 0.1)
 """Shares of the total strength of the parallel elasto-slide elements; each has the same stiffness (assumed)."""
 
@@ -106,7 +110,12 @@ def stribeck_shape(speed, scale, law):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def dry_friction(speed, direction, hydraulic, p):  # type: ignore[no-untyped-def]
     """Magnitude of the set-valued friction [N] at a speed >= 0 in a direction; at speed 0 the force of break-away."""
-    height = p.coulomb_friction_force + p.load_friction_ratio * abs(hydraulic)
+    height = p.coulomb_friction_force
+    if p.load_friction_coefficient > 0.0:
+        pressed = abs(hydraulic) / p.piston_area
+        if p.load_friction_law == 1.0:
+            pressed = ELASTIC_PRESSURE ** (1.0 / 3.0) * pressed ** (2.0 / 3.0)
+        height += p.load_friction_coefficient * pressed
     height += p.direction_friction_forward if direction > 0.0 else p.direction_friction_backward
     excess = p.stribeck_friction_static_force - p.stribeck_friction_force
     shape = stribeck_shape(speed, p.stribeck_friction_stribeck_velocity, p.stribeck_friction_law)

@@ -44,6 +44,7 @@ LAWS: dict[str, dict[str, int]] = {
     "presliding_friction": {"lugre": 0, "lugre_tustin": 1, "maxwell_slip": 2},
     "entrained_air": {"cho": 0, "nykanen": 1},
     "end_stop": {"kelvin_voigt": 0, "hunt_crossley": 1},
+    "load_friction": {"proportional": 0, "elastic": 1},
 }
 """Published forms of one phenomenon. The first of each is the one whose parameters can be scored."""
 
@@ -80,6 +81,7 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "leakage_onset": {"time": 0.0, "internal_leakage": 0.0},
     "thermal_drift": {"damping_ratio": 0.0, "leakage_ratio": 0.0, "time_constant": 1.0},
     "directional_damping": {"ratio": 0.0},
+    "load_friction": {"coefficient": 0.0},
 }
 """Neutral values of the catalogue's effects."""
 
@@ -87,7 +89,6 @@ OUTSIDE: dict[str, dict[str, float]] = {
     "position_ripple": {"force": 0.0, "pitch": 1.0, "phase": 0.0},
     "periodic_force": {"force": 0.0, "frequency": 1.0},
     "direction_friction": {"forward": 0.0, "backward": 0.0},
-    "load_friction": {"ratio": 0.0},
     "position_damping": {"coefficient": 0.0},
     "one_sided_spring": {"start": 0.0, "stiffness": 0.0},
     "gap_leakage": {"coefficient": 0.0, "centre": 0.0, "width": 1.0},
@@ -96,9 +97,8 @@ OUTSIDE: dict[str, dict[str, float]] = {
 """Neutral values of the effects that the catalogue does not know.
 
 position_ripple: force sin(2 pi x / pitch + phase); periodic_force: force sin(2 pi f t); direction_friction: Coulomb of
-another height each way; load_friction: Coulomb of ratio |A_a P_a - A_b P_b|, as a seal pressed by the oil;
-position_damping: damping coefficient x^2 [N s/m^3]; one_sided_spring: stiffness past x = start; gap_leakage: internal
-leakage added where the bore is worn, a Gaussian bump of x; flow_saturation: opening / (1 + opening / `opening`) [A].
+another height each way; position_damping: damping coefficient x^2 [N s/m^3]; one_sided_spring: stiffness past
+x = start; gap_leakage: internal leakage added where the bore is worn, a Gaussian bump of x; flow_saturation: opening / (1 + opening / `opening`) [A].
 """
 
 EFFECTS = CATALOGUE | OUTSIDE
