@@ -18,6 +18,7 @@ class Laws:
     overlap: float = 0.0
     rounding: float = 0.0
     asymmetry: float = 0.0
+    saturation: float = 0.0
     null_conductance: float = 0.0
     null_width: float = 1.0
     droop: float = 0.0
@@ -62,6 +63,7 @@ def flows(spool: float, a: float, b: float, supply: float, back: float, laws: La
     """Into port A and out of port B."""
     opening = spool + laws.offset
     opening = _past_edge(opening - laws.overlap, laws.rounding) - _past_edge(-opening - laws.overlap, laws.rounding)
+    opening /= 1.0 + laws.saturation * abs(opening)
     if opening >= 0.0:
         into_a, out_of_b = 2.38e-5 * opening * root(supply - a), 2.38e-5 * opening * root(b - back)
     else:

@@ -61,6 +61,7 @@ OTHER_LAWS: dict[str, tuple[Parameters, ...]] = {
     "entrained_air": ({"law": "nykanen"},),
     "end_stop": ({"law": "hunt_crossley"},),
     "load_friction": ({"law": "elastic"},),
+    "flow_saturation": ({"law": "in_series"},),
     "valve_deadband": ({"law": "rounded"},),
     "valve_null_leakage": ({"law": "underlap"},),
 }
@@ -177,6 +178,7 @@ DRAWS: dict[str, Draw] = {
         "time_constant": u(0.2, 0.5) * s.duration,
     },
     "load_friction": lambda s, u, sign: {"coefficient": u(0.1, 0.3) * s.rig.values["piston_area"]},
+    "flow_saturation": lambda s, u, sign: {"curvature": u(0.25, 0.7) / s.spool},
     "directional_damping": lambda s, u, sign: {"ratio": sign() * u(0.25, 0.6)},
     "position_ripple": lambda s, u, sign: {
         "force": u(0.01, 0.04) * s.force,
@@ -200,7 +202,6 @@ DRAWS: dict[str, Draw] = {
         "centre": u(-0.4, 0.4) * s.amplitude,
         "width": u(0.15, 0.4) * s.amplitude,
     },
-    "flow_saturation": lambda s, u, sign: {"opening": u(1.5, 4.0) * s.spool},
 }
 """Normal sizes, such that each effect matters on its rig (assumed; stated beside the exam's table)."""
 
@@ -230,6 +231,7 @@ SIZES: dict[str, tuple[str, ...]] = {
     "thermal_drift": ("damping_ratio", "leakage_ratio"),
     "directional_damping": ("ratio",),
     "load_friction": ("coefficient",),
+    "flow_saturation": ("curvature",),
     "position_ripple": ("force",),
     "periodic_force": ("force",),
     "direction_friction": ("forward", "backward"),
@@ -260,8 +262,6 @@ def scaled(effect: str, values: Parameters, share: float, area_ratio: float) -> 
     smaller = {name: share * float(value) if name in SIZES.get(effect, ()) else value for name, value in values.items()}
     if effect == "unequal_piston_area":
         smaller["ratio"] = area_ratio + share * (float(values["ratio"]) - area_ratio)
-    if effect == "flow_saturation":
-        smaller["opening"] = float(values["opening"]) / share
     return smaller
 
 

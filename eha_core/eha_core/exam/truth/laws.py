@@ -42,15 +42,23 @@ def land_opening(overlap, rounding):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def saturated(opening, curvature, law):  # type: ignore[no-untyped-def]
+    """What is left of an opening [A]: a hyperbola, or an orifice in series with a fixed one of opening 1 / curvature."""
+    if law == 0.0:
+        return 1.0 / (1.0 / max(opening, 1e-30) + curvature)
+    return opening / np.sqrt(1.0 + (curvature * opening) ** 2)
+
+
+@njit(cache=True)
 def valve_flows(spool, pressure_a, pressure_b, supply, back, p):  # type: ignore[no-untyped-def]
     """Flow into A, out of B, out of the supply and into the return line [m^3/s]; four lands as a bridge of orifices."""
     x = spool + p.valve_null_offset_offset
     rounding = np.sqrt(p.valve_deadband_rounding**2 + p.valve_null_leakage_underlap**2)
     up = land_opening(x - p.valve_deadband_half_width, rounding)
     down = land_opening(-x - p.valve_deadband_half_width, rounding) * (1.0 - p.flow_gain_asymmetry_ratio)
-    if p.flow_saturation_opening > 0.0:
-        up /= 1.0 + up / p.flow_saturation_opening
-        down /= 1.0 + down / p.flow_saturation_opening
+    if p.flow_saturation_curvature > 0.0:
+        up = saturated(up, p.flow_saturation_curvature, p.flow_saturation_law)
+        down = saturated(down, p.flow_saturation_curvature, p.flow_saturation_law)
     gain, transition = p.valve_gain, p.transition_pressure
     supply_a = gain * up * root(supply - pressure_a, transition)
     a_return = gain * down * root(pressure_a - back, transition)

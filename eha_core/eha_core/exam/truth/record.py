@@ -45,6 +45,7 @@ LAWS: dict[str, dict[str, int]] = {
     "entrained_air": {"cho": 0, "nykanen": 1},
     "end_stop": {"kelvin_voigt": 0, "hunt_crossley": 1},
     "load_friction": {"proportional": 0, "elastic": 1},
+    "flow_saturation": {"hyperbolic": 0, "in_series": 1},
 }
 """Published forms of one phenomenon. The first of each is the one whose parameters can be scored."""
 
@@ -82,6 +83,7 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "thermal_drift": {"damping_ratio": 0.0, "leakage_ratio": 0.0, "time_constant": 1.0},
     "directional_damping": {"ratio": 0.0},
     "load_friction": {"coefficient": 0.0},
+    "flow_saturation": {"curvature": 0.0},
 }
 """Neutral values of the catalogue's effects."""
 
@@ -92,13 +94,12 @@ OUTSIDE: dict[str, dict[str, float]] = {
     "position_damping": {"coefficient": 0.0},
     "one_sided_spring": {"start": 0.0, "stiffness": 0.0},
     "gap_leakage": {"coefficient": 0.0, "centre": 0.0, "width": 1.0},
-    "flow_saturation": {"opening": 0.0},
 }
 """Neutral values of the effects that the catalogue does not know.
 
 position_ripple: force sin(2 pi x / pitch + phase); periodic_force: force sin(2 pi f t); direction_friction: Coulomb of
 another height each way; position_damping: damping coefficient x^2 [N s/m^3]; one_sided_spring: stiffness past
-x = start; gap_leakage: internal leakage added where the bore is worn, a Gaussian bump of x; flow_saturation: opening / (1 + opening / `opening`) [A].
+x = start; gap_leakage: internal leakage added where the bore is worn, a Gaussian bump of x.
 """
 
 EFFECTS = CATALOGUE | OUTSIDE
