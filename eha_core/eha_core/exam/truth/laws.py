@@ -43,7 +43,7 @@ def land_opening(overlap, rounding):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def saturated(opening, curvature, law):  # type: ignore[no-untyped-def]
-    """What is left of an opening [A]: a hyperbola, or an orifice in series with a fixed one of opening 1 / curvature."""
+    """What is left of an opening [A]: a hyperbola, or an orifice in series with one of opening 1 / curvature."""
     if law == 0.0:
         return 1.0 / (1.0 / max(opening, 1e-30) + curvature)
     return opening / np.sqrt(1.0 + (curvature * opening) ** 2)
