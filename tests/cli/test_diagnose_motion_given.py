@@ -41,6 +41,18 @@ def test_it_writes_the_law_and_says_it(bench: Path, tmp_path: Path, capsys: pyte
     assert (tmp_path / "out" / "figures" / "law.png").stat().st_size > 10_000
 
 
+def test_a_test_recording_is_predicted(bench: Path, tmp_path: Path) -> None:
+    table = np.loadtxt(bench, delimiter=",", skiprows=1)
+    table[:, 1:] *= -1.0
+    other = tmp_path / "other.csv"
+    np.savetxt(other, table, delimiter=",", header="time,position,velocity,force", comments="", fmt="%.9g")
+    answer = tmp_path / "answer.json"
+    assert main(["diagnose", str(bench), "--test", str(other), "--json", str(answer)]) == 0
+    told = json.loads(answer.read_text())["fit"]["held_out"]["force"]
+    assert told["rmse_after"] < 0.05 * told["rmse_before"]
+    assert told["rmse_after"] < 0.2 * told["rmse_calibrated"]
+
+
 def test_a_model_sends_it_the_usual_way(bench: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     nominal = tmp_path / "nominal.yaml"
     nominal.write_text("eha_sim:\n  ros__parameters: {moving_mass: 2.0, damping_coefficient: 900.0}\n")

@@ -27,7 +27,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="Several recordings are one rig, fitted with one set of parameters and effects; what a nominal file"
         " lists as per_recording has a value in each. Without --nominal the model is the one whose"
         " parameters the recording carries, effects left out, or else the catalogue's nominal actuator. Where"
-        " position and force are all that was recorded and no model is given, the force's law is found from the motion.",
+        " position and force are all that was recorded and no model is given, the force's law is found from"
+        " the motion.",
     )
     add = parser.add_argument
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help=".mcap, rosbag2 folder, .db3 or .csv")
@@ -98,7 +99,8 @@ def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Record
     from eha_core.report.motion_given import write_motion_given
     from eha_core.report.provenance import with_provenance
 
-    found = diagnose_motion(recordings, _progress())
+    tests = [read_recording(path, arguments.topics) for path in arguments.test]
+    found = diagnose_motion(recordings, _progress(), tests)
     found = replace(found, diagnosis=with_provenance(found.diagnosis, recordings, "none: the motion is given"))
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:

@@ -40,8 +40,10 @@ class Found:
     motions: tuple[Motion, ...]
 
 
-def diagnose_motion(recordings: Sequence[Recording], progress: Callable[[str], None] = lambda _: None) -> Found:
-    """Find the law of recordings of one rig whose motion is given.
+def diagnose_motion(
+    recordings: Sequence[Recording], progress: Callable[[str], None] = lambda _: None, tests: Sequence[Recording] = ()
+) -> Found:
+    """Find the law of recordings of one rig whose motion is given, and predict the force of the `tests`.
 
     Raises:
         RecordingError: a recording has no force or no motion.
@@ -74,7 +76,7 @@ def diagnose_motion(recordings: Sequence[Recording], progress: Callable[[str], N
         alternatives=(),
         unknown=None,
         training={"force": fits},
-        held_out={},
+        held_out={"force": _predicted(motions, law, tuple(map(motion_of, tests)))} if tests else {},
         next_experiment=None,
         rivals=(),
         whiteness={},
@@ -95,6 +97,26 @@ def _errors(motions: Sequence[Motion], law: Law) -> tuple[float, float, float]:
     return float(np.std(force)), float(np.sqrt(np.mean((force - straight) ** 2))), law.error
 
 
+def _predicted(motions: Sequence[Motion], law: Law, tests: Sequence[Motion]) -> ChannelFit:
+    """RMS [N] of the tests' force about its mean, about the line of the fitted recordings, and about their law."""
+    speed, force = _joined(motions)
+    line = np.polyfit(speed, force, 1)
+    speed, force = _joined(tests)
+    left = np.concatenate([(predict(law, m) - m.force)[m.used] for m in tests])
+    straight = force - np.polyval(line, speed)
+    noise = float(np.sqrt(np.mean([m.noise**2 for m in tests])))
+    about_mean, about_line, about_law = (
+        float(np.sqrt(np.mean(one**2))) for one in (force - force.mean(), straight, left)
+    )
+    return ChannelFit(about_mean, about_line, about_law, noise)
+
+
+def _joined(motions: Sequence[Motion]) -> tuple[Array, Array]:
+    """Speed and force of all motions, one after the other."""
+    speed = np.concatenate([motion.velocity[motion.used] for motion in motions])
+    return speed, np.concatenate([motion.force[motion.used] for motion in motions])
+
+
 def _effects(motions: Sequence[Motion], law: Law) -> tuple[NamedEffect, ...]:
     worth = worth_of(motions, law)
     return tuple(
@@ -112,7 +134,13 @@ def _effects(motions: Sequence[Motion], law: Law) -> tuple[NamedEffect, ...]:
 
 
 def _told(one: Value) -> str:
-    return f"{one.value:.3g}" if one.unit == "-" else f"{one.value:.4g} {one.unit}"
+    """A value with its unit, lengths and speeds in the one that suits them."""
+    if one.unit == "-":
+        return f"{one.value:.3g}"
+    if one.unit in ("m", "m/s"):
+        factor, prefix = (1e6, "µ") if abs(one.value) < 1e-3 else (1e3, "m")
+        return f"{factor * one.value:.3g} {prefix}{one.unit}"
+    return f"{one.value:.4g} {one.unit}"
 
 
 def _left_over(motions: Sequence[Motion], law: Law) -> Location:

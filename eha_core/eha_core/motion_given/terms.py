@@ -104,7 +104,7 @@ TERMS = (
          lambda motion, dry, shape: [(_pressed(motion) / BAR) ** ELASTIC * dry], needs_pressure=True),
     Term("constant_load", "load", "a steady force of {force} pushes against positive motion", "force",
          (("force", "N"),), lambda motion, dry, shape: [np.ones_like(motion.time)], signed=True),
-    Term("pressure_load", "pressed area", "the pressure acts on an area that is {area} less than stated", "area P",
+    Term("pressure_load", "pressed area", "a force goes with the pressure and not with the motion: the area that it acts on is off by {area}", "area P",
          (("area", "m^2"),), lambda motion, dry, shape: [_pressed(motion)], needs_pressure=True, signed=True),
     Term("spring", "spring", "a spring of {stiffness} pushes back", "stiffness x", (("stiffness", "N/m"),),
          lambda motion, dry, shape: [motion.position]),
