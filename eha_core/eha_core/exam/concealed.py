@@ -38,6 +38,8 @@ SITES = {
     "leakage_onset": "schedule",
     "thermal_drift": "schedule",
     "directional_damping": "force",
+    "pressure_sensor_scale": "sensor",
+    "position_sensor_offset": "sensor",
     "position_ripple": "force",
     "periodic_force": "force",
     "direction_friction": "force",
@@ -179,6 +181,10 @@ DRAWS: dict[str, Draw] = {
     },
     "load_friction": lambda s, u, sign: {"coefficient": u(0.1, 0.3) * s.rig.values["piston_area"]},
     "flow_saturation": lambda s, u, sign: {"curvature": u(0.25, 0.7) / s.spool},
+    "pressure_sensor_scale": lambda s, u, sign: {"ratio_a": sign() * u(0.03, 0.1), "ratio_b": sign() * u(0.03, 0.1)},
+    "position_sensor_offset": lambda s, u, sign: {
+        "offset": sign() * u(0.15, 0.4) * s.rig.values["actuator_displacement"]
+    },
     "directional_damping": lambda s, u, sign: {"ratio": sign() * u(0.25, 0.6)},
     "position_ripple": lambda s, u, sign: {
         "force": u(0.01, 0.04) * s.force,
@@ -230,6 +236,8 @@ SIZES: dict[str, tuple[str, ...]] = {
     "leakage_onset": ("internal_leakage",),
     "thermal_drift": ("damping_ratio", "leakage_ratio"),
     "directional_damping": ("ratio",),
+    "pressure_sensor_scale": ("ratio_a", "ratio_b"),
+    "position_sensor_offset": ("offset",),
     "load_friction": ("coefficient",),
     "flow_saturation": ("curvature",),
     "position_ripple": ("force",),

@@ -84,6 +84,8 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "directional_damping": {"ratio": 0.0},
     "load_friction": {"coefficient": 0.0},
     "flow_saturation": {"curvature": 0.0},
+    "pressure_sensor_scale": {"ratio_a": 0.0, "ratio_b": 0.0},
+    "position_sensor_offset": {"offset": 0.0},
 }
 """Neutral values of the catalogue's effects."""
 
