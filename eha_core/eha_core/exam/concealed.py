@@ -59,7 +59,7 @@ EQUIVALENT: dict[str, tuple[str, ...]] = {
 
 OTHER_LAWS: dict[str, tuple[Parameters, ...]] = {
     "stribeck_friction": ({"law": "tustin"}, {"law": "hess_soom"}),
-    "presliding_friction": ({"law": "lugre_tustin"}, {"law": "maxwell_slip"}),
+    "presliding_friction": ({"law": "lugre_tustin"}, {"law": "maxwell_slip"}, {"law": "bouc_wen"}),
     "entrained_air": ({"law": "nykanen"},),
     "end_stop": ({"law": "hunt_crossley"},),
     "load_friction": ({"law": "elastic"},),

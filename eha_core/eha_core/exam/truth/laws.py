@@ -141,6 +141,11 @@ def bristle_force(y, velocity, rates, p):  # type: ignore[no-untyped-def]
     excess = p.presliding_friction_static_force - kinetic
     shape = stribeck_shape(abs(velocity), p.presliding_friction_stribeck_velocity, 1.0 if law == 1.0 else 0.0)
     level = kinetic + excess * shape
+    if law == 3.0:
+        # Bouc and Wen's with n = 2: the bend turns over more sharply than a bristle's
+        z = y[BRISTLE]
+        rates[BRISTLE] = velocity - abs(velocity) * z * abs(z) * (stiffness / level) ** 2
+        return stiffness * z + p.presliding_friction_damping * velocity
     if law != 2.0:
         z = y[BRISTLE]
         rates[BRISTLE] = velocity - stiffness * abs(velocity) / level * z

@@ -41,7 +41,7 @@ PLANT: dict[str, float] = {
 
 LAWS: dict[str, dict[str, int]] = {
     "stribeck_friction": {"gaussian": 0, "tustin": 1, "hess_soom": 2},
-    "presliding_friction": {"lugre": 0, "lugre_tustin": 1, "maxwell_slip": 2},
+    "presliding_friction": {"lugre": 0, "lugre_tustin": 1, "maxwell_slip": 2, "bouc_wen": 3},
     "entrained_air": {"cho": 0, "nykanen": 1},
     "end_stop": {"kelvin_voigt": 0, "hunt_crossley": 1},
     "load_friction": {"proportional": 0, "elastic": 1},
