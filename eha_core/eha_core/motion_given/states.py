@@ -16,8 +16,10 @@ def bouc_wen(velocity, step, distance, speed):  # type: ignore[no-untyped-def]
     Without creep (speed 0) it is Bouc and Wen's law z' = A v - beta |v| |z|^(n-1) z - gamma v |z|^n with n = 1 and
     beta = A, gamma = 0, A = 1 / distance: friction that turns over within the distance after a reversal.
     """
-    found = np.zeros(len(velocity))
-    state = 0.0
+    found = np.empty(len(velocity))
+    # what came before is not known: a rig that is moving has been moving for a while
+    state = velocity[0] / sqrt(velocity[0] * velocity[0] + speed * speed)
+    found[0] = state
     for index in range(1, len(velocity)):
         mean = 0.5 * (velocity[index - 1] + velocity[index])
         level = mean / sqrt(mean * mean + speed * speed)
