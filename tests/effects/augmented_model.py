@@ -18,6 +18,7 @@ class Laws:
     overlap: float = 0.0
     rounding: float = 0.0
     asymmetry: float = 0.0
+    saturation: float = 0.0
     null_conductance: float = 0.0
     null_width: float = 1.0
     droop: float = 0.0
@@ -29,6 +30,7 @@ class Laws:
     air: float = 0.0
     area_ratio: float = 1.0
     quadratic: float = 0.0
+    one_way: float = 0.0
     load: float = 0.0
     cubic: float = 0.0
     stop: tuple[float, float, float, float] = (-1.0, 1.0, 0.0, 0.0)
@@ -61,6 +63,7 @@ def flows(spool: float, a: float, b: float, supply: float, back: float, laws: La
     """Into port A and out of port B."""
     opening = spool + laws.offset
     opening = _past_edge(opening - laws.overlap, laws.rounding) - _past_edge(-opening - laws.overlap, laws.rounding)
+    opening /= 1.0 + laws.saturation * abs(opening)
     if opening >= 0.0:
         into_a, out_of_b = 2.38e-5 * opening * root(supply - a), 2.38e-5 * opening * root(b - back)
     else:
@@ -87,6 +90,7 @@ def derivatives(time: float, y: np.ndarray, voltage: float, laws: Laws) -> np.nd
     past = leak * (a - b) + laws.turbulent * (a - b) / ((a - b) ** 2 + 1e6) ** 0.25  # rounded below 1 kPa
     area_b = 645e-6 * laws.area_ratio
     force = 645e-6 * a - area_b * b - 2000.0 * (1.0 - laws.damping_lost * warmth) * velocity - 10.0 * position
+    force -= 2000.0 * laws.one_way * abs(velocity)
     force += -laws.quadratic * velocity * abs(velocity) - laws.load - laws.cubic * position**3
     force += stop_force(position, velocity, laws.stop)
     bending = 0.0

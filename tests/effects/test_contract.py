@@ -26,6 +26,7 @@ CATALOGUE = [
     "entrained_air", "unequal_piston_area", "coulomb_friction", "stribeck_friction", "presliding_friction",
     "quadratic_damping", "constant_load", "hardening_spring", "end_stop", "position_sensor_lag",
     "position_sensor_backlash", "position_sensor_scale", "pressure_sensor_bias", "leakage_onset", "thermal_drift",
+    "directional_damping", "load_friction", "flow_saturation", "pressure_sensor_scale", "position_sensor_offset",
 ]  # fmt: skip
 """The least that the catalogue must hold."""
 

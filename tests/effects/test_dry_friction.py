@@ -40,6 +40,14 @@ def test_coulomb_friction_lets_go_of_what_exceeds_it() -> None:
     assert coast({"coulomb_friction.force": 180.0}, 0.0, 1e-4, 100, force=198.0)[-1] == pytest.approx(18.0 / 9.0 * 0.01)
 
 
+def test_friction_under_load_takes_its_share_of_the_pressure() -> None:
+    share = {"load_friction.coefficient": 0.2 * 645e-6}
+    assert coast(share, 0.0, 1e-4, 100, force=300.0)[-1] == pytest.approx(0.8 * 300.0 / 9.0 * 0.01)
+    braking = coast(share, -0.4, 1e-4, 100, force=300.0)[-1]
+    assert braking == pytest.approx(-0.4 + 1.2 * 300.0 / 9.0 * 0.01)
+    assert np.all(coast({"load_friction.coefficient": 1.01 * 645e-6}, 0.0, 1e-4, 100, force=300.0) == 0.0)
+
+
 STRIBECK = {
     "stribeck_friction.force": 100.0, "stribeck_friction.static_force": 250.0,
     "stribeck_friction.stribeck_velocity": 0.05,

@@ -61,3 +61,16 @@ def test_sensors_without_effects_say_what_is() -> None:
     assert np.array_equal(found.measured_velocity, found.velocity)
     assert np.array_equal(found.measured_pressure_a, found.pressure_a)
     assert np.array_equal(found.measured_pressure_b, found.pressure_b)
+
+
+def test_gain_and_offset_of_the_pressure_sensors_add_up() -> None:
+    scale = {"pressure_sensor_scale.ratio_a": 0.1, "pressure_sensor_scale.ratio_b": -0.05}
+    found = run({**scale, "pressure_sensor_bias.bias_a": 2e5})
+    assert found.measured_pressure_a == pytest.approx(1.1 * found.pressure_a + 2e5, rel=1e-12)
+    assert found.measured_pressure_b == pytest.approx(0.95 * found.pressure_b, rel=1e-12)
+
+
+def test_an_offset_zero_shifts_the_position_and_no_speed() -> None:
+    found = run({"position_sensor_offset.offset": 0.02, "position_sensor_scale.ratio": 0.1})
+    assert found.measured_position == pytest.approx(1.1 * found.position + 0.02, abs=1e-12)
+    assert found.measured_velocity == pytest.approx(1.1 * found.velocity, abs=1e-12)

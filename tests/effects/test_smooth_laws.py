@@ -15,6 +15,7 @@ CASES = {
     "valve_null_offset": ({"offset": 3e-5}, Laws(offset=3e-5)),
     "valve_deadband": ({"half_width": 1e-4}, Laws(overlap=1e-4)),
     "valve_deadband, worn": ({"half_width": 1e-4, "rounding": 6e-5}, Laws(overlap=1e-4, rounding=6e-5)),
+    "flow_saturation": ({"curvature": 800.0}, Laws(saturation=800.0)),
     "flow_gain_asymmetry": ({"ratio": 0.2}, Laws(asymmetry=0.2)),
     "valve_null_leakage": ({"conductance": 3e-11, "width": 3e-4}, Laws(null_conductance=3e-11, null_width=3e-4)),
     "supply_pressure_droop": ({"resistance": 5e10, "time_constant": 0.05}, Laws(droop=5e10, line_time=0.05)),
@@ -24,6 +25,7 @@ CASES = {
     "entrained_air": ({"air_fraction": 0.2}, Laws(air=0.2)),
     "unequal_piston_area": ({"ratio": 0.8}, Laws(area_ratio=0.8)),
     "quadratic_damping": ({"coefficient": 5e4}, Laws(quadratic=5e4)),
+    "directional_damping": ({"ratio": 0.6}, Laws(one_way=0.6)),
     "constant_load": ({"force": 400.0}, Laws(load=400.0)),
     "hardening_spring": ({"coefficient": 2e9}, Laws(cubic=2e9)),
     "end_stop": (

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from eha_core.api import known_model
 from eha_core.errors import EhaError
-from eha_core.recording import read_recording
+from eha_core.recording import Recording, read_recording
 from eha_core.workers import Workers
 
 UNUSABLE = 2
@@ -25,13 +26,16 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description=__doc__,
         epilog="Several recordings are one rig, fitted with one set of parameters and effects; what a nominal file"
         " lists as per_recording has a value in each. Without --nominal the model is the one whose"
-        " parameters the recording carries, effects left out, or else the catalogue's nominal actuator.",
+        " parameters the recording carries, effects left out, or else the catalogue's nominal actuator. Where"
+        " position and force are all that was recorded and no model is given, the force's law is found from"
+        " the motion.",
     )
     add = parser.add_argument
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help=".mcap, rosbag2 folder, .db3 or .csv")
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
     add("--test", action="append", default=[], type=Path, metavar="FILE", help="a recording that is only predicted")
+    add("--motion-given", action="store_true", help="find the force's law from the motion, whatever else was recorded")
     add("--as-recorded", action="store_true", help="go on where a recording cannot be right, and warn of it")
     add("--out", type=Path, metavar="DIR", help="folder for the report (default out/diagnosis/<recording>)")
     add("--json", metavar="FILE|-", help="write diagnosis.json there (- is standard output) and no report")
@@ -49,9 +53,13 @@ def run(arguments: argparse.Namespace) -> int:
         return _run_each(arguments)
     if arguments.dask is not None:
         raise EhaError("--dask spreads recordings that are diagnosed on their own; give --each too")
+    from eha_core.motion_given.motion import is_motion_given
     from eha_core.plausibility import admit
 
     recordings = [read_recording(path, arguments.topics) for path in arguments.recordings]
+    modelled = arguments.nominal is not None or any(recording.parameters for recording in recordings)
+    if arguments.motion_given or (not modelled and all(map(is_motion_given, recordings))):
+        return _run_motion_given(arguments, recordings)
     model = known_model(arguments.nominal, recordings[0])
     recordings = [admit(one, model.values, arguments.as_recorded) for one in recordings]
     tests = [
@@ -81,6 +89,29 @@ def run(arguments: argparse.Namespace) -> int:
             written = (*written, _write(Path(arguments.json), as_json(diagnosis)))
         print(account(diagnosis, written))
     return DAMAGED if any(recording.damaged for recording in (*recordings, *tests)) else 0
+
+
+def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Recording]) -> int:
+    """A test bench or a damper: nothing drives the plant, so the law of its force is found from the motion."""
+    from eha_core.diagnosis.document import as_json
+    from eha_core.motion_given import diagnose_motion
+    from eha_core.report.account import account
+    from eha_core.report.motion_given import write_motion_given
+    from eha_core.report.provenance import with_provenance
+
+    tests = [read_recording(path, arguments.topics) for path in arguments.test]
+    found = diagnose_motion(recordings, _progress(), tests)
+    found = replace(found, diagnosis=with_provenance(found.diagnosis, recordings, "none: the motion is given"))
+    written: tuple[Path, ...] = ()
+    if arguments.json is None or arguments.out is not None:
+        written = write_motion_given(found, arguments.out or Path("out") / "diagnosis" / arguments.recordings[0].stem)
+    if arguments.json == "-":
+        print(as_json(found.diagnosis))
+    else:
+        if arguments.json is not None:
+            written = (*written, _write(Path(arguments.json), as_json(found.diagnosis)))
+        print(account(found.diagnosis, written))
+    return DAMAGED if any(recording.damaged for recording in recordings) else 0
 
 
 def _run_each(arguments: argparse.Namespace) -> int:

@@ -47,7 +47,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="NAME=COMMAND",
         help="score another tool too; {recording} and {answer} in its command are replaced by paths",
     )
-    parser.add_argument("--emps", type=Path, metavar="DIR", help="show the measured EMPS data in this folder too")
+    parser.add_argument(
+        "--real", type=Path, metavar="DIR", help="ask measured rigs below this folder, and nothing else"
+    )
     parser.add_argument("--bags", type=Path, metavar="DIR", help="show the project's own recordings in this folder too")
     parser.add_argument("--lost", type=int, default=0, metavar="N", help="write the reports of the first N lost cases")
     parser.add_argument("--require", type=float, metavar="SHARE", help="fail when fewer of all cases are right")
@@ -55,9 +57,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb; the exit status says whether --require was met."""
+    if arguments.real is not None:
+        return _run_real(arguments)
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
     from eha_core.exam.page import as_html
-    from eha_core.exam.real import show_bags, show_emps
+    from eha_core.exam.shipped import show_bags
     from eha_core.exam.sitting import Exam, report_lost, sit
     from eha_core.exam.summary import summarise
     from eha_core.exam.tables import as_json, as_markdown
@@ -68,8 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
     tools = _tools(arguments)
     marks = sit(exam, tools, Workers(arguments.jobs, arguments.dask), _show)
     summaries = [summarise(tool, marks[tool]) for tool in tools]
-    shown = show_emps(arguments.emps, _show) if arguments.emps else []
-    shown += show_bags(arguments.bags, _show) if arguments.bags else []
+    shown = show_bags(arguments.bags, _show) if arguments.bags else []
     reports = report_lost(exam, summaries[0].lost[: arguments.lost])
     about = {
         "command": " ".join(["eha", "exam", *sys.argv[2:]]),
@@ -90,6 +93,26 @@ def run(arguments: argparse.Namespace) -> int:
     share = summaries[0].rows[0].right.value or 0.0
     if arguments.require is not None and share < arguments.require:
         print(f"eha exam: {share:.3f} of the cases are right, below the mark of {arguments.require}", file=sys.stderr)
+        return BELOW_THE_MARK
+    return 0
+
+
+def _run_real(arguments: argparse.Namespace) -> int:
+    """Ask the measured rigs; --require is the share of questions to be met."""
+    from eha_core.exam.real import as_markdown, hold
+
+    folder = arguments.out / "real"
+    questions = hold(arguments.real, folder, lambda line: print(line, file=sys.stderr, flush=True))
+    if not questions:
+        return 0
+    table = as_markdown(questions)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "table.md").write_text(table, encoding="utf-8")
+    print(table)
+    print(f"table and sealed predictions: {folder}/")
+    share = sum(one.met for one in questions) / len(questions)
+    if arguments.require is not None and share < arguments.require:
+        print(f"eha exam: {share:.3f} of the questions are met, below the mark of {arguments.require}", file=sys.stderr)
         return BELOW_THE_MARK
     return 0
 

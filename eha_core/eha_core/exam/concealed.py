@@ -37,6 +37,9 @@ SITES = {
     "pressure_sensor_bias": "sensor",
     "leakage_onset": "schedule",
     "thermal_drift": "schedule",
+    "directional_damping": "force",
+    "pressure_sensor_scale": "sensor",
+    "position_sensor_offset": "sensor",
     "position_ripple": "force",
     "periodic_force": "force",
     "direction_friction": "force",
@@ -56,9 +59,11 @@ EQUIVALENT: dict[str, tuple[str, ...]] = {
 
 OTHER_LAWS: dict[str, tuple[Parameters, ...]] = {
     "stribeck_friction": ({"law": "tustin"}, {"law": "hess_soom"}),
-    "presliding_friction": ({"law": "lugre_tustin"}, {"law": "maxwell_slip"}),
+    "presliding_friction": ({"law": "lugre_tustin"}, {"law": "maxwell_slip"}, {"law": "bouc_wen"}),
     "entrained_air": ({"law": "nykanen"},),
     "end_stop": ({"law": "hunt_crossley"},),
+    "load_friction": ({"law": "elastic"},),
+    "flow_saturation": ({"law": "in_series"},),
     "valve_deadband": ({"law": "rounded"},),
     "valve_null_leakage": ({"law": "underlap"},),
 }
@@ -174,6 +179,13 @@ DRAWS: dict[str, Draw] = {
         "leakage_ratio": u(0.05, 0.2) * _conductance(s) / s.rig.values["internal_leakage"],
         "time_constant": u(0.2, 0.5) * s.duration,
     },
+    "load_friction": lambda s, u, sign: {"coefficient": u(0.1, 0.3) * s.rig.values["piston_area"]},
+    "flow_saturation": lambda s, u, sign: {"curvature": u(0.25, 0.7) / s.spool},
+    "pressure_sensor_scale": lambda s, u, sign: {"ratio_a": sign() * u(0.03, 0.1), "ratio_b": sign() * u(0.03, 0.1)},
+    "position_sensor_offset": lambda s, u, sign: {
+        "offset": sign() * u(0.15, 0.4) * s.rig.values["actuator_displacement"]
+    },
+    "directional_damping": lambda s, u, sign: {"ratio": sign() * u(0.25, 0.6)},
     "position_ripple": lambda s, u, sign: {
         "force": u(0.01, 0.04) * s.force,
         "pitch": u(0.2, 0.6) * s.amplitude,
@@ -184,7 +196,6 @@ DRAWS: dict[str, Draw] = {
         "forward": u(0.005, 0.015) * s.force,
         "backward": u(0.025, 0.05) * s.force,
     },
-    "load_friction": lambda s, u, sign: {"ratio": u(0.1, 0.3)},
     "position_damping": lambda s, u, sign: {
         "coefficient": u(1.0, 4.0) * s.rig.values["damping_coefficient"] / s.amplitude**2
     },
@@ -197,7 +208,6 @@ DRAWS: dict[str, Draw] = {
         "centre": u(-0.4, 0.4) * s.amplitude,
         "width": u(0.15, 0.4) * s.amplitude,
     },
-    "flow_saturation": lambda s, u, sign: {"opening": u(1.5, 4.0) * s.spool},
 }
 """Normal sizes, such that each effect matters on its rig (assumed; stated beside the exam's table)."""
 
@@ -225,10 +235,14 @@ SIZES: dict[str, tuple[str, ...]] = {
     "pressure_sensor_bias": ("bias_a", "bias_b"),
     "leakage_onset": ("internal_leakage",),
     "thermal_drift": ("damping_ratio", "leakage_ratio"),
+    "directional_damping": ("ratio",),
+    "pressure_sensor_scale": ("ratio_a", "ratio_b"),
+    "position_sensor_offset": ("offset",),
+    "load_friction": ("coefficient",),
+    "flow_saturation": ("curvature",),
     "position_ripple": ("force",),
     "periodic_force": ("force",),
     "direction_friction": ("forward", "backward"),
-    "load_friction": ("ratio",),
     "position_damping": ("coefficient",),
     "one_sided_spring": ("stiffness",),
     "gap_leakage": ("coefficient",),
@@ -256,8 +270,6 @@ def scaled(effect: str, values: Parameters, share: float, area_ratio: float) -> 
     smaller = {name: share * float(value) if name in SIZES.get(effect, ()) else value for name, value in values.items()}
     if effect == "unequal_piston_area":
         smaller["ratio"] = area_ratio + share * (float(values["ratio"]) - area_ratio)
-    if effect == "flow_saturation":
-        smaller["opening"] = float(values["opening"]) / share
     return smaller
 
 

@@ -17,7 +17,6 @@ CURVES: dict[str, tuple[str, Curve]] = {
     "periodic_force": ("time", lambda p, t: p["force"] * np.sin(2.0 * np.pi * p["frequency"] * t)),
     "direction_friction": ("velocity", lambda p, v: -np.where(v > 0.0, p["forward"], -p["backward"])),
     "one_sided_spring": ("position", lambda p, x: -p["stiffness"] * np.maximum(x - p["start"], 0.0)),
-    "flow_saturation": ("spool", lambda p, u: u / (1.0 + np.abs(u) / p["opening"]) - u),
 }
 """Variable and law of each effect outside the catalogue that is a curve of one variable alone."""
 

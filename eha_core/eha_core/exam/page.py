@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
 
-from eha_core.exam.real import Shown
 from eha_core.exam.scoring import OUTCOMES, Mark, Proportion
+from eha_core.exam.shipped import Shown
 from eha_core.exam.summary import Summary, Target
 from eha_core.exam.tables import HEAD, SHOWN, outcome_rows, shown_rows
 from eha_core.exam.tiers import MEANINGS

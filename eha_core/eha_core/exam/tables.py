@@ -6,8 +6,8 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
-from eha_core.exam.real import Shown
 from eha_core.exam.scoring import Mark
+from eha_core.exam.shipped import Shown
 from eha_core.exam.summary import Summary
 from eha_core.exam.tiers import MEANINGS
 

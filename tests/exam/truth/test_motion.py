@@ -39,17 +39,17 @@ def test_steady_slip_balances_friction_damping_and_pressure() -> None:
     assert AREA * (truth["pressure_a"] - truth["pressure_b"])[-1] == pytest.approx(expected, rel=1e-3)
 
 
-@pytest.mark.parametrize("law", ["lugre", "lugre_tustin", "maxwell_slip"])
+@pytest.mark.parametrize("law", ["lugre", "lugre_tustin", "maxwell_slip", "bouc_wen"])
 def test_bristles_are_a_spring_at_rest_and_coulomb_friction_in_steady_slip(law: str) -> None:
     bristles = {"force": 300.0, "static_force": 300.0, "stribeck_velocity": 0.01, "stiffness": 5e6, "damping": 800.0}
     effect = [("presliding_friction", bristles | {"law": law})]
     slip = simulate_truth({"spring_stiffness": 0.0}, effect, np.full(401, 0.05), 0.4)
     friction = AREA * (slip["pressure_a"] - slip["pressure_b"])[-1] - 2000.0 * slip["velocity"][-1]
-    expected = 300.0 + (800.0 * slip["velocity"][-1] if law == "maxwell_slip" else 0.0)
+    expected = 300.0 + (800.0 * slip["velocity"][-1] if law in ("maxwell_slip", "bouc_wen") else 0.0)
     assert friction == pytest.approx(expected, rel=5e-3)
     load = [("constant_load", {"force": 20.0}), *effect]
     held = simulate_truth({"internal_leakage": 1e-9, "spring_stiffness": 0.0}, load, np.zeros(1001), 1.0)
-    creep = 20.0 / 5e6 if law == "maxwell_slip" else held["position"][-1] / -1.0
+    creep = 20.0 / 5e6 if law in ("maxwell_slip", "bouc_wen") else held["position"][-1] / -1.0
     assert -held["position"][-1] == pytest.approx(creep, rel=0.02)
 
 

@@ -22,6 +22,10 @@ END_GAP = 1e-12
 matters, and a root that is not already there when the piston sets off.
 """
 
+ELASTIC_PRESSURE = 1e6
+"""Pa at which the friction of an elastic seal, which grows with the power 2/3 of its load, equals the proportional one
+(assumed)."""
+
 MAXWELL_WEIGHTS = (0.4, 0.3, 0.2, 0.1)
 """Shares of the total strength of the parallel elasto-slide elements; each has the same stiffness (assumed)."""
 
@@ -39,15 +43,23 @@ def land_opening(overlap, rounding):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def saturated(opening, curvature, law):  # type: ignore[no-untyped-def]
+    """What is left of an opening [A]: a hyperbola, or an orifice in series with one of opening 1 / curvature."""
+    if law == 0.0:
+        return 1.0 / (1.0 / max(opening, 1e-30) + curvature)
+    return opening / np.sqrt(1.0 + (curvature * opening) ** 2)
+
+
+@njit(cache=True)
 def valve_flows(spool, pressure_a, pressure_b, supply, back, p):  # type: ignore[no-untyped-def]
     """Flow into A, out of B, out of the supply and into the return line [m^3/s]; four lands as a bridge of orifices."""
     x = spool + p.valve_null_offset_offset
     rounding = np.sqrt(p.valve_deadband_rounding**2 + p.valve_null_leakage_underlap**2)
     up = land_opening(x - p.valve_deadband_half_width, rounding)
     down = land_opening(-x - p.valve_deadband_half_width, rounding) * (1.0 - p.flow_gain_asymmetry_ratio)
-    if p.flow_saturation_opening > 0.0:
-        up /= 1.0 + up / p.flow_saturation_opening
-        down /= 1.0 + down / p.flow_saturation_opening
+    if p.flow_saturation_curvature > 0.0:
+        up = saturated(up, p.flow_saturation_curvature, p.flow_saturation_law)
+        down = saturated(down, p.flow_saturation_curvature, p.flow_saturation_law)
     gain, transition = p.valve_gain, p.transition_pressure
     supply_a = gain * up * root(supply - pressure_a, transition)
     a_return = gain * down * root(pressure_a - back, transition)
@@ -116,7 +128,12 @@ def stribeck_shape(speed, scale, law):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def dry_friction(speed, direction, hydraulic, p):  # type: ignore[no-untyped-def]
     """Magnitude of the set-valued friction [N] at a speed >= 0 in a direction; at speed 0 the force of break-away."""
-    height = p.coulomb_friction_force + p.load_friction_ratio * abs(hydraulic)
+    height = p.coulomb_friction_force
+    if p.load_friction_coefficient > 0.0:
+        pressed = abs(hydraulic) / p.piston_area
+        if p.load_friction_law == 1.0:
+            pressed = ELASTIC_PRESSURE ** (1.0 / 3.0) * pressed ** (2.0 / 3.0)
+        height += p.load_friction_coefficient * pressed
     height += p.direction_friction_forward if direction > 0.0 else p.direction_friction_backward
     excess = p.stribeck_friction_static_force - p.stribeck_friction_force
     shape = stribeck_shape(speed, p.stribeck_friction_stribeck_velocity, p.stribeck_friction_law)
@@ -134,6 +151,11 @@ def bristle_force(y, velocity, rates, p):  # type: ignore[no-untyped-def]
     excess = p.presliding_friction_static_force - kinetic
     shape = stribeck_shape(abs(velocity), p.presliding_friction_stribeck_velocity, 1.0 if law == 1.0 else 0.0)
     level = kinetic + excess * shape
+    if law == 3.0:
+        # Bouc and Wen's with n = 2: the bend turns over more sharply than a bristle's
+        z = y[BRISTLE]
+        rates[BRISTLE] = velocity - abs(velocity) * z * abs(z) * (stiffness / level) ** 2
+        return stiffness * z + p.presliding_friction_damping * velocity
     if law != 2.0:
         z = y[BRISTLE]
         rates[BRISTLE] = velocity - stiffness * abs(velocity) / level * z
@@ -169,6 +191,7 @@ def smooth_force(y, elapsed, rates, mode, p):  # type: ignore[no-untyped-def]
     x, v = y[POSITION], y[VELOCITY]
     warmth = 1.0 - np.exp(-elapsed / p.thermal_drift_time_constant)
     damping = p.damping_coefficient * (1.0 - p.thermal_drift_damping_ratio * warmth)
+    damping += np.sign(v) * p.directional_damping_ratio * damping
     damping += p.position_damping_coefficient * x * x + p.quadratic_damping_coefficient * abs(v)
     force = p.piston_area * y[PRESSURE_A] - p.piston_area_b * y[PRESSURE_B]
     force -= damping * v + p.spring_stiffness * x + p.hardening_spring_coefficient * x * x * x

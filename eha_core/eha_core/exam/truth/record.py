@@ -58,9 +58,11 @@ tandem centre. The lands are those of the servo valve. pump_speed [rad/s] is wha
 
 LAWS: dict[str, dict[str, int]] = {
     "stribeck_friction": {"gaussian": 0, "tustin": 1, "hess_soom": 2},
-    "presliding_friction": {"lugre": 0, "lugre_tustin": 1, "maxwell_slip": 2},
+    "presliding_friction": {"lugre": 0, "lugre_tustin": 1, "maxwell_slip": 2, "bouc_wen": 3},
     "entrained_air": {"cho": 0, "nykanen": 1},
     "end_stop": {"kelvin_voigt": 0, "hunt_crossley": 1},
+    "load_friction": {"proportional": 0, "elastic": 1},
+    "flow_saturation": {"hyperbolic": 0, "in_series": 1},
 }
 """Published forms of one phenomenon. The first of each is the one whose parameters can be scored."""
 
@@ -96,6 +98,11 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "pressure_sensor_bias": {"bias_a": 0.0, "bias_b": 0.0},
     "leakage_onset": {"time": 0.0, "internal_leakage": 0.0},
     "thermal_drift": {"damping_ratio": 0.0, "leakage_ratio": 0.0, "time_constant": 1.0},
+    "directional_damping": {"ratio": 0.0},
+    "load_friction": {"coefficient": 0.0},
+    "flow_saturation": {"curvature": 0.0},
+    "pressure_sensor_scale": {"ratio_a": 0.0, "ratio_b": 0.0},
+    "position_sensor_offset": {"offset": 0.0},
 }
 """Neutral values of the catalogue's effects."""
 
@@ -103,18 +110,15 @@ OUTSIDE: dict[str, dict[str, float]] = {
     "position_ripple": {"force": 0.0, "pitch": 1.0, "phase": 0.0},
     "periodic_force": {"force": 0.0, "frequency": 1.0},
     "direction_friction": {"forward": 0.0, "backward": 0.0},
-    "load_friction": {"ratio": 0.0},
     "position_damping": {"coefficient": 0.0},
     "one_sided_spring": {"start": 0.0, "stiffness": 0.0},
     "gap_leakage": {"coefficient": 0.0, "centre": 0.0, "width": 1.0},
-    "flow_saturation": {"opening": 0.0},
 }
 """Neutral values of the effects that the catalogue does not know.
 
 position_ripple: force sin(2 pi x / pitch + phase); periodic_force: force sin(2 pi f t); direction_friction: Coulomb of
-another height each way; load_friction: Coulomb of ratio |A_a P_a - A_b P_b|, as a seal pressed by the oil;
-position_damping: damping coefficient x^2 [N s/m^3]; one_sided_spring: stiffness past x = start; gap_leakage: internal
-leakage added where the bore is worn, a Gaussian bump of x; flow_saturation: opening / (1 + opening / `opening`) [A].
+another height each way; position_damping: damping coefficient x^2 [N s/m^3]; one_sided_spring: stiffness past
+x = start; gap_leakage: internal leakage added where the bore is worn, a Gaussian bump of x.
 """
 
 EFFECTS = CATALOGUE | OUTSIDE

@@ -146,9 +146,9 @@ class SteppedTruth:
         _advance(self._automaton, self._plan, self._sample / self.rate)
         record, state = self._automaton.record, self._automaton.state
         self._sensed = _sensed_position(state, record, self._sensed)
-        position = self._sensed * (1.0 + record["position_sensor_scale_ratio"])
-        pressure_a = state[PRESSURE_A] + record["pressure_sensor_bias_bias_a"]
-        pressure_b = state[PRESSURE_B] + record["pressure_sensor_bias_bias_b"]
+        position = _read_position(self._sensed, record)
+        pressure_a = _read_pressure(state[PRESSURE_A], record, "a")
+        pressure_b = _read_pressure(state[PRESSURE_B], record, "b")
         return float(position), float(state[VELOCITY]), float(pressure_a), float(pressure_b)
 
     def hold(self, voltage: float, pump_speed: float = 0.0) -> tuple[float, ...]:
@@ -162,7 +162,7 @@ class SteppedTruth:
         until = (self._sample + 1) / self.rate
         automaton.valve.command(time + self._delay, until + self._delay, voltage, automaton.records)
         self._sample += 1
-        measured = self._sensed * (1.0 + automaton.record["position_sensor_scale_ratio"])
+        measured = _read_position(self._sensed, automaton.record)
         return _row(automaton, time, voltage, self._sensed, measured)
 
 
@@ -276,6 +276,17 @@ def _sensed_position(state: Array, record: np.void, previous: float) -> float:
     return min(max(previous, seen - play), seen + play)
 
 
+def _read_position(sensed: float, record: np.void) -> float:
+    """What a position sensor shows of a pick-off's position [m]: its gain, and where its zero lies."""
+    return float(sensed * (1.0 + record["position_sensor_scale_ratio"]) + record["position_sensor_offset_offset"])
+
+
+def _read_pressure(pressure: float, record: np.void, chamber: str) -> float:
+    """What a chamber's sensor shows [Pa]: its gain, then its zero."""
+    gain = 1.0 + record[f"pressure_sensor_scale_ratio_{chamber}"]
+    return float(gain * pressure + record[f"pressure_sensor_bias_bias_{chamber}"])
+
+
 def _row(automaton: Automaton, time: float, voltage: float, sensed: float, measured: float) -> tuple[float, ...]:
     y, record = automaton.state, automaton.record
     current, target, spool, spool_rate = automaton.valve_state()
@@ -296,8 +307,8 @@ def _row(automaton: Automaton, time: float, voltage: float, sensed: float, measu
         supply,
         back,
         measured,
-        y[PRESSURE_A] + record["pressure_sensor_bias_bias_a"],
-        y[PRESSURE_B] + record["pressure_sensor_bias_bias_b"],
+        _read_pressure(y[PRESSURE_A], record, "a"),
+        _read_pressure(y[PRESSURE_B], record, "b"),
         spool_rate,
         target,
         sensed,

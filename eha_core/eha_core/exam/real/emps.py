@@ -1,0 +1,182 @@
+"""The EMPS positioning axis: its asymmetry is viscous friction that differs by direction, and no load.
+
+Data: A. Janot, M. Gautier, M. Brunot, "Data set and reference models of EMPS", 2019. The rigid model of its authors has
+a load; windows of 0.25 s tell that direction-dependent friction, of as many values, explains the recordings better.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from scipy.io import loadmat
+
+from eha_core.errors import EhaError
+from eha_core.exam.real.axis import (
+    Array,
+    Axis,
+    Windows,
+    cut_ahead,
+    fit_axis,
+    from_fitted_starts,
+    rms,
+    simulate,
+)
+from eha_core.exam.real.question import Question
+from eha_core.exam.real.sealing import seal, write_csv
+from eha_core.exam.shipped import diagnose, named
+
+RIG = "EMPS axis"
+FOUND_ON, TEST = "DATA_EMPS", "DATA_EMPS_PULSES"
+MOTOR_GAIN = 35.15065
+"""N/V of the drive, as published with the data."""
+
+VISCOUS_ONLY = {
+    "moving_mass": 95.1089, "damping_coefficient": 203.5034, "spring_stiffness": 0.0, "actuator_displacement": 0.3,
+}  # fmt: skip
+"""The published axis with its dry friction and its offset left out; its ends are out of
+the reach of the reference (0.25 m)."""
+
+PUBLISHED = Axis(95.1089, 203.5034, 203.5034, 20.3935, -3.1648)
+
+DIRECTIONAL = "directional_damping"
+DRY = ("coulomb_friction", "stribeck_friction", "presliding_friction", "bouc_wen_friction")
+"""Forms of dry friction: the axis is known to have it, not which form."""
+
+WINDOW, LARGEST_ERROR = 0.25, 1e-4
+"""s and m RMS: what one set of values has to reach on both recordings (0.19 mm with a load)."""
+
+AHEAD, EVERY, BETTER = 1.0, 0.1, 2.0 / 3.0
+"""s ahead of measured starts, s between these, and the share of the error of load and Coulomb friction that may be
+left."""
+
+
+def ask(data: Path, out: Path) -> list[Question]:
+    """The axis' questions; `out` takes the diagnosed files and the sealed prediction."""
+    for name in (FOUND_ON, TEST):
+        time, force, position = read(data, name, "t", "force", "qm")
+        write_csv(out / f"{name}.csv", {"time": time, "force": force, "position": position})
+    diagnosis = _diagnose(out, VISCOUS_ONLY)
+    names = named(diagnosis)
+    return [
+        Question(
+            RIG,
+            "what does a viscous-only model leave out?",
+            "viscous friction by direction and dry friction, no load",
+            " + ".join(names) or str(diagnosis.get("verdict", "none")),
+            DIRECTIONAL in names and any(one in names for one in DRY) and {*names} <= {DIRECTIONAL, *DRY},
+        ),
+        _both_recordings(data),
+        _ahead(data, out, diagnosis),
+        *_knocked_out(out, diagnosis),
+    ]
+
+
+def read(data: Path, name: str, *wanted: str) -> list[Array]:
+    """Variables of one recording: `t` [s], `qm` [m], `force` [N].
+
+    Raises:
+        EhaError: the file is not there.
+    """
+    path = data / f"{name}.mat"
+    if not path.is_file():
+        raise EhaError(f"{path}: is not there; --real takes the folder that holds emps/ with the published files")
+    found = loadmat(path, variable_names=["vir" if one == "force" else one for one in wanted])
+    return [
+        MOTOR_GAIN * found["vir"].ravel().astype(float) if one == "force" else found[one].ravel().astype(float)
+        for one in wanted
+    ]
+
+
+def _diagnose(out: Path, nominal: Mapping[str, float]) -> Mapping[str, Any]:
+    """What `eha diagnose` says of the first recording, held against a model."""
+    file = out / "nominal.yaml"
+    file.write_text(json.dumps({"eha_sim": {"ros__parameters": dict(nominal)}}), encoding="utf-8")
+    words = [str(out / f"{FOUND_ON}.csv"), "--nominal", str(file)]
+    return diagnose(words)[0]
+
+
+def axis_of(diagnosis: Mapping[str, Any]) -> Axis:
+    """The axis that a diagnosis found, dry friction of any form taken as Coulomb's."""
+    fitted = {row["name"]: float(row["fitted"]) for row in diagnosis.get("parameters") or ()}
+    effects = {one["id"]: one["parameters"] for one in diagnosis.get("effects") or ()}
+    mean = fitted.get("damping_coefficient", VISCOUS_ONLY["damping_coefficient"])
+    ratio = float(effects[DIRECTIONAL]["ratio"]["value"]) if DIRECTIONAL in effects else 0.0
+    return Axis(
+        mass=fitted.get("moving_mass", VISCOUS_ONLY["moving_mass"]),
+        forward=mean * (1.0 + ratio),
+        backward=mean * (1.0 - ratio),
+        friction=next((float(effects[one]["force"]["value"]) for one in DRY if one in effects), 0.0),
+        load=float(effects["constant_load"]["force"]["value"]) if "constant_load" in effects else 0.0,
+    )
+
+
+def _windows(data: Path, name: str, length: float) -> Windows:
+    time, force, position = read(data, name, "t", "force", "qm")
+    return Windows.cut(force, position, float(time[1] - time[0]), length)
+
+
+def _both_recordings(data: Path) -> Question:
+    windows = [_windows(data, name, WINDOW) for name in (FOUND_ON, TEST)]
+    found = fit_axis(PUBLISHED, windows, with_load=False)
+    rival = fit_axis(PUBLISHED, windows, with_load=True)
+    errors, others = ([rms(from_fitted_starts(one, each)) for each in windows] for one in (found, rival))
+    return Question(
+        RIG,
+        f"one set of values for both recordings, windows of {WINDOW:g} s from fitted starts",
+        f"within {1e3 * LARGEST_ERROR:.2f} mm RMSE each, and closer than with a load",
+        f"{1e3 * errors[0]:.3f} and {1e3 * errors[1]:.3f} mm with {found.forward:.0f} and {found.backward:.0f} N s/m,"
+        f" {found.friction:.1f} N; with a load {1e3 * others[0]:.3f} and {1e3 * others[1]:.3f} mm",
+        max(errors) <= LARGEST_ERROR and errors[0] < others[0] and errors[1] < others[1],
+    )
+
+
+def _ahead(data: Path, out: Path, diagnosis: Mapping[str, Any]) -> Question:
+    """The diagnosed values, and load and Coulomb friction: as published, and as fits the same recording best."""
+    rival = fit_axis(PUBLISHED, [_windows(data, FOUND_ON, WINDOW)], with_load=True)
+    time, force, position = read(data, TEST, "t", "force", "qm")
+    test, speed = cut_ahead(force, position, float(time[1] - time[0]), AHEAD, EVERY)
+    axes = {"diagnosed": axis_of(diagnosis), "load_and_coulomb": rival, "published": PUBLISHED}
+    sealed = {
+        name: seal(out, name, simulate(axis, test.force, test.position[:, 0], speed, test.period))
+        for name, axis in axes.items()
+    }
+    found, fitted, published = (1e3 * rms(one.open() - test.position) for one in sealed.values())
+    return Question(
+        RIG,
+        f"position on the test recording, {AHEAD:g} s ahead from measured starts",
+        "better than load and Coulomb friction by a third",
+        f"{found:.2f} mm against {fitted:.2f} mm at best and {published:.2f} mm as published",
+        found <= BETTER * fitted,
+        sealed["diagnosed"].short,
+    )
+
+
+def _knocked_out(out: Path, diagnosis: Mapping[str, Any]) -> list[Question]:
+    """Each of the two effects is put into the model, and the other has to be found again, alone."""
+    axis = axis_of(diagnosis)
+    mean = 0.5 * (axis.forward + axis.backward)
+    known = {**VISCOUS_ONLY, "moving_mass": axis.mass, "damping_coefficient": mean}
+    trials = (
+        ("viscous friction by direction", (DIRECTIONAL,), {"coulomb_friction.force": axis.friction}),
+        (
+            "dry friction",
+            DRY,
+            {f"{DIRECTIONAL}.ratio": (axis.forward - axis.backward) / (axis.forward + axis.backward)},
+        ),
+    )
+    questions = []
+    for words, right, kept in trials:
+        names = named(_diagnose(out, {**known, **kept}))
+        questions.append(
+            Question(
+                RIG,
+                f"{words} knocked out of the model",
+                "is found again, and nothing else",
+                " + ".join(names) or "nothing",
+                len(names) == 1 and names[0] in right,
+            )
+        )
+    return questions

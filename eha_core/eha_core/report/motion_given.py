@@ -1,0 +1,60 @@
+"""What `eha diagnose` leaves of a recording whose motion is given: the document and a figure of the law."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from eha_core.diagnosis.document import as_json
+from eha_core.errors import EhaError
+from eha_core.motion_given import Found, Motion
+from eha_core.motion_given.diagnose import curve
+from eha_core.report.figures import write_figures
+from eha_core.report.picture import Dots, Group, Line, Panel, Picture
+
+DRAWN = 4000
+"""Samples of a recording that are drawn."""
+
+NAME = "law"
+"""The figure's file, without its ending."""
+
+
+def write_motion_given(found: Found, folder: Path) -> tuple[Path, ...]:
+    """Write diagnosis.json and figures/law.png; returns what was written.
+
+    Raises:
+        EhaError: the folder cannot be written to.
+    """
+    document = folder / "diagnosis.json"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        document.write_text(as_json(found.diagnosis), encoding="utf-8")
+        write_figures([law_picture(found)], folder / "figures")
+    except OSError as error:
+        raise EhaError(
+            f"{error.filename or folder}: cannot be written ({error.strerror}); choose another --out"
+        ) from error
+    return (folder / "figures", document)
+
+
+def law_picture(found: Found) -> Picture:
+    """The force over speed and position, and what the law leaves over both, of the recording with the largest force."""
+    motion = max(found.motions, key=lambda one: float(np.std(one.force)))
+    force, left = curve(found.law, motion)
+    rows = np.flatnonzero(motion.used)[:: max(1, len(motion.time) // DRAWN)]
+    groups = [
+        Group(_panels(motion, rows, x[rows], label, force, left))
+        for x, label in ((1e3 * motion.velocity, "velocity [mm/s]"), (1e3 * motion.position, "position [mm]"))
+    ]
+    return Picture(NAME, tuple(groups), (1, 1), f"{motion.name}: the force that the motion asks for")
+
+
+def _panels(motion: Motion, rows, x, label: str, force, left) -> tuple[Panel, Panel]:  # type: ignore[no-untyped-def]
+    return (
+        Panel(
+            (Dots(x, motion.force[rows], "measured", "measured"), Line(x, force[rows], "after", "law", 1.0)),
+            label, "force [N]", "Measured force and the law", 320,
+        ),
+        Panel((Dots(x, left[rows], "other", "what is left"),), label, "force [N]", "What the law leaves", 160),
+    )  # fmt: skip
