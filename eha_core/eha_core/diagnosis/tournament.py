@@ -14,6 +14,7 @@ from eha_core.diagnosis.freedom import Free
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.passing import passing_effects
+from eha_core.diagnosis.per_recording import base_name
 from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.refine import (
     FAR_OFF,
@@ -29,6 +30,7 @@ from eha_core.diagnosis.refine import (
 )
 from eha_core.diagnosis.screen import Promise, screen_spells
 from eha_core.effects import Effect
+from eha_core.parameters import catalogue
 
 REFINED = 8
 """How many hypotheses are refitted in full after a screening."""
@@ -159,17 +161,18 @@ def parameter_cost(count: int, left_over: float) -> float:
 
 
 def freedom_used(result: Fit) -> int:
-    """How many parameters a fit makes use of: an effect's that rests on its lower bound, as far as can be told, is
-    none.
+    """How many parameters a fit makes use of: one of an effect's that the recording shows to be next to nothing is none.
 
-    A deadband with sharp edges has no rounding to pay for.
+    A deadband with sharp edges has no rounding to pay for; a shape that cannot be told is paid for all the same.
     """
-    return sum(not _rests(result, one) for one in result.free)
+    return sum(not _rests_at_nothing(result, one) for one in result.free)
 
 
-def _rests(result: Fit, one: Free) -> bool:
-    of_an_effect = "." in one.name and not one.logarithmic
-    return of_an_effect and result.values[one.name] - one.lower < result.deviation(one.name)
+def _rests_at_nothing(result: Fit, one: Free) -> bool:
+    row = catalogue()[base_name(one.name)]
+    if "." not in one.name or one.logarithmic or one.lower != row.nominal:
+        return False
+    return result.values[one.name] - one.lower < result.deviation(one.name) < abs(row.typical)
 
 
 def rank(problem: Problem, nominal: Fit, found: Found) -> tuple[Entry, ...]:
