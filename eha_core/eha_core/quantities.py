@@ -22,7 +22,8 @@ _PREFIXES = {
 }
 """The units of an engineer's data sheet, by SI unit, each with its size in that; the smallest first."""
 
-_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+"""Digits as superscripts, for `str.translate`."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ def scale_for(unit: str, magnitude: float) -> Scale:
     plain = unit_text(unit)
     if size and not 1e-3 <= size < 1e5:
         exponent = floor(log10(size))
-        return Scale(10.0**exponent, f"× 10{str(exponent).translate(_RAISED)} {plain}".rstrip())
+        return Scale(10.0**exponent, f"× 10{str(exponent).translate(RAISED)} {plain}".rstrip())
     return Scale(1.0, plain)
 
 
@@ -56,7 +57,7 @@ def unit_text(unit: str) -> str:
     """A unit with whole powers raised: m^3/(s Pa) as m³/(s Pa); nothing for the unit of pure numbers."""
     if unit == "m^(5/2) kg^(-1/2)":
         return "m²√(m/kg)"
-    return "" if unit == "-" else re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit)
+    return "" if unit == "-" else re.sub(r"\^(-?\d+)", lambda power: power[1].translate(RAISED), unit)
 
 
 def quantity(value: float, unit: str, digits: int = 3) -> str:
