@@ -22,6 +22,7 @@ from eha_core.quantities import Quantity, quantity, unit_text, with_deviation
         (3e10, "Pa s/m^3", "500 kPa per l/min"),  # a litre a minute is 1/60000 m^3/s
         (2e-8, "m^3/(s Pa^0.5)", "1.20 l/min per √MPa"),  # 2e-5 m^3/s at 1 MPa
         (1e-4, "m^3/s", "6.00 l/min"),
+        (9.8e-4, "m^2", "9.80 cm²"),
         (5e6, "N/m", "5.00 MN/m"),
         (2.3e-12, "kg m^2", "2.30 × 10⁻¹² kg m²"),
         (0.0, "N", "0 N"),
@@ -63,3 +64,7 @@ def test_powers_in_units_are_raised_and_pure_numbers_have_none() -> None:
 def test_a_format_string_shows_a_value_in_a_readable_unit() -> None:
     shown = "{force} or {force:4}, {ratio:%}".format(force=Quantity(76.41, "N"), ratio=Quantity(0.125, "-"))
     assert shown == "76.4 N or 76.41 N, 12.5 %"
+    signed = "{ratio:+%} and {offset:+4}, {back:+}".format(
+        ratio=Quantity(0.3, "-"), offset=Quantity(0.02, "m"), back=Quantity(-0.02, "m")
+    )
+    assert signed == "+30.0 % and +20.00 mm, -20.0 mm"

@@ -14,6 +14,8 @@ _PREFIXES = {
     "A": ((1e-6, "µA"), (1e-3, "mA"), (1.0, "A")),
     "V": ((1e-6, "µV"), (1e-3, "mV"), (1.0, "V")),
     "N": ((1.0, "N"), (1e3, "kN"), (1e6, "MN")),
+    "m^2": ((1e-6, "mm²"), (1e-4, "cm²"), (1.0, "m²")),
+    "1/A": ((1.0, "per A"), (1e3, "per mA")),
     "N/m": ((1.0, "N/m"), (1e3, "kN/m"), (1e6, "MN/m")),
     "m^3/s": ((1e-6 / 60.0, "ml/min"), (1e-3 / 60.0, "l/min")),
     "m^3/(s Pa)": ((1e-12 / 60.0, "ml/min per MPa"), (1e-9 / 60.0, "l/min per MPa")),
@@ -22,7 +24,8 @@ _PREFIXES = {
 }
 """The units of an engineer's data sheet, by SI unit, each with its size in that; the smallest first."""
 
-_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+"""Digits as superscripts, for `str.translate`."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ def scale_for(unit: str, magnitude: float) -> Scale:
     plain = unit_text(unit)
     if size and not 1e-3 <= size < 1e5:
         exponent = floor(log10(size))
-        return Scale(10.0**exponent, f"× 10{str(exponent).translate(_RAISED)} {plain}".rstrip())
+        return Scale(10.0**exponent, f"× 10{str(exponent).translate(RAISED)} {plain}".rstrip())
     return Scale(1.0, plain)
 
 
@@ -56,7 +59,7 @@ def unit_text(unit: str) -> str:
     """A unit with whole powers raised: m^3/(s Pa) as m³/(s Pa); nothing for the unit of pure numbers."""
     if unit == "m^(5/2) kg^(-1/2)":
         return "m²√(m/kg)"
-    return "" if unit == "-" else re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit)
+    return "" if unit == "-" else re.sub(r"\^(-?\d+)", lambda power: power[1].translate(RAISED), unit)
 
 
 def quantity(value: float, unit: str, digits: int = 3) -> str:
@@ -70,15 +73,18 @@ def quantity(value: float, unit: str, digits: int = 3) -> str:
 @dataclass(frozen=True)
 class Quantity:
     """A value in SI that a format string shows in readable units: "{}" with three digits, "{:4}" with four, "{:%}" as
-    percent."""
+    percent; "{:+}", "{:+4}" and "{:+%}" with its sign."""
 
     value: float
     unit: str
 
     def __format__(self, spec: str) -> str:
-        if spec == "%":
-            return f"{_rounded(100.0 * self.value, 3)} %"
-        return quantity(self.value, self.unit, int(spec or 3))
+        digits = spec.removeprefix("+")
+        if digits == "%":
+            shown = f"{_rounded(100.0 * self.value, 3)} %"
+        else:
+            shown = quantity(self.value, self.unit, int(digits or 3))
+        return f"+{shown}" if spec.startswith("+") and self.value > 0.0 else shown
 
 
 def with_deviation(value: float, deviation: float, unit: str) -> str:

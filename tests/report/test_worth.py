@@ -131,3 +131,5 @@ def test_a_recording_taken_as_it_is_and_a_damaged_one_are_announced_first(severa
     assert "cut off" in warnings(doubtful)[1]
     text = page(doubtful)
     assert text.index("taken as recorded") < text.index("<h1>")
+    of_two = replace(several, remarks=("a.mcap: 3 outliers", "b.mcap: warning: taken as recorded, although it is not"))
+    assert warnings(of_two) == ("b.mcap: warning: taken as recorded, although it is not.",)

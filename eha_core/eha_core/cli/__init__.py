@@ -39,11 +39,15 @@ def verbs() -> list[str]:
     return sorted(name.replace("_", "-") for name in modules if not name.startswith("_"))
 
 
+def _module(verb: str) -> str:
+    return verb.replace("-", "_")
+
+
 def _list_verbs(parser: argparse.ArgumentParser, known: Sequence[str]) -> None:
     """Give each verb with the first sentence of its module, which is read and not imported: that takes no time."""
     subparsers = parser.add_subparsers(dest="verb", metavar="VERB")
     for verb in known:
-        source = resources.files(__name__).joinpath(f"{verb}.py").read_text(encoding="utf-8")
+        source = resources.files(__name__).joinpath(f"{_module(verb)}.py").read_text(encoding="utf-8")
         sentence = (ast.get_docstring(ast.parse(source)) or "").partition(": ")[2]
         subparsers.add_parser(verb, help=" ".join(sentence.partition(".")[0].split()))
 
@@ -67,7 +71,7 @@ def main(words: Sequence[str] | None = None) -> int:
     typed = os.environ.get("COMP_LINE", "").split()[1:2] if completing else words[:1]
     wanted = typed if typed and typed[0] in known else known
     subparsers = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
-    modules = {verb: import_module(f"{__name__}.{verb.replace('-', '_')}") for verb in wanted}
+    modules = {verb: import_module(f"{__name__}.{_module(verb)}") for verb in wanted}
     for module in modules.values():
         module.add_parser(subparsers)
     if completing:

@@ -15,7 +15,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="force",
-    statement="viscous friction differs by direction: {ratio:+.1%} of its mean while extending, and as much the other "
+    statement="viscous friction differs by direction: {ratio:+%} of its mean while extending, and as much the other "
     "way while retracting",
     equation="M_p x_p'' = ... - B_s (1 + ratio sign(x_p')) x_p'",
     parameters=(

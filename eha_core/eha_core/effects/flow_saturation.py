@@ -15,7 +15,7 @@ from eha_core.parameter import Parameter
 EFFECT = Effect(
     site="orifice",
     approximate=True,
-    statement="the valve's flow saturates: each further opening brings less, by {curvature:.3g} 1/A",
+    statement="the valve's flow saturates: each further opening brings less, by {curvature}",
     equation="x_v -> x_v / (1 + curvature |x_v|)",
     parameters=(
         Parameter(

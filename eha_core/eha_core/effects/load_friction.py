@@ -15,8 +15,8 @@ from eha_core.parameter import Parameter
 EFFECT = Effect(
     site="force",
     approximate=True,
-    statement="the seals rub the more the oil presses them: {coefficient:.3g} N of dry friction for each Pa across the "
-    "piston",
+    statement="the seals rub the more the oil presses them: dry friction is {coefficient} times the pressure across "
+    "the piston",
     equation="M_p x_p'' = ... - coefficient |P1 - P2| sign(x_p')",
     parameters=(
         Parameter(

@@ -14,7 +14,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="sensor",
-    statement="the position sensor's zero lies {offset:+.4g} m off the middle of the stroke",
+    statement="the position sensor's zero lies {offset:+4} off the middle of the stroke",
     equation="y = x_p + offset",
     parameters=(
         Parameter(

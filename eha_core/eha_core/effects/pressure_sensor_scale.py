@@ -14,7 +14,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="sensor",
-    statement="the pressure sensors' gains are off: chamber A's by {ratio_a:+.1%}, chamber B's by {ratio_b:+.1%}",
+    statement="the pressure sensors' gains are off: chamber A's by {ratio_a:+%}, chamber B's by {ratio_b:+%}",
     equation="measured P1 = (1 + ratio_a) P1, measured P2 = (1 + ratio_b) P2",
     parameters=(
         Parameter(

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -23,6 +24,7 @@ from eha_core.report.picture import (
     Bars,
     Cells,
     Dots,
+    Group,
     Intervals,
     Line,
     Mark,
@@ -40,10 +42,14 @@ SHOWN = 75
 """Pixels an inch in a notebook."""
 
 PIXELS_PER_INCH = 100.0
-WIDTH = 11.0
-GAP = 62
-"""Pixels for a panel's title and labels."""
-LEGEND_ROW = 0.3  # inches
+WIDTH = 1100.0
+LEFT, RIGHT, AXIS, TITLE, PANEL_TITLE, UNTITLED, LEGEND_ROW = 66.0, 14.0, 52.0, 40.0, 30.0, 14.0, 30.0
+"""Pixels beside a panel, under the last of a group, above a picture and a panel, and of a row of the legend."""
+
+CHARACTER = 6.6
+"""Pixels of a letter beside a row."""
+
+LEGEND_COLUMNS = 5
 
 
 class Drawn(Figure):
@@ -61,39 +67,76 @@ def write_figures(pictures: Iterable[Picture], folder: Path) -> tuple[Path, ...]
     written = []
     for picture in pictures:
         path = folder / f"{picture.name}.png"
-        drawn(picture).savefig(path, dpi=RESOLUTION)
+        figure = drawn(picture)
+        figure.set_dpi(RESOLUTION)
+        # drawn once; savefig would draw everything twice
+        canvas: Any = FigureCanvasAgg(figure)
+        canvas.print_png(str(path), pil_kwargs={"compress_level": 3})
         written.append(path)
     return tuple(written)
 
 
 def drawn(picture: Picture) -> Drawn:
-    """The picture as a figure."""
+    """The picture as a figure.
+
+    Panels have the page's own sizes, so their places are known beforehand: fitting them to their labels would take
+    longer than drawing them.
+    """
     columns = len(picture.columns)
     rows = [picture.groups[start : start + columns] for start in range(0, len(picture.groups), columns)]
-    heights = [max(sum(panel.height + GAP for panel in group.panels) for group in row) for row in rows]
-    figure = Drawn(figsize=(WIDTH, (sum(heights) + 70) / PIXELS_PER_INCH), layout="constrained")
-    grid = figure.add_gridspec(len(rows), columns, width_ratios=picture.columns, height_ratios=heights)
-    for row, groups in enumerate(rows):
-        for column, group in enumerate(groups):
-            inner = grid[row, column].subgridspec(
-                len(group.panels), 1, height_ratios=[one.height for one in group.panels]
-            )
-            shared: Any = None
-            for place, panel in enumerate(group.panels):
-                axes = figure.add_subplot(inner[place], sharex=shared)
-                shared = shared or axes
-                _draw(axes, panel, place == len(group.panels) - 1)
-    if picture.title:
-        figure.suptitle(picture.title, x=0.01, ha="left", fontsize=13, fontweight="bold", color=COLOURS["measured"])
     handles = [Patch(color=colour, label=label) for label, colour in picture.legend()]
+    legend = LEGEND_ROW * math.ceil(len(handles) / LEGEND_COLUMNS)
+    title = TITLE if picture.title else 0.0
+    height = title + sum(max(map(_height, row)) for row in rows) + legend
+    figure = Drawn(figsize=(WIDTH / PIXELS_PER_INCH, height / PIXELS_PER_INCH))
+    widths = np.array(picture.columns) / sum(picture.columns) * WIDTH
+    lefts = [max(_left(row[column]) for row in rows if column < len(row)) for column in range(len(rows[0]))]
+    ceiling = height - title
+    for row in rows:
+        for column, group in enumerate(row):
+            left = float(widths[:column].sum()) + lefts[column]
+            _group(figure, group, left, float(widths[: column + 1].sum()) - RIGHT, ceiling, height)
+        ceiling -= max(map(_height, row))
+    if picture.title:
+        place = 1.0 - 0.4 * TITLE / height
+        figure.text(0.01, place, picture.title, va="center", fontsize=13, fontweight="bold", color=COLOURS["measured"])
     if handles:
-        legend_below(figure, handles, "lower left", min(5, len(handles)), fontsize=9)
+        columns = min(LEGEND_COLUMNS, len(handles))
+        figure.legend(handles=handles, loc="lower left", ncols=columns, frameon=False, fontsize=9)
     return figure
+
+
+def _group(figure: Figure, group: Group, left: float, right: float, ceiling: float, height: float) -> None:
+    """The panels of a group below each other, their left and right ends and the uppermost's title given [pixels]."""
+    shared: Any = None
+    for place, panel in enumerate(group.panels):
+        bottom = ceiling - _above(panel) - panel.height
+        box = (left / WIDTH, bottom / height, (right - left) / WIDTH, panel.height / height)
+        axes = figure.add_axes(box, sharex=shared)
+        shared = shared or axes
+        _draw(axes, panel, place == len(group.panels) - 1)
+        ceiling = bottom
+
+
+def _above(panel: Panel) -> float:
+    return PANEL_TITLE if panel.title else UNTITLED
+
+
+def _height(group: Group) -> float:
+    """A group's pixels with its titles and its axis."""
+    return sum(_above(panel) + panel.height for panel in group.panels) + AXIS
+
+
+def _left(group: Group) -> float:
+    """The pixels that the labels beside a group's panels take."""
+    names = [name for panel in group.panels for name in panel.row_labels]
+    longest = max((len(part) for name in names for part in name.split(" + ")), default=0)
+    return LEFT + (CHARACTER * longest - LEFT / 2.0 if longest else 0.0)
 
 
 def legend_below(figure: Figure, handles: Sequence[Any], place: str, columns: int, **options: Any) -> None:
     """Put a legend under everything that is in a figure: what Matplotlib before 3.7 has no `place` for."""
-    height = LEGEND_ROW * math.ceil(len(handles) / columns) / figure.get_figheight()
+    height = LEGEND_ROW / PIXELS_PER_INCH * math.ceil(len(handles) / columns) / figure.get_figheight()
     figure.set_layout_engine("constrained", rect=(0.0, height, 1.0, 1.0 - height))
     figure.legend(handles=handles, loc=place, ncols=columns, frameon=False, **options)
 

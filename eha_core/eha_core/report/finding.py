@@ -109,7 +109,9 @@ def effects_listed(diagnosis: Diagnosis) -> str:
 
 def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
     """What casts doubt on everything below it: data taken although they cannot be right, or a damaged file."""
-    told = [sentence(one) for one in diagnosis.remarks if one.startswith("warning")]
+    doubts = [one for one in diagnosis.remarks if "warning: " in one]
+    # of several recordings, a remark begins with the path of its own
+    told = [sentence(one) if one.startswith("warning") else f"{one}." for one in doubts]
     damaged = f"Warning: the file is damaged, and this rests on what could be read: {diagnosis.damaged}."
     return (*told, damaged) if diagnosis.damaged else tuple(told)
 

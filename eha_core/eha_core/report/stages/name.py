@@ -7,6 +7,7 @@ import numpy as np
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.tournament import ENOUGH, TIE
 from eha_core.effects import effects
+from eha_core.quantities import RAISED
 from eha_core.report.finding import IN_A_SENTENCE, counted, names_listed
 from eha_core.report.picture import Bars, Group, Panel, Picture, Upright
 from eha_core.report.stage import Stage, adds_physics
@@ -88,7 +89,7 @@ def _picture(diagnosis: Diagnosis) -> Picture:
     texts = tuple("best" if one <= 0.0 else f"{_large(one)} behind" for one in behind)
     rungs = Bars(tuple(name for name, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
     decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
-    ticks = tuple((exponent + np.log10(STUB), _large(10**exponent)) for exponent in decades)
+    ticks = tuple((exponent + np.log10(STUB), _decade(exponent)) for exponent in decades)
     panel = Panel(
         (Upright(float(np.log10(TIE * STUB)), "told apart"), rungs),
         "evidence behind the best (log scale)",
@@ -102,6 +103,10 @@ def _picture(diagnosis: Diagnosis) -> Picture:
         f" from it. {_screened(diagnosis)}"
     )
     return Picture("4-name", (Group((panel,)),), caption=caption)
+
+
+def _decade(exponent: int) -> str:
+    return f"{10**exponent:,}" if exponent < 4 else f"10{str(exponent).translate(RAISED)}"
 
 
 def _large(value: float) -> str:
