@@ -12,15 +12,15 @@ from pathlib import Path
 
 from benchmarks.row import as_markdown
 
-BENCHMARKS = ("plant_step", "lockstep", "integrators", "reading", "layer", "node")
+BENCHMARKS = ("plant_step", "lockstep", "integrators", "windows", "reading", "layer", "node")
 
 
 def parser() -> argparse.ArgumentParser:
     """The command's arguments."""
     made = argparse.ArgumentParser(
         prog="python -m benchmarks",
-        description="Measures the plant's step, the integrator, the reading of recordings, the nodes' rclpy and the "
-        "simulator node against their peers, in one run.",
+        description="Measures the plant's step, the integrator, a fit's normal equations, the reading of recordings, "
+        "the nodes' rclpy and the simulator node against their peers, in one run.",
     )
     made.add_argument(
         "names", nargs="*", metavar="BENCHMARK", help=f"which of {', '.join(BENCHMARKS)} (default: all of them)"

@@ -1,200 +1,273 @@
-"""The plant against SciPy's LSODA at equal accuracy, both judged by a much tighter integration."""
+"""The plant against integrators of other houses at equal accuracy, in four tasks; all judged by one tight integration.
+
+An integrator of ordinary differential equations needs a slope everywhere, so dry friction and the stroke's ends are
+smoothed for it, by as much as serves it best. The judge is CVODE at 1e-9, with friction and ends smoothed by a
+hundredth of the least that its competitors use.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
-from math import pi, sin, sqrt
+from math import pi
 from time import perf_counter
 from typing import Any
 
-import numba
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import odeint, solve_ivp
 
+from benchmarks.actuator import SCALES, Array, Setting, odeint_rate, rk4, start
+from benchmarks.cvode import Cvode
+from benchmarks.plant_step import compiled_reference
 from benchmarks.row import Row
 from eha_core.plant import Plant
 
 DURATION = 2.0
 HOLD = 2e-3  # s; a controller at 500 Hz, and the spacing of the compared instants
-POSITION_TOLERANCE, PRESSURE_TOLERANCE = 1e-6, 100.0
+TIMES = HOLD * np.arange(round(DURATION / HOLD))
+OBSERVED = [3, 5, 6]
+"""Where piston position and pressures stand in the state."""
+
 STEP_SIZES = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5)
-RELATIVE_TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+RK4_STEPS = (1, 2, 4, 10, 20, 40, 100)  # in each hold
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 ROUNDS = 5
 TARGET = 100.0
+PATIENCE = 0.5  # s; a setting that takes longer is not the cheapest
 
-Array = NDArray[np.float64]
-Run = Callable[[float], Array]
-Integrate = Callable[[Any, Array, Array, float, tuple[float, ...]], Array]
-Rate = Any  # a compiled function, which carries no type
-SCALES = np.array([1e-4, 1e-4, 1e-2, 1e-3, 1e-2, 1e7, 1e7])
-"""Sizes of current, spool position and velocity, piston position and velocity, and pressures, for tolerances."""
-START = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.05e7, 1.05e7])
-OBSERVED = (3, 5, 6)
-"""Where piston position and pressures stand in the state."""
+Run = Callable[[], Array]
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is integrated, and how near it must come.
+
+    Attributes:
+        name: as the table has it.
+        told: the right-hand side's setting; the plant has `effects` for it.
+        voltages: (n,) [V] held for HOLD each; None where `told` has a sine.
+        within: error allowed in position [m] and in a pressure [Pa]; the largest, or of `squares` the root mean square.
+        smoothed: what smooths friction and ends, each alternative less; the last one the judge's.
+    """
+
+    name: str
+    told: Setting
+    voltages: Array | None = None
+    effects: Mapping[str, float] | None = None
+    position: float = 0.0
+    within: tuple[float, float] = (1e-6, 100.0)
+    squares: bool = False
+    smoothed: tuple[Mapping[str, float], ...] = ({},)
+
+    @property
+    def accuracy(self) -> str:
+        """`within`, in words."""
+        kind = "root mean square within" if self.squares else "within"
+        return f"{kind} {self.within[0]:g} m and {self.within[1]:g} Pa"
+
+    def near(self, found: Array, judge: Array) -> bool:
+        """Whether states (n, 7) are near enough to the judge's."""
+        apart = (found - judge)[:, OBSERVED]
+        size = np.sqrt(np.mean(apart**2, axis=0)) if self.squares else np.max(np.abs(apart), axis=0)
+        return bool(size[0] <= self.within[0] and max(size[1:]) <= self.within[1])
 
 
 @dataclass(frozen=True)
 class Sufficient:
-    """The cheapest setting of a method that meets both tolerances, and the time of one run [s]."""
+    """The cheapest setting of a method that comes near enough, and the time of one run [s]."""
 
-    setting: float
+    setting: str
     seconds: float
 
 
-def measure() -> list[Row]:
-    """Find the cheapest sufficient setting of each method and compare their times, under two commands.
-
-    SciPy has two ways to LSODA, a class for solve_ivp and the older odeint, whose loop is compiled; both are peers.
-    """
-    held, sine = _reference_held(), _reference_sine()
-    plant_held, plant_sine = (_cheapest(_plant_held, STEP_SIZES, held), _cheapest(_plant_sine, STEP_SIZES, sine))
-    rows = []
-    for peer, integrate in (("solve_ivp(method='LSODA')", _solve_ivp_lsoda), ("odeint", _odeint)):
-        lsoda_held = _cheapest(partial(_lsoda_held, integrate), RELATIVE_TOLERANCES, held)
-        lsoda_sine = _cheapest(partial(_lsoda_sine, integrate), RELATIVE_TOLERANCES, sine)
-        rows.append(_row("a controller's command, held for 2 ms each", peer, plant_held, lsoda_held))
-        rows.append(_row("a smooth 1 Hz sine", peer, plant_sine, lsoda_sine))
-    return rows
-
-
-def _row(command: str, peer: str, plant: Sufficient, lsoda: Sufficient) -> Row:
-    factor = lsoda.seconds / plant.seconds
-    return Row(
-        f"{DURATION:g} s under {command}, within 1e-6 m and 100 Pa",
-        f"{plant.seconds * 1e3:.2f} ms at a step of {plant.setting:g} s",
-        f"SciPy's {peer}, compiled right-hand side: {lsoda.seconds * 1e3:.1f} ms at rtol {lsoda.setting:g}",
-        f"{factor:,.3g} x faster" if factor < 1000 else f"{factor:,.0f} x faster",
-        f">= {TARGET:g} x",
-        factor >= TARGET,
-    )
-
-
-def _cheapest(run: Run, settings: tuple[float, ...], reference: Array) -> Sufficient:
-    """Return the fastest of the settings that meet both tolerances; looser ones are not always faster."""
-    sufficient = []
-    for setting in settings:
-        worst = np.max(np.abs(run(setting) - reference), axis=1)
-        if worst[0] <= POSITION_TOLERANCE and max(worst[1:]) <= PRESSURE_TOLERANCE:
-            sufficient.append(Sufficient(setting, min(_seconds(run, setting) for _ in range(2))))
-    best = min(sufficient, key=lambda one: one.seconds)
-    return Sufficient(best.setting, min(_seconds(run, best.setting) for _ in range(ROUNDS)))
-
-
-def _seconds(run: Run, setting: float) -> float:
-    start = perf_counter()
-    run(setting)
-    return perf_counter() - start
-
-
-def _sine(times: Any) -> Array:
-    return np.asarray(8.4e-3 * np.sin(2.0 * pi * times))
-
-
-def _held_voltages() -> Array:
+def _sum_of_sines() -> Array:
     """Three sines, none a multiple of another, sampled as a controller would."""
-    times = HOLD * np.arange(round(DURATION / HOLD))
     parts = ((12e-3, 1.3), (8e-3, 7.1), (4e-3, 23.7))  # V, Hz
-    return np.asarray(sum(amplitude * np.sin(2.0 * pi * frequency * times) for amplitude, frequency in parts))
+    return np.asarray(sum(amplitude * np.sin(2.0 * pi * frequency * TIMES) for amplitude, frequency in parts))
 
 
-def _plant_held(step: float) -> Array:
+STRIBECK = {"force": 250.0, "static_force": 450.0, "stribeck_velocity": 0.002}  # N, N, m/s
+TASKS = (
+    Task("a smooth 1 Hz sine", Setting(amplitude=8.4e-3, frequency=1.0)),
+    Task("a controller's command, held for 2 ms each", Setting(), _sum_of_sines()),
+    Task(
+        "stick-slip (Stribeck friction, a slow command held for 2 ms each)",
+        Setting(sliding=STRIBECK["force"], static=STRIBECK["static_force"], stribeck_velocity=0.002),
+        2e-3 * np.sin(2.0 * pi * TIMES),
+        {f"stribeck_friction.{name}": value for name, value in STRIBECK.items()},
+        within=(5e-6, 5e4),  # half the sensors' noise in position; pressures jump by 6e5 Pa at each break-away
+        squares=True,
+        smoothed=({"width": 1e-4}, {"width": 1e-5}, {"width": 1e-7}),
+    ),
+    Task(
+        "the stroke's end (a command held for 2 ms each drives into it)",
+        Setting(),
+        0.03 * np.sin(2.0 * pi * TIMES),
+        position=0.096,
+        within=(5e-6, 5e4),
+        squares=True,
+        smoothed=(
+            {"stiffness": 1e9, "damping": 1e5}, {"stiffness": 1e10, "damping": 3e5}, {"stiffness": 1e12, "damping": 3e6}
+        ),
+    ),
+)  # fmt: skip
+
+
+def measure() -> list[Row]:
+    """Find each method's cheapest sufficient setting for each task and compare their times."""
+    return [row for task in TASKS for row in _rows(task)]
+
+
+def _rows(task: Task) -> Iterator[Row]:
+    judge = _cvode(task, task.smoothed[-1], 1e-9)()
+    plant = _cheapest(task, judge, {f"a step of {step:g} s": partial(_plant, task, step) for step in STEP_SIZES})
+    assert plant is not None, "the plant comes near enough at its shortest step"
+    for peer, runs, target in _peers(task):
+        yield _row(task, plant, peer, _cheapest(task, judge, runs), target)
+
+
+def _peers(task: Task) -> Iterator[tuple[str, dict[str, Run], float | None]]:
+    """Each peer's name, what it can be set to, and the target against it, if there is one."""
+    smoothings = task.smoothed[:-1] or task.smoothed
+    words = {_words(smoothed): smoothed for smoothed in smoothings}
+    pairs = [(text, smoothed, tolerance) for text, smoothed in words.items() for tolerance in TOLERANCES]
+    in_c = compiled_reference()
+    if in_c is not None and not task.squares:  # it knows neither friction nor ends
+        runs = {f"a step of {HOLD / steps:g} s": partial(_rk4_in_c, in_c, task, steps) for steps in RK4_STEPS}
+        yield "RK4 in C, -O3 -march=native", runs, None
+    yield (
+        "RK4 compiled by numba",
+        {
+            f"a step of {HOLD / steps:g} s{text}": partial(_rk4, task, smoothed, steps)
+            for text, smoothed in words.items()
+            for steps in RK4_STEPS
+        },
+        None,
+    )
+    yield (
+        "SUNDIALS CVODE, compiled right-hand side",
+        {f"rtol {tolerance:g}{text}": _cvode(task, smoothed, tolerance) for text, smoothed, tolerance in pairs},
+        None,
+    )
+    scipy: dict[str, Callable[..., Array]] = {"odeint": _odeint}
+    if not task.squares:
+        scipy["solve_ivp(method='LSODA')"] = _solve_ivp
+    for name, integrate in scipy.items():
+        yield (
+            f"SciPy's {name}, compiled right-hand side",
+            {
+                f"rtol {tolerance:g}{text}": partial(_scipy, integrate, task, smoothed, tolerance)
+                for text, smoothed, tolerance in pairs
+            },
+            None if task.squares else TARGET,
+        )
+
+
+def _words(smoothed: Mapping[str, float]) -> str:
+    return "".join(f", {name} {value:g}" for name, value in smoothed.items())
+
+
+def _cheapest(task: Task, judge: Array, runs: Mapping[str, Run]) -> Sufficient | None:
+    """The fastest of the settings that come near enough; looser ones are not always faster."""
+    best: tuple[float, str] | None = None
+    for setting, run in runs.items():
+        try:
+            near = task.near(run(), judge)
+        except ArithmeticError:
+            continue
+        taken = _seconds(run) if near else np.inf
+        if near and (best is None or taken < best[0]):
+            best = taken, setting
+    if best is None:
+        return None
+    again = [_seconds(runs[best[1]]) for _ in range(ROUNDS if best[0] < PATIENCE else 0)]
+    return Sufficient(best[1], min([best[0], *again]))
+
+
+def _seconds(run: Run) -> float:
+    begun = perf_counter()
+    run()
+    return perf_counter() - begun
+
+
+def _row(task: Task, plant: Sufficient, peer: str, found: Sufficient | None, target: float | None) -> Row:
+    what = f"{DURATION:g} s of {task.name}, {task.accuracy}"
+    measured = f"{plant.seconds * 1e3:.2f} ms at {plant.setting}"
+    goal = "stated" if target is None else f">= {target:g} x"
+    if found is None:
+        return Row(what, measured, f"{peer}: at no setting tried", "only the plant comes near", goal, True)
+    factor = found.seconds / plant.seconds
+    said = f"{factor:,.3g} x faster" if factor >= 1.0 else f"the peer is ahead, {1.0 / factor:.2f} x faster"
+    against = f"{peer}: {found.seconds * 1e3:.2f} ms at {found.setting}"
+    return Row(what, measured, against, said, goal, target is None or factor >= target)
+
+
+def _voltages(task: Task) -> Array:
+    return np.zeros(len(TIMES)) if task.voltages is None else task.voltages
+
+
+def _plant(task: Task, step: float) -> Array:
     every = round(HOLD / step)
-    return _plant(np.repeat(_held_voltages(), every), step)
-
-
-def _plant_sine(step: float) -> Array:
-    # The held voltage is the sine at the middle of its step.
-    return _plant(_sine(step * (np.arange(round(DURATION / step)) + 0.5)), step)
-
-
-def _plant(voltages: Array, step: float) -> Array:
-    plant = _at_rest(step)
+    plant = _at_rest(task.name, step)
     plant.reset()
-    trajectory = plant.run(voltages, round(HOLD / step))
-    return np.array([trajectory.position, trajectory.pressure_a, trajectory.pressure_b])
+    rows = plant.run(_steps(task, every), every)
+    states = np.zeros((len(TIMES), 7))
+    states[:, OBSERVED] = np.stack([rows.position, rows.pressure_a, rows.pressure_b], axis=1)
+    return states
+
+
+def _steps(task: Task, every: int) -> Array:
+    """The voltage of each step, so many in each hold; of a sine, the one in the middle of the step."""
+    if task.voltages is not None:
+        return np.repeat(task.voltages, every)
+    middles = HOLD / every * (np.arange(len(TIMES) * every) + 0.5)
+    return np.asarray(task.told.amplitude * np.sin(2.0 * pi * task.told.frequency * middles))
 
 
 @cache
-def _at_rest(step: float) -> Plant:
-    """Return the plant of a step size; setting it up is not part of a run."""
-    return Plant(step_size=step)
+def _at_rest(name: str, step: float) -> Plant:
+    """The plant of a task and a step size; setting it up is not part of a run."""
+    task = next(one for one in TASKS if one.name == name)
+    return Plant(task.effects, step, task.position)
 
 
-def _lsoda_sine(integrate: Integrate, tolerance: float) -> Array:
-    times = np.linspace(0.0, DURATION, round(DURATION / HOLD) + 1)
-    return integrate(_sine_rate, START, times, tolerance, ())[1:, OBSERVED].T
+def _told(task: Task, smoothed: Mapping[str, float]) -> Array:
+    return np.array(task.told._replace(**smoothed))
 
 
-def _lsoda_held(integrate: Integrate, tolerance: float) -> Array:
-    """Start LSODA anew at each jump of the voltage, as its manual advises."""
-    state, rows = START, []
-    for voltage in _held_voltages():
-        state = integrate(_rate, state, np.array([0.0, HOLD]), tolerance, (voltage,))[-1]
-        rows.append(state[[*OBSERVED]])
-    return np.array(rows).T
+def _rk4_in_c(run: Callable[..., Array], task: Task, steps: int) -> Array:
+    return run(_steps(task, steps), HOLD / steps, steps)
 
 
-def _solve_ivp_lsoda(rate: Rate, start: Array, times: Array, tolerance: float, arguments: tuple[float, ...]) -> Array:
-    """Return the states (n, 7) at the times, the start among them."""
-    options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * SCALES, "t_eval": times, "args": arguments}
-    return np.asarray(solve_ivp(rate, (0.0, times[-1]), start, method="LSODA", **options).y.T)
+def _rk4(task: Task, smoothed: Mapping[str, float], steps: int) -> Array:
+    return np.asarray(rk4(start(task.position), _voltages(task), HOLD, steps, _told(task, smoothed)))
 
 
-def _odeint(rate: Rate, start: Array, times: Array, tolerance: float, arguments: tuple[float, ...]) -> Array:
-    """Return the states (n, 7) at the times, the start among them."""
-    options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * SCALES, "mxstep": 100_000}
-    return np.asarray(odeint(rate, start, times, args=arguments, tfirst=True, **options))
+def _cvode(task: Task, smoothed: Mapping[str, float], tolerance: float) -> Run:
+    """CVODE set up; that is not part of a run."""
+    solver = Cvode(tolerance, _told(task, smoothed))
+    return partial(solver.run, start(task.position), _voltages(task), HOLD, task.voltages is not None)
 
 
-def _reference_sine() -> Array:
-    times = np.linspace(0.0, DURATION, round(DURATION / HOLD) + 1)[1:]
-    return _reference(_sine_rate, START, times, ())[OBSERVED, :]
+def _scipy(integrate: Callable[..., Array], task: Task, smoothed: Mapping[str, float], tolerance: float) -> Array:
+    """Start anew at each jump of the voltage, as LSODA's manual advises."""
+    told, state = _told(task, smoothed), start(task.position)
+    if task.voltages is None:
+        return integrate(state, np.append(TIMES, DURATION), tolerance, told)[1:]
+    rows, ends = [], np.array([0.0, HOLD])
+    for voltage in task.voltages:
+        told[0] = voltage
+        state = integrate(state, ends, tolerance, told)[-1]
+        rows.append(state)
+    return np.array(rows)
 
 
-def _reference_held() -> Array:
-    state, rows = START, []
-    for voltage in _held_voltages():
-        state = _reference(_rate, state, np.array([HOLD]), (voltage,))[:, -1]
-        rows.append(state[[*OBSERVED]])
-    return np.array(rows).T
+def _odeint(state: Array, times: Array, tolerance: float, told: Array) -> Array:
+    options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * SCALES, "mxstep": 100_000, "tfirst": True}
+    return np.asarray(odeint(odeint_rate, state, times, args=(told,), **options))
 
 
-def _reference(rate: Rate, start: Array, times: Array, arguments: tuple[float, ...]) -> Array:
-    options: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-10 * SCALES, "t_eval": times, "args": arguments}
-    return np.asarray(solve_ivp(rate, (0.0, times[-1]), start, method="DOP853", **options).y)
-
-
-@numba.njit(error_model="numpy")
-def _signed_root(difference: float) -> float:
-    return sqrt(difference) if difference >= 0.0 else -sqrt(-difference)
-
-
-@numba.njit(error_model="numpy")
-def _rate(time: float, state: Array, voltage: float) -> Array:
-    """Equations (1) to (10) at Table 1's values."""
-    current, spool, spool_rate, position, velocity, pressure_a, pressure_b = state
-    if spool >= 0.0:
-        flow_a = 2.38e-5 * spool * _signed_root(2.1e7 - pressure_a)
-        flow_b = 2.38e-5 * spool * _signed_root(pressure_b)
-    else:
-        flow_a = 2.38e-5 * spool * _signed_root(pressure_a)
-        flow_b = 2.38e-5 * spool * _signed_root(2.1e7 - pressure_b)
-    past_the_seal = 1e-12 * (pressure_a - pressure_b)
-    swept = 645e-6 * velocity
-    rate = np.empty(7)
-    rate[0] = (voltage - 100.0 * current) / 0.59
-    rate[1] = spool_rate
-    rate[2] = 543.0**2 * (current - spool) - 2.0 * 0.48 * 543.0 * spool_rate
-    rate[3] = velocity
-    rate[4] = (645e-6 * (pressure_a - pressure_b) - 2000.0 * velocity - 10.0 * position) / 9.0
-    rate[5] = 1.4e9 / (1e-5 + 645e-6 * (0.1 + position)) * (flow_a - past_the_seal - swept)
-    rate[6] = 1.4e9 / (1e-5 + 645e-6 * (0.1 - position)) * (swept - flow_b + past_the_seal)
-    return rate
-
-
-@numba.njit(error_model="numpy")
-def _sine_rate(time: float, state: Array) -> Array:
-    return _rate(time, state, 8.4e-3 * sin(2.0 * pi * time))
+def _solve_ivp(state: Array, times: Array, tolerance: float, told: Array) -> Array:
+    options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * SCALES, "t_eval": times, "args": (told,)}
+    return np.asarray(solve_ivp(odeint_rate, (0.0, times[-1]), state, method="LSODA", **options).y.T)

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from time import process_time
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,6 +27,8 @@ from eha_core.recording import read_recording
 STEP, EVERY, STEPS = 5e-4, 4, 5_000  # as a fit takes derivatives: rows of four columns at 500 Hz
 ROUNDS = 40
 TARGET = 3.5
+DIVISIONS, ROOTS = 15, 4
+"""In a step of the nominal plant, about: what it cannot be faster than."""
 RECORDING = Path(__file__).parent.parent / "bags" / "rig_deadband_and_friction.mcap"
 RIGS, SECONDS, STUDY_STEP = 1000, 10.0, 2e-4
 STUDY_TARGET = 10_000.0
@@ -42,7 +45,7 @@ def measure() -> list[Row]:
     ranked = sorted(found, key=lambda name: found[name][1] / found[name][0])
     for what, name in (("least", ranked[0]), ("median", ranked[len(ranked) // 2]), ("most", ranked[-1])):
         rows.append(_step_row(f"8 plants with the effect of the {what} gain, {name}", found[name], None))
-    return [*rows, _jacobian_row(), _study_row()]
+    return [*rows, _limit_row(_step_times({}, 8)[0]), _jacobian_row(), _study_row()]
 
 
 def _typical(effect: Effect) -> dict[str, float]:
@@ -94,6 +97,37 @@ def _step_row(what: str, times: tuple[float, float], target: float | None) -> Ro
         "stated" if target is None else f">= {target:g} x",
         target is None or alone / together >= target,
     )
+
+
+def _limit_row(step: float) -> Row:
+    """The lock-step beside what its divisions and roots alone take, in vectors as wide as this core has them."""
+    above, below, out = np.full(512, 3.0), np.full(512, 1.7), np.zeros(512)  # they stay in the nearest cache
+    times = _shortest(lambda: _divide(above, below, out, 200), lambda: _take_roots(below, out, 200))
+    division, root = (taken / 200 / len(out) for taken in times)
+    limit = DIVISIONS * division + ROOTS * root
+    return Row(
+        "lock-step beside the machine's limit",
+        f"{step * 1e9:.1f} ns a step and plant",
+        f"{DIVISIONS} divisions of {division * 1e9:.2f} ns and {ROOTS} roots of {root * 1e9:.2f} ns and nothing else:"
+        f" {limit * 1e9:.1f} ns",
+        f"{step / limit:.2f} x the limit",
+        "stated",
+        True,
+    )
+
+
+@numba.njit(error_model="numpy")
+def _divide(above: Array, below: Array, out: Array, rounds: int) -> None:
+    for turn in range(rounds):
+        for k in range(len(out)):
+            out[k] += above[k] / (below[k] + turn)
+
+
+@numba.njit(error_model="numpy")
+def _take_roots(of: Array, out: Array, rounds: int) -> None:
+    for turn in range(rounds):
+        for k in range(len(out)):
+            out[k] += np.sqrt(of[k] + turn)
 
 
 def _jacobian_row() -> Row:

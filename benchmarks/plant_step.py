@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from time import perf_counter
 
@@ -20,6 +21,7 @@ STEP = 1e-4
 EVERY = 20  # rows at 500 Hz, as the simulator publishes
 STEPS = 20_000  # a run shorter than a scheduler's time slice, so that some runs meet no other work
 ROUNDS = 400
+TICK, TICKS = 10, 200  # steps of a period at 1 kHz, and how many are timed at once
 STEP_TARGET = 1.3
 REAL_TIME_TARGET = 1000.0
 
@@ -43,7 +45,7 @@ def measure() -> list[Row]:
         plant_times.append(_seconds(lambda: plant.run(voltages, EVERY)))
         if reference is not None:
             reference_times.append(_seconds(lambda: reference(voltages)))
-    return [_step_row(plant_times, reference_times), _real_time_row(plant_times)]
+    return [_step_row(plant_times, reference_times), _real_time_row(plant_times), _tick_row(min(plant_times) / STEPS)]
 
 
 def _seconds(action: Callable[[], object]) -> float:
@@ -52,7 +54,8 @@ def _seconds(action: Callable[[], object]) -> float:
     return perf_counter() - start
 
 
-def compiled_reference() -> Callable[[Array], Array] | None:
+@cache
+def compiled_reference() -> Callable[..., Array] | None:
     """Compile rk4.c and return its run over voltages, or None without a C compiler."""
     compiler = shutil.which("cc")
     if compiler is None:
@@ -67,9 +70,9 @@ def compiled_reference() -> Callable[[Array], Array] | None:
     simulate.argtypes = [vector, ctypes.c_long, ctypes.c_double, ctypes.c_long, vector]
     simulate.restype = None
 
-    def run(voltages: Array) -> Array:
-        rows = np.empty((len(voltages) // EVERY, 7))
-        simulate(voltages, len(voltages), STEP, EVERY, rows)
+    def run(voltages: Array, step: float = STEP, every: int = EVERY) -> Array:
+        rows = np.empty((len(voltages) // every, 7))
+        simulate(voltages, len(voltages), step, every, rows)
         return rows
 
     return run
@@ -86,6 +89,26 @@ def _step_row(plant_times: list[float], reference_times: list[float]) -> Row:
         f"{ratio:.2f} x",
         _TARGET,
         ratio <= STEP_TARGET,
+    )
+
+
+def _tick_row(step: float) -> Row:
+    """What a tick of the simulator node costs, beside the steps that it takes."""
+    plant = Plant(step_size=STEP)
+    plant.advance(8.4e-3, TICK)
+
+    def tick() -> None:
+        for _ in range(TICKS):
+            plant.advance(8.4e-3, TICK)
+
+    taken = min(_seconds(tick) for _ in range(ROUNDS)) / TICKS
+    return Row(
+        f"a tick of {TICK} steps, by Plant.advance",
+        f"{taken * 1e6:.2f} us",
+        f"the same steps within a long run: {TICK * step * 1e6:.2f} us",
+        f"{(taken - TICK * step) * 1e6:.2f} us more",
+        "stated",
+        True,
     )
 
 

@@ -39,10 +39,48 @@ def test_without_a_compiler_the_row_says_so(monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setattr(plant_step.shutil, "which", lambda name: None)
     monkeypatch.setattr(plant_step, "ROUNDS", 1)
-    step, real_time = plant_step.measure()
+    plant_step.compiled_reference.cache_clear()
+    step, real_time, tick = plant_step.measure()
     assert step.met is None
     assert "cc" in step.note
     assert real_time.met is not None
+    assert tick.measured.endswith("us")
+    plant_step.compiled_reference.cache_clear()
+
+
+def test_every_integrator_solves_the_equations_of_the_plant() -> None:
+    """At tight settings all meet the judge far within what is asked: none solves another task."""
+    from benchmarks import integrators
+
+    for task in integrators.TASKS[:2]:
+        judge = integrators._cvode(task, {}, 1e-9)()
+        found = {
+            "plant": integrators._plant(task, 1e-4),
+            "RK4": integrators._rk4(task, {}, 20),
+            "CVODE": integrators._cvode(task, {}, 1e-7)(),
+            "odeint": integrators._scipy(integrators._odeint, task, {}, 1e-7),
+        }
+        for name, states in found.items():
+            assert task.near(states, judge), name
+            assert not task.near(states + [0, 0, 0, 2e-6, 0, 0, 0], judge), name
+
+
+def test_friction_and_ends_are_the_plants_own() -> None:
+    """The smoothed laws of the judge approach the plant's, which has them as they are."""
+    from benchmarks import integrators
+
+    for task in integrators.TASKS[2:]:
+        judge = integrators._cvode(task, task.smoothed[-1], 1e-9)()
+        assert task.near(integrators._plant(task, 1e-4), judge)
+        bare = integrators._rk4(task, {"sliding": 0.0, "static": 0.0}, 20)  # neither friction nor ends
+        assert not task.near(bare, judge)
+
+
+def test_the_bench_of_windows_solves_what_lapack_solves() -> None:
+    from benchmarks import windows
+
+    matrix, right = windows.equations(20)
+    assert np.allclose(windows.banded(matrix, right), windows.dense(matrix, right), rtol=1e-7, atol=1e-12)
 
 
 def test_sleep_loop_measures_how_late_it_wakes() -> None:
