@@ -16,6 +16,7 @@ from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.nominal import NominalModel, load_nominal, nominal_of
 from eha_core.parameters import NOMINAL
+from eha_core.plant import require_sliding
 from eha_core.recording import Recording, read_recording
 from eha_core.recording.simulated import Experiment
 from eha_core.recording.simulated import simulate as run
@@ -129,8 +130,9 @@ def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]
 def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     """The model that a recording is held against, and which of its parameters are unknown or differ by recording."""
     if isinstance(nominal, (str, Path)):
-        return load_nominal(nominal)
+        nominal = load_nominal(nominal)
     if isinstance(nominal, NominalModel):
+        require_sliding(nominal.composition)
         return nominal
     if nominal is not None:
         return nominal_of(nominal)

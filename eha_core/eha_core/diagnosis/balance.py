@@ -162,9 +162,16 @@ def balances(observation: Observation, shooting: Shooting, model: Fit) -> tuple[
     }
     leaked = sum((np.where(grid.time >= time, change, 0.0) * (a - b) for time, change in observation.leakage), 0.0 * a)
     noises = (position.noise, pressure_a.noise, pressure_b.noise)
+    entering: dict[str, Array | None] = {"a": None, "b": None}
+    if not observation.composition.source.valve:
+        entering["a"] = np.interp(grid.time, row_times, rows[:, COLUMNS.index("flow_a")])
+        entering["b"] = -np.interp(grid.time, row_times, rows[:, COLUMNS.index("flow_b")])
     return (
         force_balance(grid, states, a, b, noises, model.values),
-        *(continuity_balance(grid, states, side, a, b, noises, model.values, leaked) for side in ("a", "b")),
+        *(
+            continuity_balance(grid, states, side, a, b, noises, model.values, leaked, entering[side])
+            for side in ("a", "b")
+        ),
     )
 
 
@@ -214,10 +221,12 @@ def continuity_balance(
     noises: tuple[float, ...],
     values: Mapping[str, float],
     leaked: Array | None = None,
+    given: Array | None = None,
 ) -> Balance:
     """A chamber's: what it is swept by, less the valve's flow, compression and leakage, is the flow that is missing.
 
-    `leaked`: the flow from chamber 1 to 2 [m^3/s] that was turned on while recording.
+    `leaked`: the flow from chamber 1 to 2 [m^3/s] that was turned on while recording. `given`: what enters it [m^3/s]
+    where no valve's spool makes it.
     """
     x, speed, spool = states["position"], states["velocity"], states["spool position"]
     sign = 1.0 if side == "a" else -1.0
@@ -229,9 +238,10 @@ def continuity_balance(
         left = left + sign * grid.integrate(grid.bump, leaked)
     filling = np.where(sign * spool >= 0.0, values["supply_pressure"] - own, own - values["return_pressure"])
     flow_an_ampere = sign * values["valve_gain"] * np.sqrt(np.maximum(filling, 0.0))
+    entering = flow_an_ampere * spool if given is None else given
     # V dP/dt integrates by parts to -(slope V + bump dV/dt) P
     squeezed = -(grid.integrate(grid.slope, volume * own) + grid.integrate(grid.bump, sign * area * speed * own))
-    columns = [grid.integrate(grid.bump, flow_an_ampere * spool), squeezed, grid.integrate(grid.bump, a - b)]
+    columns = [grid.integrate(grid.bump, entering), squeezed, grid.integrate(grid.bump, a - b)]
     weight = grid.slope * float(np.mean(volume)) / values["bulk_modulus"]
     variance = float(np.sum(weight**2)) * noise**2 + float(np.sum(grid.slope**2)) * (area * noises[0]) ** 2
     noise = float(np.sqrt(variance)) * grid.step

@@ -17,7 +17,6 @@ from eha_core.diagnosis.problem import Problem, whole
 from eha_core.diagnosis.shooting import Shooting
 from eha_core.diagnosis.together import cut_together, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
-from eha_core.parameters import NOMINAL
 
 STEPS = (2e-4, 1e-4, 5e-5)
 """s; the steps at which hypotheses may be compared. The oil's frequency is right to fourth order at the first; large
@@ -144,6 +143,3 @@ def has_changed(result: Fit, nominal: Mapping[str, float], name: str) -> bool:
     departure = abs(result.values[name] - given)
     relevant = RELEVANT * (abs(given) if one.logarithmic else max(abs(given), one.scale))
     return departure > NOTICEABLE * result.deviation(name) and departure > relevant
-
-
-UNITS = {row.name: row.unit for row in NOMINAL}

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from eha_core.diagnosis.calibrate import UNITS, corrected_noise, has_changed, identifiable
+from eha_core.diagnosis.calibrate import corrected_noise, has_changed, identifiable
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, tested_recordings
 from eha_core.diagnosis.evidence import Evidence
@@ -44,7 +44,7 @@ from eha_core.diagnosis.validate import channel_rmse, instants_of, judge, split
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import SITES, Effect
 from eha_core.effects import effects as every_effect
-from eha_core.parameters import catalogue, nominal_values
+from eha_core.plant import Composition
 from eha_core.recording import Recording
 
 FINAL_STEP = 1e-4
@@ -66,7 +66,10 @@ def conclude(
     left = explained(replace(evidence, decision=decision), final)
     before, calibrated = evidence.calibration.nominal, evidence.tournament.nominal.fit
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
-    experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
+    composition = evidence.observation.composition
+    # a test is proposed as a voltage; a source that takes none is driven by whoever records it
+    proposable = decision.verdict == "ambiguous" and composition.source.valve == "coil"
+    experiment = _experiment(evidence, decision) if proposable else None
     recording = recordings[evidence.lead - 1]
     steps, without = ladder(replace(evidence, decision=decision), final)
     order = [one.added for one in steps]
@@ -83,7 +86,7 @@ def conclude(
         verdict=decision.verdict,
         summary=_summary(decision, effects, unknown, left),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
-        parameters=_parameters(final, evidence.nominal),
+        parameters=_parameters(final, evidence.nominal, composition),
         effects=effects,
         alternatives=tuple(Alternative(entry.ids, gap) for entry, gap in decision.rivals),
         unknown=unknown,
@@ -92,7 +95,7 @@ def conclude(
         next_experiment=experiment,
         rivals=tuple((entry.ids, entry.score) for entry in evidence.tournament.entries),
         whiteness=dict(zip(evidence.calibration.shooting.names, whiteness(decision.winner.fit.residuals), strict=True)),
-        fitted_values=_changed_values(final),
+        fitted_values=_changed_values(final, composition),
         pictures=_pictures(evidence, before, calibrated, decision.winner.fit),
         start_stamp=recording.start_stamp,
         explained=left,
@@ -106,6 +109,7 @@ def conclude(
         steps=steps,
         without=without,
         correlation=correlation(final),
+        composition=composition,
     )
 
 
@@ -151,11 +155,14 @@ def _remarks(evidence: Evidence) -> tuple[str, ...]:
     return tuple(f"{one.path}: {remark}" for one in evidence.observations for remark in one.remarks)
 
 
-def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParameter, ...]:
+def _parameters(
+    final: Fit, nominal: Mapping[str, float], composition: Composition
+) -> tuple[FittedParameter, ...]:
+    rows = composition.place_rows
     found = []
     for one in final.free:
         base = base_name(one.name)
-        if base not in UNITS:
+        if base not in rows:
             continue
         note = "" if identifiable(final, one.name) else "this recording does not tell it; held near its nominal value"
         at_bound = one.is_bound_by(final.values[one.name])
@@ -167,7 +174,7 @@ def _parameters(final: Fit, nominal: Mapping[str, float]) -> tuple[FittedParamet
                 nominal[base],
                 final.values[one.name],
                 final.deviation(one.name),
-                UNITS[base],
+                rows[base].unit,
                 has_changed(final, nominal, one.name),
                 note,
                 at_bound,
@@ -287,10 +294,10 @@ def _summary_of_unknown(law: UnknownLaw | None) -> str:
     return f"Something is missing: {statement}, as a function of {law.function_of}."
 
 
-def _changed_values(final: Fit) -> dict[str, float]:
-    """What a simulator needs beside the catalogue's nominal values to be the fitted plant."""
-    nominal = nominal_values()
-    return {name: final.values[name] for name in catalogue() if final.values[name] != nominal[name]}
+def _changed_values(final: Fit, composition: Composition) -> dict[str, float]:
+    """What a simulator needs beside the nominal values of such an actuator to be the fitted plant."""
+    nominal = composition.places(composition.nominal_values())
+    return {name: final.values[name] for name in nominal if final.values[name] != nominal[name]}
 
 
 def _experiment(evidence: Evidence, decision: Decision) -> Experiment:

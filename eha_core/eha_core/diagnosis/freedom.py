@@ -8,7 +8,6 @@ from math import exp, log
 
 from eha_core.diagnosis.observation import WITH_OIL
 from eha_core.effects import Effect
-from eha_core.parameters import catalogue
 from eha_core.plant import PAPER, Composition
 
 
@@ -81,12 +80,16 @@ NOMINAL_TRUST: Mapping[str, Trust] = {
     "moving_mass": Trust(0.7, 5.0),
     "damping_coefficient": Trust(1.0, 8.0),
     "internal_leakage": Trust(1.0, 0.0, 3e-11),
+    "pump_displacement": Trust(0.3, 2.0),
+    "pump_leakage": Trust(1.0, 0.0, 1e-12),
+    "tank_gain": Trust(0.7, 4.0),
 }
 """Assumed: how far data sheets and hand-over notes are off.
 
 Held, because a recording sees them only through the ones above: coil_resistance (through the gain), piston_area
 (through gain, mass and damping), line_volume (through stroke and bulk modulus). Held, because a departure from them is
 physics and has its name in the catalogue: external_leakage, and piston_area_b where the nominal cylinder is symmetric.
+Held, because only a relief valve that opens shows it: relief_gain.
 """
 
 LATE = ("coil_inductance", "valve_damping_ratio", "valve_natural_frequency", "actuator_displacement")
@@ -114,9 +117,9 @@ def nominal_freedom(
     free = []
     for name, trust in NOMINAL_TRUST.items():
         known = _not_known(trust) if name in unknown else trust
-        if (drive not in WITH_OIL and name not in FORCE_ONLY) or name not in composition.applicable:
+        if (drive not in WITH_OIL and name not in FORCE_ONLY) or name not in composition.place_rows:
             continue
-        row = catalogue()[name]
+        row = composition.place_rows[name]
         reference = nominal[name]
         if name == "spring_stiffness" and reference == 0.0 and drive not in WITH_OIL:
             continue  # an axis said to have no spring; a spring would only take up what an offset leaves
@@ -133,7 +136,7 @@ def nominal_freedom(
             upper = min(upper, reference + known.reach * scale)
         free.append(Free(name, reference, logarithmic, scale, known.trust, lower, max(lower, upper)))
     if nominal["piston_area_b"] != nominal["piston_area"] and drive in WITH_OIL:
-        row = catalogue()["piston_area_b"]
+        row = composition.place_rows["piston_area_b"]
         free.append(Free(row.name, nominal[row.name], True, 0.0, 0.3, row.lower, row.upper))
     return tuple(free)
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from eha_core.diagnosis.numbers import Array
+from eha_core.plant import PAPER, Composition
 
 VERDICTS = ("consistent", "parameters", "missing_physics", "ambiguous", "unknown_physics")
 
@@ -253,6 +254,7 @@ class Diagnosis:
     steps: tuple[Step, ...] = ()
     without: Mapping[str, Residual] = field(default_factory=dict)
     correlation: Correlation = Correlation()
+    composition: Composition = PAPER
 
     @property
     def bent(self) -> bool:

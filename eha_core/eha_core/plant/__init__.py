@@ -6,12 +6,19 @@ from eha_core.plant.composition import PAPER, Composition, compose
 from eha_core.plant.continuous import derivatives
 from eha_core.plant.linear import LinearPlant, linearise
 from eha_core.plant.many import Trajectories, simulate_many
-from eha_core.plant.plant_file import GivenPlant, composition_of, load_plant, require_voltage, voltage_driven
+from eha_core.plant.plant_file import (
+    GivenPlant,
+    composition_of,
+    dump_plant,
+    load_plant,
+    require_sliding,
+    voltage_driven,
+)
 from eha_core.plant.simulator import Plant, Trajectory
 from eha_core.plant.state import COLUMNS, SEEN, Row, State
 
 __all__ = [
     "COLUMNS", "PAPER", "SEEN", "Composition", "GivenPlant", "LinearPlant", "Plant", "Row", "State", "Trajectories",
-    "Trajectory", "compose", "composition_of", "derivatives", "linearise", "load_plant", "require_voltage",
-    "simulate_many", "voltage_driven",
+    "Trajectory", "compose", "composition_of", "derivatives", "dump_plant", "linearise", "load_plant",
+    "require_sliding", "simulate_many", "voltage_driven",
 ]

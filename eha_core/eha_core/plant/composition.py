@@ -77,9 +77,9 @@ class Composition:
         return (name,)
 
     @cached_property
-    def applicable(self) -> frozenset[str]:
-        """The places of the equations that its parameters take: what a fit may move."""
-        return frozenset(place for name in self.rows for place in self.stands_for(name))
+    def place_rows(self) -> Mapping[str, Parameter]:
+        """The places of the equations that its parts' parameters take, each with the row of the one that takes it."""
+        return {place: row for name, row in self._rows_of_parts().items() for place in self.stands_for(name)}
 
     def nominal_values(self) -> dict[str, float]:
         """Every parameter that applies at its nominal value: no effect acts."""

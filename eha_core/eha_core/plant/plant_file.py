@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from eha_core.errors import ParameterError, remedy
-from eha_core.parameters import PAPER_PARTS, PER_RECORDING, read_section, refuse_unknown, split_parts
+from eha_core.parameters import (
+    PAPER_PARTS,
+    PER_RECORDING,
+    dump_parameters,
+    read_section,
+    refuse_unknown,
+    split_parts,
+)
 from eha_core.plant.composition import Composition, compose
 
 
@@ -42,24 +49,41 @@ def load_plant(path: str | Path) -> GivenPlant:
     return GivenPlant(made, {name: complete[name] for name in values})
 
 
+def dump_plant(places: Mapping[str, float], composition: Composition, heading: str = "") -> str:
+    """The text of a file that `load_plant` reads, of some parameters of the equations; `heading` as its comment."""
+    values = {name: places[composition.stands_for(name)[0]] for name in composition.rows
+              if composition.stands_for(name)[0] in places}  # fmt: skip
+    if composition.is_papers:
+        return dump_parameters(places, heading)
+    parts = ", ".join(f"{kind}: {name}" for kind, name in composition.names.items())
+    first, parameters = dump_parameters(values, heading).split("  ros__parameters:\n")
+    return f"{first}  ros__parameters:\n    plant: {{{parts}}}\n{parameters}"
+
+
 def voltage_driven(path: str | Path) -> dict[str, float]:
     """Every parameter of the equations, for a reader that knows an actuator on a voltage whose piston slides.
 
     Raises ParameterError as `load_plant` does, and as `require_voltage`.
     """
     found = load_plant(path)
-    require_voltage(found.composition, f"{path}: ")
+    try:
+        require_voltage(found.composition)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
     return found.places
 
 
-def require_voltage(composition: Composition, where: str = "") -> None:
+def require_voltage(composition: Composition) -> None:
     """Raise ParameterError for an actuator that no voltage drives, or whose piston does not slide."""
-    for kind, one, taken in (
-        ("source", composition.source, composition.source.valve == "coil"),
-        ("cylinder", composition.cylinder, composition.cylinder.motion == "m"),
-    ):
-        if not taken:
-            raise ParameterError(f"{where}plant.{kind} = {one.id} is not taken here; `eha simulate` takes it")
+    if composition.source.valve != "coil":
+        raise ParameterError(f"plant.source = {composition.source.id} is not taken here; `eha simulate` takes it")
+    require_sliding(composition)
+
+
+def require_sliding(composition: Composition) -> None:
+    """Raise ParameterError for an actuator that turns."""
+    if composition.cylinder.motion != "m":
+        raise ParameterError(f"plant.cylinder = {composition.cylinder.id} is not taken here; `eha simulate` takes it")
 
 
 def composition_of(section: Mapping[str, object]) -> Composition:

@@ -7,7 +7,7 @@ from pathlib import Path
 from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.errors import EhaError
-from eha_core.parameters import dump_parameters
+from eha_core.plant import dump_plant
 from eha_core.report.comparison import write_comparison
 from eha_core.report.contents import contents_of
 from eha_core.report.experiment_file import FILE, experiment_file
@@ -29,7 +29,8 @@ def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
             old.unlink()
         comparison.unlink(missing_ok=True)
         document.write_text(as_json(diagnosis), encoding="utf-8")
-        fitted.write_text(dump_parameters(diagnosis.fitted_values, _heading(diagnosis)), encoding="utf-8")
+        found = dump_plant(diagnosis.fitted_values, diagnosis.composition, _heading(diagnosis))
+        fitted.write_text(found, encoding="utf-8")
         write_comparison(diagnosis, comparison)
         contents = contents_of(diagnosis)
         write_figures(contents.figures, folder / "figures")
