@@ -78,13 +78,18 @@ def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
             if guess.hypothesis not in search.found:
                 search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
                 search.try_guess(guess, 15, give_up_above=best.fit.objective + CLOSE)
-    for guess in in_another_form(search, best):
-        search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
-        search.try_guess(guess, 20, give_up_above=best.fit.objective + CLOSE)
     size = len(best.hypothesis.members)
-    of_size = [one for one in search if len(one.hypothesis.members) == size]
-    dear = parameter_cost(search.problem.count(), max(1.0, best.times_noise))
-    return min(of_size, key=lambda one: one.fit.objective + dear * freedom_used(one.fit))
+    while True:
+        for guess in in_another_form(search, best):
+            search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
+            search.try_guess(guess, 20, give_up_above=best.fit.objective + CLOSE)
+        of_size = [one for one in search if len(one.hypothesis.members) == size]
+        dear = parameter_cost(search.problem.count(), max(1.0, best.times_noise))
+        leading = min(of_size, key=lambda one: one.fit.objective + dear * freedom_used(one.fit))
+        if leading.hypothesis == best.hypothesis:
+            return leading
+        # where friction sticks a simpler form may have rested above its optimum, and goes on from here
+        best = leading
 
 
 def _in_noise_of(search: Search, calibration: Calibration) -> Calibration:
