@@ -16,7 +16,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "recording"
 BAGS = FOLDER.parent.parent / "bags"
 sys.path.append(str(FOLDER))
 
-from log_files import CHANNELS, COUNT, POSITION, TABLES, TIME, VOLTAGE  # noqa: E402
+from example_run import CHANNELS, COUNT, POSITION, TIME, VOLTAGE, written  # noqa: E402
 from recordings import SECOND, START, header  # noqa: E402
 from test_introspection import EFFORT, introspection_bag  # noqa: E402
 from test_introspection import POSITION as STATE  # noqa: E402
@@ -44,13 +44,12 @@ def answer(topics: Path, *answers: str) -> None:
     topics.write_text("\n".join(lines) + "\n")
 
 
-@pytest.mark.parametrize("kind", list(TABLES))
+@pytest.mark.parametrize("kind", list(ASKED))
 def test_every_kind_of_table_is_listed_and_read_once_its_questions_are_answered(
     tmp_path: Path, kind: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    name, write, _ = TABLES[kind]
-    path, topics = tmp_path / name, tmp_path / "topics.yaml"
-    write(path)
+    path, _ = written(tmp_path, kind)
+    topics = tmp_path / "asked.yaml"
     listing = inspected(path, topics, capsys)
     assert topics.read_text().count("# ? ") == ASKED[kind]
     assert re.search(rf" {COUNT} +1000 ", listing)

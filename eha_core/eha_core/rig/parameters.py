@@ -48,7 +48,7 @@ def flow_gain(rated_flow: float, rated_pressure_drop: float, rated_current: floa
 def _valve(given: Mapping[str, float]) -> list[Entry]:
     voltage, current = given.get("rated_voltage"), given.get("rated_current")
     full = current or AMPERE_EQUIVALENT
-    by = "rated current" if current else "assumed; stands for full opening, as the valve's electronics hide its current"
+    by = "rated current" if current else "assumed to stand for full opening, as electronics hide the current"
     frequency = given.get("valve_frequency")
     natural = None if frequency is None else 2.0 * pi * frequency
     entries = [
@@ -74,7 +74,7 @@ def _cylinder(given: Mapping[str, float]) -> list[Entry]:
     area_a = None if bore is None else piston_area(bore, rod_a or 0.0)
     area_b = None if bore is None or rod is None else piston_area(bore, rod)
     ring = "pi / 4 (bore^2 - rod^2)"
-    on_a = f"{ring} on chamber A's side" if rod_a else "pi / 4 bore^2: no rod on chamber A's side"
+    on_a = f"{ring} on chamber A's side" if rod_a else "pi / 4 bore^2, no rod on chamber A's side"
     if rod_a is None:
         on_a += ", assumed"
     stroke = given.get("stroke")
@@ -94,10 +94,8 @@ def _line_volume(given: Mapping[str, float]) -> tuple[float | None, str]:
     if bore is None or not lengths:
         return dead, "as given; hoses left out" if dead is not None else ""
     volume = pi / 4.0 * bore**2 * sum(lengths) / len(lengths) + (dead or 0.0)
-    how = "pi / 4 hose bore^2 x length"
-    if len(set(lengths)) > 1:
-        how += ", mean of both hoses"
-    return volume, how + (" and the dead volume" if dead else ", without further dead volume: assumed")
+    how = f"pi / 4 hose bore^2 x {'mean length' if len(set(lengths)) > 1 else 'length'}"
+    return volume, how + (" and the dead volume" if dead else "; no dead volume beside, assumed")
 
 
 def _oil(given: Mapping[str, float]) -> list[Entry]:
