@@ -196,3 +196,11 @@ def test_names_that_would_write_to_the_terminal_are_shown_and_quoted(
     assert "\x85" not in listing
     assert "\x85" not in topics.read_text()
     load_topics_file(topics)
+
+
+def test_a_pump_s_speed_is_found_in_revolutions_a_minute(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, topics = tmp_path / "run.csv", tmp_path / "topics.yaml"
+    path.write_text("t_s,n_rpm\n" + "".join(f"{k / 1000},{600 + k}\n" for k in range(30)))
+    inspected(path, topics, capsys)
+    speed = read_recording(path, topics).channels["pump_speed"]
+    np.testing.assert_allclose(speed.values, (600 + np.arange(30)) * 2.0 * np.pi / 60.0)

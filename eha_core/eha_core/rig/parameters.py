@@ -49,14 +49,12 @@ def _valve(given: Mapping[str, float]) -> list[Entry]:
     voltage, current = given.get("rated_voltage"), given.get("rated_current")
     full = current or AMPERE_EQUIVALENT
     by = "rated current" if current else "assumed to stand for full opening, as electronics hide the current"
-    frequency = given.get("valve_frequency")
-    natural = None if frequency is None else 2.0 * pi * frequency
     entries = [
         _entry("coil_resistance", None if voltage is None else voltage / full, "rated voltage over that current"),
         _entry("coil_inductance", given.get("coil_inductance"), "as given"),
         _entry("saturation_current", full, by),
         _entry("valve_damping_ratio", given.get("valve_damping"), "as given"),
-        _entry("valve_natural_frequency", natural, "2 pi times the frequency of 90 degrees lag"),
+        _entry("valve_natural_frequency", given.get("valve_frequency"), "2 pi times the frequency of 90 degrees lag"),
     ]
     flow, drop = given.get("rated_flow"), given.get("rated_pressure_drop")
     if (flow is None) != (drop is None):
