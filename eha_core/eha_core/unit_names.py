@@ -42,7 +42,7 @@ UNITS: dict[str, Unit] = {
 
 _ALSO = {
     "1/min": "rpm", "min^-1": "rpm", "u/min": "rpm",
-    "\u03a9": "ohm", "ohms": "ohm", "n s/m": "Ns/m", "n*s/m": "Ns/m", "cc": "cm^3", "cm3": "cm^3", "m3": "m^3",
+    "\u03c9": "ohm", "ohms": "ohm", "n s/m": "Ns/m", "n*s/m": "Ns/m", "cc": "cm^3", "cm3": "cm^3", "m3": "m^3",
     "sec": "s", "second": "s", "seconds": "s", "msec": "ms", "millisecond": "ms", "milliseconds": "ms", "usec": "us",
     "microseconds": "us", "nsec": "ns", "nanoseconds": "ns", "volt": "V", "volts": "V", "amp": "A", "amps": "A",
     "ampere": "A", "meter": "m", "metre": "m", "meters": "m", "metres": "m", "inch": "in", "pascal": "Pa",
