@@ -26,6 +26,8 @@ from eha_core.unit_names import UNITS, name_of, unit_named
         ("Bar", "Pa", 1e5),
         ("mbar", "Pa", 100.0),
         ("ms", "s", 1e-3),
+        ("rpm", "rad/s", 0.10471975511965977),
+        ("Hz", "rad/s", 6.283185307179586),
         ("seconds", "s", 1.0),
     ],
 )
@@ -35,7 +37,7 @@ def test_a_unit_is_what_its_definition_says(text: str, si: str, scale: float) ->
     assert (unit.si, unit.scale) == (si, pytest.approx(scale, rel=1e-9))
 
 
-@pytest.mark.parametrize("text", ["", "mPa", "furlong", "rpm", "%"])
+@pytest.mark.parametrize("text", ["", "mPa", "furlong", "%"])
 def test_what_is_no_unit_here_is_none(text: str) -> None:
     assert unit_named(text) is None
 

@@ -30,7 +30,7 @@ Nominal = Mapping[str, float | str] | NominalModel | str | Path | None
 
 
 def read(path: str | Path, topics: str | Path | None = None) -> Recording:
-    """Read a recording from an .mcap or .db3 file, a rosbag2 folder or a .csv file.
+    """Read a recording from an .mcap or .db3 file, a rosbag2 folder, or a table: .csv, .lvm, .mat, .parquet.
 
     Args:
         path: the recording.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi
 
 
 @dataclass(frozen=True)
@@ -32,14 +33,16 @@ UNITS: dict[str, Unit] = {
     "ml/min": Unit("m^3/s", 1e-6 / 60.0), "cm^3/s": Unit("m^3/s", 1e-6), "gpm": Unit("m^3/s", _GALLON / 60.0),
     "kg": Unit("kg", 1.0), "t": Unit("kg", 1e3), "lb": Unit("kg", 0.45359237),
     "m^3": Unit("m^3", 1.0), "l": Unit("m^3", 1e-3), "cm^3": Unit("m^3", 1e-6), "ml": Unit("m^3", 1e-6),
-    "Hz": Unit("Hz", 1.0), "rad/s": Unit("Hz", 0.15915494309189535),  # 1 / (2 pi)
+    "rad/s": Unit("rad/s", 1.0), "Hz": Unit("rad/s", 2.0 * pi), "rpm": Unit("rad/s", 2.0 * pi / 60.0),
+    "deg/s": Unit("rad/s", pi / 180.0),
     "ohm": Unit("ohm", 1.0), "kohm": Unit("ohm", 1e3), "henry": Unit("H", 1.0), "mH": Unit("H", 1e-3),
     "N/m": Unit("N/m", 1.0), "N/mm": Unit("N/m", 1e3), "Ns/m": Unit("N s/m", 1.0), "GPa": Unit("Pa", 1e9),
 }  # fmt: skip
 """What a topics file's `unit`, or a value of a data sheet, may be in."""
 
 _ALSO = {
-    "\u03a9": "ohm", "ohms": "ohm", "n s/m": "Ns/m", "n*s/m": "Ns/m", "cc": "cm^3", "cm3": "cm^3", "m3": "m^3",
+    "1/min": "rpm", "min^-1": "rpm", "u/min": "rpm",
+    "\u03c9": "ohm", "ohms": "ohm", "n s/m": "Ns/m", "n*s/m": "Ns/m", "cc": "cm^3", "cm3": "cm^3", "m3": "m^3",
     "sec": "s", "second": "s", "seconds": "s", "msec": "ms", "millisecond": "ms", "milliseconds": "ms", "usec": "us",
     "microseconds": "us", "nsec": "ns", "nanoseconds": "ns", "volt": "V", "volts": "V", "amp": "A", "amps": "A",
     "ampere": "A", "meter": "m", "metre": "m", "meters": "m", "metres": "m", "inch": "in", "pascal": "Pa",

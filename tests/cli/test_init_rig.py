@@ -24,11 +24,10 @@ def test_options_make_a_nominal_file_with_units_and_origins(tmp_path: Path, caps
     assert model.values["piston_area"] == pytest.approx(pi * 0.02**2, rel=1e-5)
     assert {"bulk_modulus", "moving_mass", "supply_pressure"} <= model.unknown
     assert not {"piston_area", "valve_gain", "external_leakage"} & model.unknown
-    for line in path.read_text().splitlines():
-        if line.startswith("    "):
-            name, comment = line.split(":")[0].strip(), line.partition("#")[2]
-            unit = catalogue()[name].unit
-            assert (unit if unit != "-" else "no unit") in comment and catalogue()[name].meaning in comment
+    lines = [line.strip() for line in path.read_text().splitlines() if line.startswith("    ")]
+    for comment, entry in zip(lines[::2], lines[1::2], strict=True):
+        row = catalogue()[entry.partition(":")[0]]
+        assert comment.startswith(f"# {row.meaning} [{row.unit}]: ")
 
 
 def test_assumed_values_make_a_file_that_a_simulation_takes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

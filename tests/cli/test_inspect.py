@@ -16,7 +16,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "recording"
 BAGS = FOLDER.parent.parent / "bags"
 sys.path.append(str(FOLDER))
 
-from log_files import CHANNELS, COUNT, POSITION, TABLES, TIME, VOLTAGE  # noqa: E402
+from example_run import CHANNELS, COUNT, POSITION, TIME, VOLTAGE, written  # noqa: E402
 from recordings import SECOND, START, header  # noqa: E402
 from test_introspection import EFFORT, introspection_bag  # noqa: E402
 from test_introspection import POSITION as STATE  # noqa: E402
@@ -44,13 +44,12 @@ def answer(topics: Path, *answers: str) -> None:
     topics.write_text("\n".join(lines) + "\n")
 
 
-@pytest.mark.parametrize("kind", list(TABLES))
+@pytest.mark.parametrize("kind", list(ASKED))
 def test_every_kind_of_table_is_listed_and_read_once_its_questions_are_answered(
     tmp_path: Path, kind: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    name, write, _ = TABLES[kind]
-    path, topics = tmp_path / name, tmp_path / "topics.yaml"
-    write(path)
+    path, _ = written(tmp_path, kind)
+    topics = tmp_path / "asked.yaml"
     listing = inspected(path, topics, capsys)
     assert topics.read_text().count("# ? ") == ASKED[kind]
     assert re.search(rf" {COUNT} +1000 ", listing)
@@ -197,3 +196,11 @@ def test_names_that_would_write_to_the_terminal_are_shown_and_quoted(
     assert "\x85" not in listing
     assert "\x85" not in topics.read_text()
     load_topics_file(topics)
+
+
+def test_a_pump_s_speed_is_found_in_revolutions_a_minute(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, topics = tmp_path / "run.csv", tmp_path / "topics.yaml"
+    path.write_text("t_s,n_rpm\n" + "".join(f"{k / 1000},{600 + k}\n" for k in range(30)))
+    inspected(path, topics, capsys)
+    speed = read_recording(path, topics).channels["pump_speed"]
+    np.testing.assert_allclose(speed.values, (600 + np.arange(30)) * 2.0 * np.pi / 60.0)

@@ -80,3 +80,17 @@ def test_channels_that_kept_other_sides_of_a_leap_are_put_on_one_span() -> None:
 def test_a_command_that_was_given_once_before_is_kept_and_overlapping_channels_are_left_alone() -> None:
     channels = {"voltage_command": series(0, 1), "position": series(500, 100), "pressure_a": series(550, 400)}
     assert on_one_span(channels, channels, ("voltage_command",)) == (channels, ())
+
+
+def test_a_channel_that_has_no_number_in_the_span_of_the_longest_is_left_out() -> None:
+    minute = 60 * 10**9
+    stamps = np.arange(20, dtype=np.int64)
+    late = np.array([3, 4, minute], dtype=np.int64)
+    recorded = {
+        "position": Samples(stamps, np.arange(20.0)),
+        "velocity": Samples(late, np.array([np.nan, np.nan, 1.0])),
+    }
+    ordered_channels = {name: put_in_order(series)[0] for name, series in recorded.items()}
+    kept, remarks = on_one_span(ordered_channels, recorded, ())
+    assert list(kept) == ["position"]
+    assert remarks == ("velocity was recorded at another time than position and was left out",)

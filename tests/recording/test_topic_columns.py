@@ -116,3 +116,10 @@ def test_reading_keeps_the_wanted_numbers_and_not_the_messages(tmp_path: Path) -
     assert len(recording.channels["position"].values) == count
     # 42 MB of messages; a chunk of them and a few columns of 0.16 MB at a time.
     assert peak < 12e6
+
+
+def test_log_times_of_any_sign_are_taken() -> None:
+    sink = TopicColumns(RawTopic("/topic", JOINTS, "ros2msg", definition_of(JOINTS)[0]), {"x": "position[0]"})
+    for log_time in (-8_330_100_865_958_439_936, 2**64 - 1, 5):
+        sink.add(log_time, joints(["a"], [1.0]))
+    assert sink.finish().logged.tolist() == [-8_330_100_865_958_439_936, -1, 5]

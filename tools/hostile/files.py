@@ -12,9 +12,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import h5py
 import numpy as np
+import pyarrow
+import pyarrow.parquet
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
+from scipy.io import savemat
 
 from eha_core.errors import EhaError
 from eha_core.parameters import load_parameters
@@ -125,12 +129,31 @@ def sound_files(folder: Path) -> dict[str, bytes]:
     time_s = np.arange(60) * 2e-3
     rows = "".join(f"{t:.4f},{np.sin(t):.6g},{np.cos(t):.6g},{1e6 + t:.6g}\n" for t in time_s)
     made["table.csv"] = f"time,voltage_command,position,pressure_a\n{rows}".encode()
+    made |= log_files(folder)
     return made
+
+
+def log_files(folder: Path) -> dict[str, bytes]:
+    """A small log file of each kind that other libraries read."""
+    time_s = np.arange(60) * 2e-3
+    columns = {"time": time_s, "voltage_command": np.sin(time_s), "position": np.cos(time_s)}
+    structure = {"Y": np.array([("x", time_s), ("u", time_s)], dtype=[("Name", object), ("Data", object)])}
+    savemat(folder / "log.mat", {**columns, "run": structure})
+    with h5py.File(folder / "log_73.mat", "w") as file:
+        for name, values in columns.items():
+            file.create_dataset(name, data=values.reshape(-1, 1), compression="gzip")
+    pyarrow.parquet.write_table(pyarrow.table(columns), folder / "log.parquet")
+    rows = "".join(f"\t{t:.4f}\t{np.cos(t):.6g}\n".replace(".", ",") for t in time_s)
+    tags = "LabVIEW Measurement\nSeparator\tTab\nDecimal_Separator\t,\nX_Columns\tNo\n***End_of_Header***\n"
+    tags += "Channels\t2\nX0\t0,0\t0,0\nDelta_X\t0,002\t0,002\n***End_of_Header***\ntime\tvoltage_command\tposition\n"
+    (folder / "log.lvm").write_text(tags + rows)
+    return {name: (folder / name).read_bytes() for name in ("log.mat", "log_73.mat", "log.parquet", "log.lvm")}
 
 
 READERS: dict[str, Callable[[Path], object]] = {
     "topics.yaml": load_topics_file, "parameters.yaml": load_parameters, "finished.mcap": read_recording,
     "unfinished.mcap": read_recording, "bag.db3": read_recording, "table.csv": read_recording,
+    "log.lvm": read_recording, "log.mat": read_recording, "log_73.mat": read_recording, "log.parquet": read_recording,
 }  # fmt: skip
 
 

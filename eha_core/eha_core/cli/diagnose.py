@@ -31,7 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         " the motion.",
     )
     add = parser.add_argument
-    add("recordings", nargs="+", type=Path, metavar="RECORDING", help=".mcap, rosbag2 folder, .db3 or .csv")
+    add("recordings", nargs="+", type=Path, metavar="RECORDING", help="a bag or a table: .mcap, .csv, .mat ...")
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
     add("--test", action="append", default=[], type=Path, metavar="FILE", help="a recording that is only predicted")

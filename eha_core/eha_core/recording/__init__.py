@@ -1,4 +1,4 @@
-"""Recordings: written crash-safe as MCAP, read from MCAP, rosbag2 folders and CSV into channels in SI units."""
+"""Recordings: written crash-safe as MCAP, read from MCAP, rosbag2 folders and tables into channels in SI units."""
 
 from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
 from eha_core.recording.mcap_file import is_finished

@@ -118,6 +118,8 @@ def _read_sqlite(path: Path, sinks: Sinks) -> RawRecording:
         with Reader(path) as reader:
             for connection in reader.connections:
                 definition = connection.msgdef
+                if not all(isinstance(text, str) for text in (connection.topic, connection.msgtype, definition.data)):
+                    raise ValueError("a topic has no name or no type")
                 encoding = f"ros2{definition.format.name.lower()}"
                 recording.topics[connection.topic] = RawTopic(
                     connection.topic, connection.msgtype, encoding, definition.data

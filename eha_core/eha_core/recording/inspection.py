@@ -119,7 +119,8 @@ def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
     if not len(numbers):
         return Field("", name, 0, nan, nan, nan, "")
     # Whole numbers are told apart as they are: ns since 1970 are more than a float holds.
-    steps = np.diff(values if values.dtype.kind == "i" else numbers).astype(np.float64)
+    with np.errstate(over="ignore"):
+        steps = np.diff(values if values.dtype.kind == "i" else numbers).astype(np.float64)
     step = float(np.median(steps)) if len(steps) and np.all(steps >= 0.0) and steps.any() else 0.0
     unit = table.units.get(name) or unit_of_name(name)
     return Field("", name, len(numbers), float(numbers.min()), float(numbers.max()), nan, unit, float(numbers[0]), step)

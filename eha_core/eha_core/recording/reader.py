@@ -108,7 +108,8 @@ def assemble(
         ordered[name], notes = in_model_units(f"{path}: {source}", name, rules[name], series, atmosphere)
         remarks += [f"{source}: {note}" for note in notes]
     if not ordered:
-        raise RecordingError(f"{path}: {_nothing_usable(raw, remarks)}; map what there is to channels in a topics file")
+        what_to_do = "map what there is to channels in a topics file, as `eha inspect` writes it"
+        raise RecordingError(f"{path}: {_nothing_usable(raw, remarks)}; {what_to_do}")
     start = min(int(series.stamps[0]) for series in ordered.values())
     duration = (max(int(series.stamps[-1]) for series in ordered.values()) - start) / 1e9
     return Recording(

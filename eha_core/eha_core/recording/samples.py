@@ -72,10 +72,11 @@ def on_one_span(
             continue
         stamps = recorded[name].stamps
         inside = (stamps >= start) & (stamps <= end)
-        if not inside.any():
+        again, _ = put_in_order(Samples(stamps[inside], recorded[name].values[inside]))
+        if not len(again.values):
             remarks.append(f"{name} was recorded at another time than {longest} and was left out")
             continue
-        kept[name], _ = put_in_order(Samples(stamps[inside], recorded[name].values[inside]))
+        kept[name] = again
         remarks.append(f"{name}: {np.count_nonzero(~inside)} samples of another time than {longest}'s were left out")
     return kept, tuple(remarks)
 

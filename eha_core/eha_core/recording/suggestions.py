@@ -27,6 +27,7 @@ _NAMES: dict[str, str] = {
     "flow_b": rf"{_FLOW}_?{_SECOND}|flow_out",
     "pressure_a": rf"(chamber_)?{_PRESSURE}_?(chamber_)?{_FIRST}|(chamber_)?{_FIRST}_{_PRESSURE}",
     "pressure_b": rf"(chamber_)?{_PRESSURE}_?(chamber_)?{_SECOND}|(chamber_)?{_SECOND}_{_PRESSURE}",
+    "pump_speed": r"n|rpm|speed_pump|pump_?(speed|rpm)|drehzahl|motor_?(speed|rpm)",
     "supply_pressure": rf"{_PRESSURE}_?(s|0|supply|sys|system|pump)|(supply|system|pump)_{_PRESSURE}",
     "position": r"x|pos|position|x_?piston|piston(_position)?|stroke|displacement|weg|hub|laser|lvdt",
     "velocity": r"v|vel|velocity|speed|x_?dot|dx|v_?piston|geschwindigkeit",
@@ -38,6 +39,7 @@ _WANTED = re.compile(r"(^|_)(ref|reference|des|desired|target|set|setpoint|soll|
 _USUAL = {
     "Pa": (2e5, 7e7), "m": (1e-3, 5.0), "m/s": (1e-3, 10.0), "V": (1e-3, 50.0), "A": (1e-4, 10.0), "N": (10.0, 1e7),
     "m^3/s": (1e-6, 2e-2),
+    "rad/s": (1.0, 2e3),
 }  # fmt: skip
 """Largest magnitudes of rigs, by SI unit; they order questions, and answer none."""
 _IN_PLACE = "is this to be the force of the oil on the piston, in place of both pressures?"

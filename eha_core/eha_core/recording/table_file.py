@@ -98,11 +98,12 @@ def stamps_of(where: str, times: Column, rule: ChannelRule, stated: str) -> tupl
     if times.dtype == np.int64 and scale == 1e-9 and rule.offset == 0.0:
         return times, remarks  # to the last ns, which a float cannot tell since 1970
     # The first time is set apart, or an epoch's digits would leave none for the steps.
-    start = round((float(times[0]) * scale + rule.offset) * 1e9)
-    since = (times - times[0]).astype(np.float64) * scale * 1e9
-    if abs(start) > FARTHEST or float(np.max(np.abs(since))) > FARTHEST:
+    first = float(times[0]) * scale + rule.offset
+    with np.errstate(over="ignore"):
+        since = (times - times[0]).astype(np.float64) * scale * 1e9
+    if not (abs(first) * 1e9 <= FARTHEST and float(np.max(np.abs(since))) <= FARTHEST):
         raise RecordingError(f"{where} is beyond any calendar; it must be in s, or say its `unit` in a topics file")
-    return start + np.round(since).astype(np.int64), remarks
+    return round(first * 1e9) + np.round(since).astype(np.int64), remarks
 
 
 def _scale(where: str, times: Column, stated: str) -> tuple[float, tuple[str, ...]]:
@@ -110,7 +111,8 @@ def _scale(where: str, times: Column, stated: str) -> tuple[float, tuple[str, ..
     if (unit := unit_named(stated)) and unit.si == "s":
         return unit.scale, () if unit.scale in (1.0, 1e-9) else (f"{where} was taken as {stated}, as the file says",)
     first = abs(float(times[0]))
-    steps = np.abs(np.diff(times.astype(np.float64)))
+    with np.errstate(over="ignore"):
+        steps = np.abs(np.diff(times.astype(np.float64)))
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
     if step < LONGEST_STEP or len(times) < FEWEST:
         return 1.0, ()

@@ -19,6 +19,7 @@ from eha_core.recording.recording import FloatArray
 Integers = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
 
+_ALL_BITS = 2**64 - 1
 BLOCK = 4096
 """Single messages that are held back until they are read together."""
 MOST_LAYOUTS = 32
@@ -139,7 +140,8 @@ class TopicColumns:
         times, payloads = zip(*self._pending, strict=True)
         self._pending = []
         lengths = np.array([len(payload) for payload in payloads], dtype=np.int64)
-        logged = np.array(times, dtype=np.uint64).astype(np.int64)
+        # SQLite's times are signed, MCAP's are not; of damaged ones either may be anything.
+        logged = np.array([time & _ALL_BITS for time in times], dtype=np.uint64).astype(np.int64)
         content = np.frombuffer(b"".join(payloads), np.uint8)
         self._read(content, np.cumsum(lengths) - lengths, lengths, logged)
 

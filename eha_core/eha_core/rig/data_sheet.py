@@ -35,7 +35,7 @@ DATA: tuple[Datum, ...] = (
     Datum("rated_voltage", "V", "command at which the valve is fully open", "10 V", 1e-6),
     Datum("rated_current", "A", "coil current at that command; unknown where electronics hide it", "40 mA", 1e-6),
     Datum("coil_inductance", "H", "inductance of the coil", "590 mH", 1e-6),
-    Datum("valve_frequency", "Hz", "frequency at which the valve lags its command by 90 degrees", "90 Hz", 1e-3),
+    Datum("valve_frequency", "rad/s", "frequency at which the valve lags its command by 90 degrees", "90 Hz", 1e-3),
     Datum("valve_damping", "", "damping ratio of the valve", "0.7", 1e-3),
     Datum("bore", "m", "diameter of the piston", "40 mm", 1e-4),
     Datum("rod", "m", "diameter of the rod on chamber B's side", "25 mm"),

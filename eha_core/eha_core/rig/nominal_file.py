@@ -9,27 +9,24 @@ from eha_core.rig.parameters import Entry
 
 _HEADING = f"""\
 # Nominal model of a rig, made by `eha init-rig`. SI units; pressures above atmosphere.
-# `{UNKNOWN}`: `eha diagnose` finds the value with no more than what rigs have to go by; a number narrows its search.
+# `{UNKNOWN}`: `eha diagnose` searches the value over the whole range of rigs; a number narrows the search.
 # What differs between recordings of this rig is listed so: per_recording: [supply_pressure]
 """
 
 
 def nominal_text(entries: Sequence[Entry], assume: bool = False) -> str:
     """The file's text; with `assume`, the catalogue's value, marked as assumed, in place of each unknown one."""
-    rows = [_row(entry, assume) for entry in entries]
-    width = max(len(row) for row, _ in rows)
-    lines = [f"    {row:{width}}  # {comment}" for row, comment in rows]
-    return "\n".join([f"{_HEADING}/**/eha_sim:", "  ros__parameters:", *lines]) + "\n"
+    lines = [line for entry in entries for line in _lines(entry, assume)]
+    return "\n".join([f"{_HEADING}/**/eha_sim:", "  ros__parameters:", *(f"    {line}" for line in lines)]) + "\n"
 
 
-def _row(entry: Entry, assume: bool) -> tuple[str, str]:
+def _lines(entry: Entry, assume: bool) -> tuple[str, str]:
     row = catalogue()[entry.name]
-    unit = row.unit if row.unit != "-" else "no unit"
     value, how = entry.value, entry.how
     if value is None and assume:
         value, how = row.nominal, f"assumed: the catalogue's ({row.source})"
+    comment = f"# {row.meaning} [{row.unit}]: {how}"
     if value is None:
-        return f"{entry.name}: {UNKNOWN}", f"{unit}; {row.meaning}: {how}"
-    # The value as ROS and YAML 1.1 read it, to six digits: data sheets have fewer.
-    text = dump_parameters({entry.name: float(f"{value:.6g}")}).splitlines()[-1].strip()
-    return text, f"{unit}; {row.meaning}: {how}"
+        return comment, f"{entry.name}: {UNKNOWN}"
+    # As ROS and YAML 1.1 read a number, to six digits: data sheets have fewer.
+    return comment, dump_parameters({entry.name: float(f"{value:.6g}")}).splitlines()[-1].strip()

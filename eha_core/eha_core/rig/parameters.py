@@ -48,15 +48,13 @@ def flow_gain(rated_flow: float, rated_pressure_drop: float, rated_current: floa
 def _valve(given: Mapping[str, float]) -> list[Entry]:
     voltage, current = given.get("rated_voltage"), given.get("rated_current")
     full = current or AMPERE_EQUIVALENT
-    by = "rated current" if current else "assumed; stands for full opening, as the valve's electronics hide its current"
-    frequency = given.get("valve_frequency")
-    natural = None if frequency is None else 2.0 * pi * frequency
+    by = "rated current" if current else "assumed to stand for full opening, as electronics hide the current"
     entries = [
         _entry("coil_resistance", None if voltage is None else voltage / full, "rated voltage over that current"),
         _entry("coil_inductance", given.get("coil_inductance"), "as given"),
         _entry("saturation_current", full, by),
         _entry("valve_damping_ratio", given.get("valve_damping"), "as given"),
-        _entry("valve_natural_frequency", natural, "2 pi times the frequency of 90 degrees lag"),
+        _entry("valve_natural_frequency", given.get("valve_frequency"), "2 pi times the frequency of 90 degrees lag"),
     ]
     flow, drop = given.get("rated_flow"), given.get("rated_pressure_drop")
     if (flow is None) != (drop is None):
@@ -74,7 +72,7 @@ def _cylinder(given: Mapping[str, float]) -> list[Entry]:
     area_a = None if bore is None else piston_area(bore, rod_a or 0.0)
     area_b = None if bore is None or rod is None else piston_area(bore, rod)
     ring = "pi / 4 (bore^2 - rod^2)"
-    on_a = f"{ring} on chamber A's side" if rod_a else "pi / 4 bore^2: no rod on chamber A's side"
+    on_a = f"{ring} on chamber A's side" if rod_a else "pi / 4 bore^2, no rod on chamber A's side"
     if rod_a is None:
         on_a += ", assumed"
     stroke = given.get("stroke")
@@ -94,10 +92,8 @@ def _line_volume(given: Mapping[str, float]) -> tuple[float | None, str]:
     if bore is None or not lengths:
         return dead, "as given; hoses left out" if dead is not None else ""
     volume = pi / 4.0 * bore**2 * sum(lengths) / len(lengths) + (dead or 0.0)
-    how = "pi / 4 hose bore^2 x length"
-    if len(set(lengths)) > 1:
-        how += ", mean of both hoses"
-    return volume, how + (" and the dead volume" if dead else ", without further dead volume: assumed")
+    how = f"pi / 4 hose bore^2 x {'mean length' if len(set(lengths)) > 1 else 'length'}"
+    return volume, how + (" and the dead volume" if dead else "; no dead volume beside, assumed")
 
 
 def _oil(given: Mapping[str, float]) -> list[Entry]:

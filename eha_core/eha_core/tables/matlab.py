@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import struct
 import warnings
-import zlib
 from collections.abc import Iterator, Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from eha_core.errors import RecordingError
+from eha_core.tables.mat5_elements import unpacked
 from eha_core.tables.optional import required
 from eha_core.tables.table import LARGEST, MOST_CELLS, MOST_COLUMNS, Column, Table, as_column, distinct
 
@@ -19,17 +19,9 @@ DEEPEST = 8
 """Levels of structures in structures; a logged Simulink data set has four."""
 MOST_ELEMENTS = 2**16
 """Elements of all structure and cell arrays; a recorder writes one for each signal."""
-UNPACKED = 2**31
-"""Bytes that the compressed variables of a version 5 file may unpack to; the format ends at that for one variable."""
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-_COMPRESSED = 15
 _LABELS = ("Name", "name", "label", "SignalName")
 _VALUES = ("Data", "data", "values", "Values")
-_BEYOND_READING = (
-    ValueError, TypeError, KeyError, IndexError, OSError, RuntimeError, OverflowError, MemoryError, AttributeError,
-    NotImplementedError, RecursionError, struct.error, zlib.error, AssertionError, UnicodeError,
-)  # fmt: skip
-"""What SciPy and h5py raise for damaged files."""
 
 
 def read_mat_table(path: Path) -> Table:
@@ -53,13 +45,16 @@ def read_mat_table(path: Path) -> Table:
     gathered = _Gathered(str(path))
     try:
         read(path, gathered)
-    except _BEYOND_READING as error:
+    except RecordingError:
+        raise
+    except Exception as error:  # a damaged byte leads SciPy and h5py to whatever Python can raise
         raise RecordingError(f"{path}: cannot be read as a MAT file ({error})") from error
     if not gathered.columns:
         raise RecordingError(f"{path}: holds no vector of numbers")
-    names, remarks = distinct([name for name, _ in gathered.columns])
+    names, doubled = distinct([name for name, _ in gathered.columns])
+    said = (*doubled, *gathered.remarks)
     columns = {name: values for name, (_, values) in zip(names, gathered.columns, strict=True)}
-    return Table("mat", columns, {n: unit for n, unit in gathered.units.items() if n in columns}, remarks)
+    return Table("mat", columns, {n: unit for n, unit in gathered.units.items() if n in columns}, said)
 
 
 class _Gathered:
@@ -68,6 +63,7 @@ class _Gathered:
     def __init__(self, where: str) -> None:
         self.columns: list[tuple[str, Column]] = []
         self.units: dict[str, str] = {}
+        self.remarks: list[str] = []
         self._where = where
         self._cells = 0
         self._elements = 0
@@ -104,35 +100,15 @@ class _Gathered:
 def _version_5(path: Path, gathered: _Gathered) -> None:
     from scipy.io import loadmat
 
-    _refuse_bombs(path)
+    content, left_out = unpacked(path.read_bytes())
+    if left_out:
+        gathered.remarks.append(f"{left_out} variables that are objects, tables, functions or sparse were left out")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        variables = loadmat(path, squeeze_me=True, struct_as_record=True, chars_as_strings=True)
+        variables = loadmat(BytesIO(content), squeeze_me=True, struct_as_record=True, chars_as_strings=True)
     for name, value in variables.items():
         if not name.startswith("__"):
             _walk_5(name, value, gathered, DEEPEST)
-
-
-def _refuse_bombs(path: Path) -> None:
-    """Raise RecordingError for a file whose compressed variables unpack to more than any recording does."""
-    left = UNPACKED
-    with path.open("rb") as file:
-        order = ">" if file.read(128)[126:128] == b"MI" else "<"
-        while len(tag := file.read(8)) == 8:
-            kind, size = struct.unpack(f"{order}II", tag)
-            if kind != _COMPRESSED:
-                file.seek(size, 1)
-                continue
-            unpacker = zlib.decompressobj()
-            for start in range(0, size, 2**16):
-                part = file.read(min(2**16, size - start))
-                while part and not unpacker.eof:
-                    left -= len(unpacker.decompress(part, 2**20))
-                    part = unpacker.unconsumed_tail
-                    if left < 0:
-                        raise RecordingError(
-                            f"{path}: unpacks to more than {UNPACKED / 1e9:.1f} GB; keep fewer variables"
-                        )
 
 
 def _walk_5(path: str, value: Any, gathered: _Gathered, levels: int) -> None:

@@ -6,6 +6,7 @@ import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import isfinite
 
 from eha_core.errors import RecordingError
 from eha_core.tables.table import MOST_COLUMNS
@@ -16,6 +17,8 @@ SPACES = " "
 _DELIMITERS = ("\t", ";", ",", SPACES)
 _LOOKED_AT = 40
 """Rows that decide how a table is written."""
+_LONGEST_SPACING = 3600.0
+"""s between samples; what states more has a damaged header."""
 _LABVIEW_END = "***End_of_Header***"
 _TRACE_NAMES, _TRACE_UNITS = "trace_names", ("unit", "units", "trace_units")
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]$")
@@ -172,7 +175,8 @@ def _labview(where: str, lines: Sequence[str]) -> Header:
     first_of = {tag: tags.get(tag, "").split(delimiter)[0].replace(",", ".") for tag in ("x0", "delta_x")}
     step = None
     if tags.get("x_columns", "").lower() == "no" and all(map(is_number, first_of.values())):
-        step = (float(first_of["x0"]), float(first_of["delta_x"]))
+        start, spacing = float(first_of["x0"]), float(first_of["delta_x"])
+        step = (start, spacing) if isfinite(start) and 0.0 < spacing < _LONGEST_SPACING else None
     units = dict(zip(names[1:], tags.get("y_unit_label", "").split(delimiter), strict=False))
     stated = {name: unit.strip() for name, unit in units.items() if unit.strip()}
     if tags.get("x_dimension", "").startswith("Time"):
