@@ -14,7 +14,7 @@ import numpy as np
 
 from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.problem import Linearised, Problem, linearise
+from eha_core.diagnosis.problem import Linearised, Problem, linearise, normal_equations
 from eha_core.diagnosis.shooting import STATE_SIZE
 
 BLOCK = 0.1
@@ -22,9 +22,11 @@ BLOCK = 0.1
 
 
 def with_residual(problem: Problem, result: Fit) -> Fit:
-    """The fit with its parameters' standard deviations widened where the residual says so."""
+    """The fit with its parameters' standard deviations where it ended, widened where the residual says so."""
     count = len(result.free)
-    pulls = _pulls(problem, result, linearise(problem, result.values, result.free, result.q, result.states))
+    linear = linearise(problem, result.values, result.free, result.q, result.states)
+    result = _where_it_ended(problem, result, linear)
+    pulls = _pulls(problem, result, linear)
     blocks = (problem.flat_times() / BLOCK).astype(np.int64)
     used, place = np.unique(blocks, return_inverse=True)
     summed = np.zeros((len(used), count))
@@ -34,6 +36,16 @@ def with_residual(problem: Problem, result: Fit) -> Fit:
     wider = np.ones(len(result.covariance))
     wider[:count] = np.maximum(1.0, observed / expected)
     return replace(result, covariance=result.covariance * np.outer(wider, wider[:count]))
+
+
+def at_its_end(problem: Problem, result: Fit) -> Fit:
+    """The fit with the covariance from the curvature where it ended; its own is that of the point before."""
+    return _where_it_ended(problem, result, linearise(problem, result.values, result.free, result.q, result.states))
+
+
+def _where_it_ended(problem: Problem, result: Fit, linear: Linearised) -> Fit:
+    normal, _ = normal_equations(problem, result.free, result.q, result.states, linear)
+    return replace(result, covariance=normal.covariance())
 
 
 def _pulls(problem: Problem, result: Fit, linear: Linearised) -> Array:

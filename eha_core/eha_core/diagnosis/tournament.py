@@ -161,7 +161,7 @@ def parameter_cost(count: int, left_over: float) -> float:
 
 
 def freedom_used(result: Fit) -> int:
-    """How many parameters a fit makes use of: one of an effect's that the recording shows to be next to nothing is none.
+    """How many parameters a fit makes use of: one of an effect's that is shown to be next to nothing is none.
 
     A deadband with sharp edges has no rounding to pay for; a shape that cannot be told is paid for all the same.
     """
