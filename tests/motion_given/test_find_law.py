@@ -63,6 +63,14 @@ def test_a_force_that_is_noise_has_no_law() -> None:
     assert find_law([motion(np.zeros_like(TIME), noise=5.0)]).ids == ()
 
 
+def test_a_detail_is_not_named_and_what_matters_is() -> None:
+    force = 150.0 * np.sign(V) + 900.0 * V
+    amplitude = np.std(X)
+    for share, expected in ((0.005, False), (0.05, True)):
+        law = find_law([motion(force + share * np.std(force) / amplitude * X)])
+        assert ("spring" in law.ids) == expected
+
+
 def test_a_law_predicts_a_motion_whose_force_it_has_not_seen() -> None:
     law = fit_law([motion(150.0 * np.sign(V) + 900.0 * V)], ["viscous_friction", "coulomb_friction"])
     unseen = motion(np.zeros_like(TIME), seed=8)
