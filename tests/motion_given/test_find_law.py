@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from benches import TIME, bouc_wen, motion, position, recording, velocity
@@ -50,6 +52,18 @@ def test_friction_grows_with_the_pressure() -> None:
     assert law.ids == ("coulomb_friction", "load_friction")
     assert held(law, "load_friction", "coefficient", 3e-4)
     assert held(law, "coulomb_friction", "force", 40.0, 0.03)
+
+
+def test_both_pressures_stand_in_for_the_force() -> None:
+    force = 150.0 * np.sign(V) + 900.0 * V
+    areas = (2e-3, 1.5e-3)
+    back = 2e6 + 3e5 * np.sin(2.0 * np.pi * 0.31 * TIME)
+    bench = recording(force, pressure_a=(force + areas[1] * back) / areas[0], pressure_b=back)
+    pushed = replace(bench, channels={name: one for name, one in bench.channels.items() if name != "force"})
+    np.testing.assert_allclose(motion_of(pushed, areas).force, force, atol=1e-6)
+    assert find_law([motion_of(pushed, areas)]).ids == ("viscous_friction", "coulomb_friction")
+    with pytest.raises(RecordingError, match="force or both pressures"):
+        motion_of(pushed)
 
 
 def test_mass_spring_and_load_are_told_from_friction() -> None:

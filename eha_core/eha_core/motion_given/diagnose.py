@@ -41,14 +41,19 @@ class Found:
 
 
 def diagnose_motion(
-    recordings: Sequence[Recording], progress: Callable[[str], None] = lambda _: None, tests: Sequence[Recording] = ()
+    recordings: Sequence[Recording],
+    progress: Callable[[str], None] = lambda _: None,
+    tests: Sequence[Recording] = (),
+    areas: tuple[float, float] | None = None,
 ) -> Found:
     """Find the law of recordings of one rig whose motion is given, and predict the force of the `tests`.
+
+    `areas` of chambers A and B [m^2] make a force of both pressures, where no force was recorded.
 
     Raises:
         RecordingError: a recording has no force or no motion.
     """
-    motions = tuple(motion_of(recording) for recording in recordings)
+    motions = tuple(motion_of(recording, areas) for recording in recordings)
     law = find_law(motions, progress)
     fits = ChannelFit(*_errors(motions, law), float(np.sqrt(np.mean([motion.noise**2 for motion in motions]))))
     effects = _effects(motions, law)
@@ -76,7 +81,7 @@ def diagnose_motion(
         alternatives=(),
         unknown=None,
         training={"force": fits},
-        held_out={"force": _predicted(motions, law, tuple(map(motion_of, tests)))} if tests else {},
+        held_out={"force": _predicted(motions, law, tuple(motion_of(test, areas) for test in tests))} if tests else {},
         next_experiment=None,
         rivals=(),
         whiteness={},
