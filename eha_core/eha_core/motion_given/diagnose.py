@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,9 +16,10 @@ from eha_core.diagnosis.result import (
     NamedEffect,
     Pictures,
 )
-from eha_core.motion_given.law import Law, Regression, Value, predict
+from eha_core.motion_given.law import Law, Regression, predict
 from eha_core.motion_given.motion import Array, Motion, motion_of
 from eha_core.motion_given.search import NOISE_REACHED, find_law, worth_of
+from eha_core.quantities import quantity
 from eha_core.recording import Recording
 
 NEAR_REVERSAL = 0.2
@@ -131,21 +132,16 @@ def _effects(motions: Sequence[Motion], law: Law) -> tuple[NamedEffect, ...]:
             equation=f"F = ... + {term.equation}",
             parameters={name: FittedValue(one.value, one.std, one.unit) for name, one in law.values[term.id].items()},
             evidence=worth[term.id],
-            statement=term.statement.format(**{name: _told(one) for name, one in law.values[term.id].items()}),
+            statement=term.statement.format(**_told(law.values[term.id])),
             kind=term.kind,
         )
         for term in law.terms
     )
 
 
-def _told(one: Value) -> str:
-    """A value with its unit, lengths and speeds in the one that suits them."""
-    if one.unit == "-":
-        return f"{one.value:.3g}"
-    if one.unit in ("m", "m/s"):
-        factor, prefix = (1e6, "µ") if abs(one.value) < 1e-3 else (1e3, "m")
-        return f"{factor * one.value:.3g} {prefix}{one.unit}"
-    return f"{one.value:.4g} {one.unit}"
+def _told(values: Mapping[str, Value]) -> dict[str, str]:
+    """Each value with its unit, as a sentence says it."""
+    return {name: quantity(one.value, one.unit, 4) for name, one in values.items()}
 
 
 def _left_over(motions: Sequence[Motion], law: Law) -> Location:
