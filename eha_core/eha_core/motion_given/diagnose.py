@@ -16,7 +16,7 @@ from eha_core.diagnosis.result import (
     NamedEffect,
     Pictures,
 )
-from eha_core.motion_given.law import Law, Regression, predict
+from eha_core.motion_given.law import Law, Regression, Value, predict
 from eha_core.motion_given.motion import Array, Motion, motion_of
 from eha_core.motion_given.search import NOISE_REACHED, find_law, worth_of
 from eha_core.quantities import quantity
