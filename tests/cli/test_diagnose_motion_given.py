@@ -54,10 +54,15 @@ def test_a_test_recording_is_predicted(bench: Path, tmp_path: Path) -> None:
 
 
 def test_a_model_sends_it_the_usual_way(bench: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Held against a plant it can be refused: here for a position in mm, which no stroke has room for."""
+    table = np.loadtxt(bench, delimiter=",", skiprows=1)
+    table[:, 1] *= 1e3
+    table = np.delete(table, 2, axis=1)
+    np.savetxt(bench, table, delimiter=",", header="time,position,force", comments="", fmt="%.9g")
     nominal = tmp_path / "nominal.yaml"
     nominal.write_text("eha_sim:\n  ros__parameters: {moving_mass: 2.0, damping_coefficient: 900.0}\n")
     words = ["diagnose", str(bench), "--nominal", str(nominal), "--json", str(tmp_path / "d.json"), "--jobs", "1"]
-    main(words)
-    assert "Motion given" not in capsys.readouterr().out
+    assert main(words) == 2
+    assert "in mm" in capsys.readouterr().err
     assert main([*words, "--motion-given"]) == 0
     assert "Motion given" in capsys.readouterr().out

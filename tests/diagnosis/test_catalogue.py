@@ -28,9 +28,11 @@ SIZES = {
 """Sizes other than typical where the test's motion, some 2 cm, asks for them."""
 
 RIGS = {
-    "entrained_air": {"supply_pressure": 4e6, "moving_mass": 150.0, "damping_coefficient": 600.0, "valve_gain": 4e-5}
+    "entrained_air": {"supply_pressure": 4e6, "moving_mass": 150.0, "damping_coefficient": 600.0, "valve_gain": 4e-5},
+    "load_friction": {"spring_stiffness": 2e5},
 }
-"""Air compresses away at high pressure: it is looked for where pressure is low and a heavy load makes it swing."""
+"""Air compresses away at high pressure: it is looked for where pressure is low and a heavy load makes it swing.
+Friction in proportion to a load that is viscous is more viscous friction: it is looked for under a spring."""
 
 STEPS = {"stribeck_friction": 5e-5, "presliding_friction": 1e-4}
 """s; break-away is a matter of tenths of a millisecond."""

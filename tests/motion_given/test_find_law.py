@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from benches import TIME, bouc_wen, motion, position, recording, velocity
@@ -52,6 +54,18 @@ def test_friction_grows_with_the_pressure() -> None:
     assert held(law, "coulomb_friction", "force", 40.0, 0.03)
 
 
+def test_both_pressures_stand_in_for_the_force() -> None:
+    force = 150.0 * np.sign(V) + 900.0 * V
+    areas = (2e-3, 1.5e-3)
+    back = 2e6 + 3e5 * np.sin(2.0 * np.pi * 0.31 * TIME)
+    bench = recording(force, pressure_a=(force + areas[1] * back) / areas[0], pressure_b=back)
+    pushed = replace(bench, channels={name: one for name, one in bench.channels.items() if name != "force"})
+    np.testing.assert_allclose(motion_of(pushed, areas).force, force, atol=1e-6)
+    assert find_law([motion_of(pushed, areas)]).ids == ("viscous_friction", "coulomb_friction")
+    with pytest.raises(RecordingError, match="force or both pressures"):
+        motion_of(pushed)
+
+
 def test_mass_spring_and_load_are_told_from_friction() -> None:
     law = find_law([motion(12.0 * ACCELERATION + 4000.0 * X + 90.0 + 500.0 * V)])
     assert set(law.ids) == {"moving_mass", "spring", "constant_load", "viscous_friction"}
@@ -61,6 +75,14 @@ def test_mass_spring_and_load_are_told_from_friction() -> None:
 
 def test_a_force_that_is_noise_has_no_law() -> None:
     assert find_law([motion(np.zeros_like(TIME), noise=5.0)]).ids == ()
+
+
+def test_a_detail_is_not_named_and_what_matters_is() -> None:
+    force = 150.0 * np.sign(V) + 900.0 * V
+    amplitude = np.std(X)
+    for share, expected in ((0.005, False), (0.05, True)):
+        law = find_law([motion(force + share * np.std(force) / amplitude * X)])
+        assert ("spring" in law.ids) == expected
 
 
 def test_a_law_predicts_a_motion_whose_force_it_has_not_seen() -> None:

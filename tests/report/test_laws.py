@@ -65,6 +65,7 @@ def test_points_come_from_the_data_and_not_from_the_fitted_law(friction: Diagnos
 @pytest.mark.parametrize(
     ("identifier", "values", "formula"),
     [
+        ("directional_damping", {"ratio": 0.4}, lambda v: 2000.0 * v * (1.0 + 0.4 * np.sign(v))),
         ("quadratic_damping", {"coefficient": 900.0}, lambda v: 900.0 * v * np.abs(v) + 2000.0 * v),
         (
             "presliding_friction",

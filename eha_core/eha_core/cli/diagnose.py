@@ -100,7 +100,9 @@ def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Record
     from eha_core.report.provenance import with_provenance
 
     tests = [read_recording(path, arguments.topics) for path in arguments.test]
-    found = diagnose_motion(recordings, _progress(), tests)
+    values = known_model(arguments.nominal, recordings[0]).values
+    areas = (values["piston_area"], values["piston_area_b"])
+    found = diagnose_motion(recordings, _progress(), tests, areas)
     found = replace(found, diagnosis=with_provenance(found.diagnosis, recordings, "none: the motion is given"))
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:

@@ -1,6 +1,7 @@
 """Dry friction of a seal that the oil presses against the bore: it grows with the pressure across the piston.
 
 Signature: at a reversal the pressure difference jumps by a share of itself; under little load the piston moves freely.
+Where the load is viscous alone it is more viscous friction, and is not seen.
 Equation: M_p x_p'' = ... - coefficient |P1 - P2| sign(v); at rest any force up to that height is balanced.
 Sign: a positive coefficient opposes motion.
 Validity: friction in proportion to the contact force (Coulomb); elastic seals follow a power of it, near 2/3.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,7 @@ from eha_core.diagnosis.result import (
 from eha_core.motion_given.law import Law, Regression, Value, predict
 from eha_core.motion_given.motion import Array, Motion, motion_of
 from eha_core.motion_given.search import NOISE_REACHED, find_law, worth_of
+from eha_core.quantities import quantity
 from eha_core.recording import Recording
 
 NEAR_REVERSAL = 0.2
@@ -41,14 +42,19 @@ class Found:
 
 
 def diagnose_motion(
-    recordings: Sequence[Recording], progress: Callable[[str], None] = lambda _: None, tests: Sequence[Recording] = ()
+    recordings: Sequence[Recording],
+    progress: Callable[[str], None] = lambda _: None,
+    tests: Sequence[Recording] = (),
+    areas: tuple[float, float] | None = None,
 ) -> Found:
     """Find the law of recordings of one rig whose motion is given, and predict the force of the `tests`.
+
+    `areas` of chambers A and B [m^2] make a force of both pressures, where no force was recorded.
 
     Raises:
         RecordingError: a recording has no force or no motion.
     """
-    motions = tuple(motion_of(recording) for recording in recordings)
+    motions = tuple(motion_of(recording, areas) for recording in recordings)
     law = find_law(motions, progress)
     fits = ChannelFit(*_errors(motions, law), float(np.sqrt(np.mean([motion.noise**2 for motion in motions]))))
     effects = _effects(motions, law)
@@ -76,7 +82,7 @@ def diagnose_motion(
         alternatives=(),
         unknown=None,
         training={"force": fits},
-        held_out={"force": _predicted(motions, law, tuple(map(motion_of, tests)))} if tests else {},
+        held_out={"force": _predicted(motions, law, tuple(motion_of(test, areas) for test in tests))} if tests else {},
         next_experiment=None,
         rivals=(),
         whiteness={},
@@ -126,21 +132,16 @@ def _effects(motions: Sequence[Motion], law: Law) -> tuple[NamedEffect, ...]:
             equation=f"F = ... + {term.equation}",
             parameters={name: FittedValue(one.value, one.std, one.unit) for name, one in law.values[term.id].items()},
             evidence=worth[term.id],
-            statement=term.statement.format(**{name: _told(one) for name, one in law.values[term.id].items()}),
+            statement=term.statement.format(**_told(law.values[term.id])),
             kind=term.kind,
         )
         for term in law.terms
     )
 
 
-def _told(one: Value) -> str:
-    """A value with its unit, lengths and speeds in the one that suits them."""
-    if one.unit == "-":
-        return f"{one.value:.3g}"
-    if one.unit in ("m", "m/s"):
-        factor, prefix = (1e6, "µ") if abs(one.value) < 1e-3 else (1e3, "m")
-        return f"{factor * one.value:.3g} {prefix}{one.unit}"
-    return f"{one.value:.4g} {one.unit}"
+def _told(values: Mapping[str, Value]) -> dict[str, str]:
+    """Each value with its unit, as a sentence says it."""
+    return {name: quantity(one.value, one.unit, 4) for name, one in values.items()}
 
 
 def _left_over(motions: Sequence[Motion], law: Law) -> Location:

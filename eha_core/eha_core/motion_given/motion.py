@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import ceil
 
@@ -26,6 +27,8 @@ FEWEST = 200
 QUIET = 0.003
 """Share of the largest speed that a differentiated position's noise may have: little beside the speeds at which
 friction laws differ (assumed)."""
+
+PRESSURES = ("pressure_a", "pressure_b")
 
 GAP = 5.0
 """Sampling intervals without a sample from which on what lies between is not used (assumed)."""
@@ -74,23 +77,32 @@ def is_motion_given(recording: Recording) -> bool:
     return "force" in channels and "position" in channels and not any(name in channels for name in DRIVERS)
 
 
-def motion_of(recording: Recording) -> Motion:
+def motion_of(recording: Recording, areas: tuple[float, float] | None = None) -> Motion:
     """The motion and the force of a recording.
+
+    Args:
+        recording: with position and force, or both pressures in the force's place.
+        areas: of chambers A and B [m^2], by which the pressures are a force.
 
     Raises:
         RecordingError: no position or no force, too few samples, or nothing moves.
     """
     where, channels = str(recording.path), recording.channels
+    pushed = "force" not in channels and areas is not None and all(name in channels for name in PRESSURES)
     missing = next((name for name in ("position", "force") if name not in channels), None)
-    if missing is not None:
-        raise RecordingError(f"{where}: no {missing} channel; a law of given motion needs position and force")
-    stamps = channels["force"].time
+    if missing == "position" or (missing == "force" and not pushed):
+        raise RecordingError(
+            f"{where}: no {missing} channel; a law of given motion needs position, and force or both pressures"
+        )
+    stamps = channels["pressure_a" if pushed else "force"].time
     if len(stamps) < FEWEST:
         raise RecordingError(f"{where}: {len(stamps)} samples of the force are too few; record {FEWEST} or more")
     step = float(np.median(np.diff(stamps)))
     time = np.arange(stamps[0], stamps[-1] + 0.5 * step, step)
     on_axis = {name: np.interp(time, one.time, one.values) for name, one in channels.items()}
     position = on_axis["position"]
+    if pushed and areas is not None:
+        on_axis["force"] = areas[0] * on_axis["pressure_a"] - areas[1] * on_axis["pressure_b"]
     noise = estimate_noise(channels["position"].values)
     if np.std(position) < 2.0 * noise:
         raise RecordingError(f"{where}: nothing moves: position spans {np.ptp(position):.3g} m, noise {noise:.3g} m")
@@ -104,12 +116,18 @@ def motion_of(recording: Recording) -> Motion:
         velocity=velocity,
         acceleration=_acceleration(velocity, step, quiet),
         force=on_axis["force"],
-        pressure=on_axis.get("pressure_a", on_axis.get("pressure_b")),
+        pressure=_pressure(on_axis),
         used=_near_a_sample(time, stamps, GAP * step),
         period=_period(velocity, step),
-        noise=estimate_noise(channels["force"].values),
+        noise=estimate_noise(on_axis["force"] if pushed else channels["force"].values),
         moving=4.0 * quiet,
     )
+
+
+def _pressure(on_axis: Mapping[str, Array]) -> Array | None:
+    """What presses a seal: the pressure across the piston, or the one chamber's that was measured."""
+    a, b = on_axis.get("pressure_a"), on_axis.get("pressure_b")
+    return a - b if a is not None and b is not None else a if b is None else b
 
 
 def _near_a_sample(time: Array, stamps: Array, reach: float) -> Flags:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib import import_module
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, FittedValue, NamedEffect
-from eha_core.effects import SITES
+from eha_core.effects import SITES, effects
 from eha_core.quantities import quantity, within
 from eha_core.report.claims import improvement, left_in_words
 from eha_core.report.stage import SURE
@@ -61,8 +61,9 @@ def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
     """The parameters that the recording tells from nothing: all but those whose interval holds a neutral zero.
 
     An edge that may be sharp is no finding. An effect of which no parameter is told keeps them all.
+    A term of a law of given motion that the catalogue does not have keeps them too.
     """
-    declared = import_module(f"eha_core.effects.{effect.id}").EFFECT.parameters
+    declared = next((one.parameters for one in effects() if one.id == effect.id), ())
     neutral = {row.name for row in declared if row.nominal == 0.0}
     told = {
         name: one

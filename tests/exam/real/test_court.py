@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,10 @@ import pytest
 
 from eha_core.cli import main
 from eha_core.errors import EhaError
-from eha_core.exam.real import Question, as_markdown, hold, pneumatic_seal
+from eha_core.exam.real import Question, as_markdown, hold, mr_damper, pneumatic_seal
 from eha_core.exam.real.sealing import seal
+from eha_core.motion_given.law import Law, Value
+from eha_core.motion_given.terms import TERMS, Term
 
 TIME = 10.0 * np.arange(3000)
 
@@ -50,6 +53,21 @@ def test_a_prediction_that_was_changed_is_not_opened(tmp_path: Path) -> None:
     np.save(sealed.path, np.zeros(3))
     with pytest.raises(EhaError, match="changed after it was sealed"):
         sealed.open()
+
+
+@pytest.mark.parametrize(("heights", "met"), [((100, 300, 500, 700, 900), True), ((100, 300, 290, 700, 900), False)])
+def test_dry_friction_has_to_grow_with_each_step_of_the_current(heights: tuple[int, ...], met: bool) -> None:
+    laws = {
+        current: Law((), (), (), 0.0, 0.0, {mr_damper.HYSTERETIC: {"force": Value(float(height), 5.0, "N")}})
+        for current, height in zip(mr_damper.CURRENTS, heights, strict=True)
+    }
+    named = {current: replace(law, terms=fit_terms()) for current, law in laws.items()}
+    assert mr_damper._growth(named).met == met
+    assert not mr_damper._growth({**named, "0A": laws["0A"]}).met
+
+
+def fit_terms() -> tuple[Term, ...]:
+    return tuple(term for term in TERMS if term.id == mr_damper.HYSTERETIC)
 
 
 def test_absent_rigs_are_skipped_in_a_line_each(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,14 @@ STEP = 1e-4  # s
 SETTLED = 4000
 """Most steps until an effect's own state has settled at a steady speed: 0.4 s."""
 
+
+class Beside(NamedTuple):
+    """What some effects act upon: the nominal damping [N s/m], and the pressure across the piston [Pa]."""
+
+    damping: float
+    pressure: float
+
+
 VELOCITY = Axis("velocity", "m/s")
 POSITION = Axis("position", "m")
 
@@ -27,12 +36,13 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     velocity, position = models.state("velocity"), models.state("position")
     if not len(velocity):
         return None
-    over_velocity = _hangs_on_velocity(effect, velocity, position)
+    beside = _beside(models)
+    over_velocity = _hangs_on_velocity(effect, velocity, position, beside)
     name, axis = ("damping_coefficient", VELOCITY) if over_velocity else ("spring_stiffness", POSITION)
     x = span_of(velocity if over_velocity else position)
 
     def evaluate(values: Mapping[str, float]) -> Array:
-        own = opposing(effect, values, *((0.0 * x, x) if over_velocity else (x, 0.0 * x)))
+        own = opposing(effect, values, *((0.0 * x, x) if over_velocity else (x, 0.0 * x)), beside)
         return own + models.fitted[name] * x
 
     y, low, high = band(effect, evaluate, SURE * models.deviation(name) * x)
@@ -43,24 +53,35 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     return Law(title, axis, Axis(what, "N"), x, y, low, high, nominal, *points)
 
 
-def _hangs_on_velocity(effect: NamedEffect, velocity: Array, position: Array) -> bool:
+def _beside(models: Models) -> Beside:
+    """The fitted damping, and the pressure that usually stands across the piston."""
+    a, b = models.state("pressure_a"), models.state("pressure_b")
+    pressure = float(np.median(np.abs(a - b))) if len(a) and len(a) == len(b) else 0.0
+    return Beside(models.fitted["damping_coefficient"], pressure)
+
+
+def _hangs_on_velocity(effect: NamedEffect, velocity: Array, position: Array, beside: Beside) -> bool:
     """Whether the effect changes more over the speeds that were reached than over the positions."""
     values = {name: one.value for name, one in effect.parameters.items()}
     v, x = span_of(velocity), span_of(position)
-    over_velocity = np.ptp(opposing(effect, values, 0.0 * v, v))
-    return bool(over_velocity >= np.ptp(opposing(effect, values, x, 0.0 * x)))
+    over_velocity = np.ptp(opposing(effect, values, 0.0 * v, v, beside))
+    return bool(over_velocity >= np.ptp(opposing(effect, values, x, 0.0 * x, beside)))
 
 
-def opposing(effect: NamedEffect, values: Mapping[str, float], position: Array, velocity: Array) -> Array:
-    """The force that an effect sets against motion at steady speeds [N]."""
+def opposing(
+    effect: NamedEffect, values: Mapping[str, float], position: Array, velocity: Array, beside: Beside
+) -> Array:
+    """The force that an effect sets against motion at steady speeds [N], beyond that of the nominal damping."""
     call, slots = contribution(effect)
     parameters = in_order(effect, values)
     found = np.empty(len(velocity))
     for place, (x, v) in enumerate(zip(position.tolist(), velocity.tolist(), strict=True)):
         memory, before = np.zeros(max(slots, 1)), np.inf
         for _ in range(SETTLED if slots else 1):
-            force, damping, _, dry = call(0.0, 0.0, 0.0, 0.0, x, v, 0.0, 0.0, memory, 0, STEP, *parameters)
-            now = -force + damping * v + dry * np.sign(v)
+            force, damping, _, dry = call(
+                0.0, beside.damping, 0.0, 0.0, x, v, beside.pressure, 0.0, memory, 0, STEP, *parameters
+            )  # fmt: skip
+            now = -force + (damping - beside.damping) * v + dry * np.sign(v)
             if abs(now - before) <= 1e-9 * abs(now):
                 break
             before = now
@@ -74,7 +95,7 @@ def _points(models: Models, effect: NamedEffect, over_velocity: bool) -> tuple[A
         return NOTHING, NOTHING
     x, v, a, b = models.modelled
     values = {name: one.value for name, one in effect.parameters.items()}
-    own = grid.average(_along(effect, values, x, v))
+    own = grid.average(_along(effect, values, x, v, _beside(models)))
     beyond = missing_force(grid, models.fitted, *models.on_grid(models.diagnosis.pictures.measured))
     beyond = beyond - missing_force(grid, models.fitted, x, a, b)
     name, state = ("damping_coefficient", v) if over_velocity else ("spring_stiffness", x)
@@ -84,12 +105,12 @@ def _points(models: Models, effect: NamedEffect, over_velocity: bool) -> tuple[A
     return across[kept], (own + beyond + models.fitted[name] * across)[kept]
 
 
-def _along(effect: NamedEffect, values: Mapping[str, float], position: Array, velocity: Array) -> Array:
+def _along(effect: NamedEffect, values: Mapping[str, float], position: Array, velocity: Array, beside: Beside) -> Array:
     """The effect's force along a motion, read off its curve: what its own state lags behind stays in the residual."""
     if np.ptp(velocity) == 0.0 or not contribution(effect)[1]:
-        return opposing(effect, values, position, velocity)
+        return opposing(effect, values, position, velocity, beside)
     table = span_of(velocity)
-    return np.interp(velocity, table, opposing(effect, values, 0.0 * table, table))
+    return np.interp(velocity, table, opposing(effect, values, 0.0 * table, table, beside))
 
 
 def missing_force(grid: Bumps, values: Mapping[str, float], x: Array, a: Array, b: Array) -> Array:
