@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise, has_changed, identifiable
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEFT_IN_A_CHANNEL
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, tested_recordings
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
@@ -28,7 +28,6 @@ from eha_core.diagnosis.result import (
     ChannelFit,
     Diagnosis,
     Experiment,
-    Explained,
     FittedParameter,
     FittedValue,
     Location,
@@ -38,12 +37,12 @@ from eha_core.diagnosis.result import (
 )
 from eha_core.diagnosis.search.prune import wald
 from eha_core.diagnosis.shooting import Shooting
+from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.together import cut_together, facts_alone
 from eha_core.diagnosis.tournament import Entry
 from eha_core.diagnosis.validate import channel_rmse, instants_of, judge, split
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import SITES, Effect
-from eha_core.effects import effects as every_effect
 from eha_core.plant import Composition
 from eha_core.recording import Recording
 
@@ -84,7 +83,7 @@ def conclude(
         remarks=_remarks(evidence),
         damaged=next((one.damaged for one in recordings if one.damaged), None),
         verdict=decision.verdict,
-        summary=_summary(decision, effects, unknown, left),
+        summary=summary(decision, effects, unknown, left),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
         parameters=_parameters(final, evidence.nominal, composition),
         effects=effects,
@@ -155,9 +154,7 @@ def _remarks(evidence: Evidence) -> tuple[str, ...]:
     return tuple(f"{one.path}: {remark}" for one in evidence.observations for remark in one.remarks)
 
 
-def _parameters(
-    final: Fit, nominal: Mapping[str, float], composition: Composition
-) -> tuple[FittedParameter, ...]:
+def _parameters(final: Fit, nominal: Mapping[str, float], composition: Composition) -> tuple[FittedParameter, ...]:
     rows = composition.place_rows
     found = []
     for one in final.free:
@@ -256,42 +253,6 @@ def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, 
     statement = f"{law.r_squared:.0%} of what is missing {SITES[law.site].words} is a law over {law.function_of}"
     others = (one for one in location if one.site != law.site)
     return (Location(law.site, law.r_squared, where, when, statement), *others)
-
-
-def _summary(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None, left: Explained) -> str:
-    """What was found in words; first what it leaves, where that is more than noise."""
-    said = _found_in_words(decision, effects, unknown)
-    if left.complete or not effects:
-        return said
-    most = max(left.times_noise, key=lambda name: left.times_noise[name])
-    many = "One effect explains" if len(effects) == 1 else f"{len(effects)} effects explain"
-    rest = (
-        f"what is left is {left.times_noise[most]:.3g} times the noise, most in {most.replace('_', ' ')}"
-        if left.times_noise[most] >= LEFT_IN_A_CHANNEL
-        else "what is left is small, but no noise"
-    )
-    return f"{many} {100.0 * left.share:.3g} % of the mismatch; {rest}, so more is missing. {said}"
-
-
-def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None) -> str:
-    if decision.verdict == "consistent":
-        return "The nominal model explains the recording down to its noise; nothing is missing."
-    if decision.verdict == "parameters":
-        return "No physics is missing: parameter values differ from the nominal ones."
-    if decision.verdict == "unknown_physics":
-        return _summary_of_unknown(unknown)
-    named = "; and ".join(effect.statement for effect in effects)
-    if decision.verdict == "ambiguous":
-        others = ", ".join(" + ".join(entry.ids) for entry, _ in decision.rivals)
-        return f"Physics is missing, most likely: {named}. This recording cannot tell it from {others}."
-    return f"Physics is missing: {named}."
-
-
-def _summary_of_unknown(law: UnknownLaw | None) -> str:
-    if law is None:
-        return "Something is missing that the catalogue does not name, and no law over the measured states explains it."
-    statement = next(effect.statement for effect in every_effect() if effect.site == law.site and not effect.named)
-    return f"Something is missing: {statement}, as a function of {law.function_of}."
 
 
 def _changed_values(final: Fit, composition: Composition) -> dict[str, float]:

@@ -211,9 +211,7 @@ def _choose_drive(
     )
 
 
-def _given_by(
-    where: str, channels: Mapping[str, Channel], source: Source
-) -> tuple[str, tuple[str, ...], list[str]]:
+def _given_by(where: str, channels: Mapping[str, Channel], source: Source) -> tuple[str, tuple[str, ...], list[str]]:
     """The channels of a source that no voltage drives."""
     missing = next((name for name in source.inputs if name not in channels), None)
     if missing is not None:

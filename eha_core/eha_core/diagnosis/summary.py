@@ -1,0 +1,63 @@
+"""What a diagnosis found, in words: the summary that the terminal, the report and diagnosis.json begin with."""
+
+from __future__ import annotations
+
+from eha_core.diagnosis.criteria import LEFT_IN_A_CHANNEL
+from eha_core.diagnosis.result import Explained, NamedEffect, UnknownLaw
+from eha_core.diagnosis.verdict import Decision
+from eha_core.effects import effects as every_effect
+
+
+def summary(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None, left: Explained) -> str:
+    """What was found in words; first what it leaves, where that is more than noise."""
+    said = _found_in_words(decision, effects, unknown)
+    if left.complete or not effects:
+        return said
+    most = max(left.times_noise, key=lambda name: left.times_noise[name])
+    many = "One effect explains" if len(effects) == 1 else f"{len(effects)} effects explain"
+    rest = (
+        f"what is left is {left.times_noise[most]:.3g} times the noise, most in {most.replace('_', ' ')}"
+        if left.times_noise[most] >= LEFT_IN_A_CHANNEL
+        else "what is left is small, but no noise"
+    )
+    return f"{many} {100.0 * left.share:.3g} % of the mismatch; {rest}, so more is missing. {said}"
+
+
+def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None) -> str:
+    if decision.verdict == "consistent":
+        return "The nominal model explains the recording down to its noise; nothing is missing."
+    if decision.verdict == "parameters":
+        return "No physics is missing: parameter values differ from the nominal ones."
+    if decision.verdict == "unknown_physics":
+        return _summary_of_unknown(unknown)
+    named = "; and ".join(effect.statement for effect in effects)
+    kind = kind_alone(decision)
+    if decision.verdict == "ambiguous" and kind:
+        forms = " and ".join(" + ".join(ids) for ids in (decision.winner.ids, *(one.ids for one, _ in decision.rivals)))
+        return (
+            f"Physics is missing: {kind}; most simply, {named}. Its law cannot be told from this recording:"
+            f" {forms} explain it alike."
+        )
+    if decision.verdict == "ambiguous":
+        others = ", ".join(" + ".join(entry.ids) for entry, _ in decision.rivals)
+        return f"Physics is missing, most likely: {named}. This recording cannot tell it from {others}."
+    return f"Physics is missing: {named}."
+
+
+def kind_alone(decision: Decision) -> str:
+    """The kind of law, if the winner and all its rivals are the same but for the form of one law; else nothing."""
+    kinds = set()
+    for entry, _ in decision.rivals:
+        own, other = (set(one.hypothesis.members) for one in (decision.winner, entry))
+        differing = [*(own - other), *(other - own)]
+        if len(differing) != 2 or differing[0].effect.kind != differing[1].effect.kind:
+            return ""
+        kinds.add(differing[0].effect.kind)
+    return kinds.pop() if len(kinds) == 1 else ""
+
+
+def _summary_of_unknown(law: UnknownLaw | None) -> str:
+    if law is None:
+        return "Something is missing that the catalogue does not name, and no law over the measured states explains it."
+    statement = next(effect.statement for effect in every_effect() if effect.site == law.site and not effect.named)
+    return f"Something is missing: {statement}, as a function of {law.function_of}."
