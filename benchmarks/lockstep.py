@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.row import Row
-from eha_core.diagnosis.freedom import nominal_freedom
-from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.problem import STATE_STEP, Point, changes, whole
-from eha_core.diagnosis.shooting import Shooting, cut
 from eha_core.effects import Effect, effects
+from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.observation import observe
+from eha_core.identification.problem import STATE_STEP, Point, changes, whole
+from eha_core.identification.segments import cut
+from eha_core.identification.shooting import Shooting
 from eha_core.parameters import changed, nominal_values
 from eha_core.plant import SEEN, simulate_many
 from eha_core.plant.composite import compiled_step

@@ -11,7 +11,7 @@ from scipy.linalg import cho_factor, cho_solve
 from threadpoolctl import threadpool_limits
 
 from benchmarks.row import Row
-from eha_core.diagnosis.normal_matrix import NormalMatrix
+from eha_core.identification.normal_matrix import NormalMatrix
 
 WINDOWS = (12, 50, 100, 200, 400)  # a second each
 PARAMETERS, STATES = 12, 4

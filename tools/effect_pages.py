@@ -8,8 +8,8 @@ from io import BytesIO
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array
 from eha_core.effects import SITES, Effect, effects
+from eha_core.identification.numbers import Array
 from eha_core.plant import Plant, Trajectory
 from eha_core.report.figures import drawn
 from eha_core.report.picture import Dots, Group, Line, Panel, Picture

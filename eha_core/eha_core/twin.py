@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.deviation import CHANNELS, EQUATIONS, equation_residuals
-from eha_core.diagnosis.noise import residual_noise
+from eha_core.identification.noise import residual_noise
 from eha_core.plant import Plant, Trajectory
 from eha_core.realtime import NANOSECONDS
 

@@ -6,7 +6,7 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis import diagnose_together
-from eha_core.diagnosis.freedom import NOMINAL_TRUST, nominal_freedom
+from eha_core.identification.freedom import NOMINAL_TRUST, nominal_freedom
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 

@@ -3,7 +3,7 @@
 from made import recorded
 
 from eha_core.diagnosis.calibrate import UNNOTICED, calibrate, calibrate_finely_enough, step_error
-from eha_core.diagnosis.observation import observe
+from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 

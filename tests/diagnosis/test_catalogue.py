@@ -7,11 +7,11 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates, starts
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.refine import attempts, settle, try_effect
 from eha_core.diagnosis.screen import screen
 from eha_core.diagnosis.tournament import ENOUGH, REFINED
 from eha_core.effects import effects
+from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from eha_core.diagnosis.experiment import propose
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.freedom import nominal_freedom
+from eha_core.identification.fit import Fit
+from eha_core.identification.freedom import nominal_freedom
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant
 from eha_core.signals import make_signal

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from test_experiment import explanation
 
-from eha_core.diagnosis.freedom import effect_freedom
+from eha_core.diagnosis.effect_freedom import effect_freedom
 from eha_core.diagnosis.tournament import freedom_used
 from eha_core.effects import effects
 

@@ -8,12 +8,12 @@ from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.conclude import polish
-from eha_core.diagnosis.fit import fit
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.ladder import correlation, ladder
-from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.search.candidates import Candidate, with_effects
 from eha_core.effects import effects
+from eha_core.identification.fit import fit
+from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 

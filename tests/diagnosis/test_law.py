@@ -7,12 +7,12 @@ import pytest
 from made import recorded
 
 from eha_core.curve import KNOTS
-from eha_core.diagnosis.balance import Balance, balances, bumps, continuity_balance, force_balance
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.law import express, weak_law
-from eha_core.diagnosis.observation import Measured, observe
+from eha_core.identification.observation import Measured, observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
+from eha_core.weak_form.balance import Balance, balances, bumps, continuity_balance, force_balance
 
 AREA, MASS, DAMPING = 645e-6, 9.0, 2000.0
 DURATION, STEP = 16.0, 1e-3

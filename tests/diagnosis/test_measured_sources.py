@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import eha_core as eha
-from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.shooting import cut
 from eha_core.errors import ParameterError, RecordingError
 from eha_core.exam.truth import simulate_truth
+from eha_core.identification.observation import observe
+from eha_core.identification.segments import cut
 from eha_core.nominal import nominal_of
 from eha_core.plant import Plant, compose, dump_plant, load_plant
 

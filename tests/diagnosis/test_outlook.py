@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from test_experiment import explanation
 
-from eha_core.diagnosis.freedom import nominal_freedom
 from eha_core.diagnosis.outlook import STEP, separation
+from eha_core.identification.freedom import nominal_freedom
 from eha_core.parameters import nominal_values
 
 NOISE = {"position": 1e-5, "pressure_a": 1e4, "pressure_b": 1e4}

@@ -4,12 +4,12 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.fit import fit
-from eha_core.diagnosis.freedom import effect_freedom
+from eha_core.diagnosis.effect_freedom import effect_freedom
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.refine import as_given, settle
 from eha_core.effects import effects
+from eha_core.identification.fit import fit
+from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 

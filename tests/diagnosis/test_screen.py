@@ -6,12 +6,12 @@ from made import recorded
 
 from eha_core.diagnosis import screen
 from eha_core.diagnosis.facts import gather
-from eha_core.diagnosis.fit import fit
-from eha_core.diagnosis.freedom import nominal_freedom
 from eha_core.diagnosis.hypotheses import candidates, starts
-from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.problem import whole
-from eha_core.diagnosis.shooting import cut
+from eha_core.identification.fit import fit
+from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.observation import observe
+from eha_core.identification.problem import whole
+from eha_core.identification.segments import cut
 from eha_core.parameters import nominal_values
 
 

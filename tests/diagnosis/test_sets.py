@@ -9,16 +9,16 @@ from made import recorded
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
-from eha_core.diagnosis.fit import fit
 from eha_core.diagnosis.hypotheses import candidates
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.observation import observe
 from eha_core.diagnosis.search.candidates import Guess, Search, with_effects
 from eha_core.diagnosis.search.prune import asked_of, prune, refit_without, wald
 from eha_core.diagnosis.verdict import coherence
 from eha_core.effects import effects
 from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case
+from eha_core.identification.fit import fit
+from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording

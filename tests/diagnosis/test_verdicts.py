@@ -9,9 +9,9 @@ from made import recorded
 
 from eha_core.cli import main
 from eha_core.diagnosis import diagnose
-from eha_core.diagnosis.observation import observe, reaching
 from eha_core.exam.cases import draw_case
 from eha_core.exam.measuring import measure, simulate_case
+from eha_core.identification.observation import observe, reaching
 from eha_core.nominal import NominalModel
 from eha_core.parameters import load_parameters, nominal_values
 from eha_core.recording import Channel, Recording

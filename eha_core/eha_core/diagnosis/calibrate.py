@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.fit import WORTH, Fit, fit, fit_in_stages, with_noise
-from eha_core.diagnosis.freedom import nominal_freedom
-from eha_core.diagnosis.noise import residual_noise
-from eha_core.diagnosis.observation import RESOLVED, SHORTEST, Observation, without_end
-from eha_core.diagnosis.per_recording import base_name
-from eha_core.diagnosis.problem import Problem, whole
-from eha_core.diagnosis.shooting import Shooting
-from eha_core.diagnosis.together import cut_together, fit_alone, recording_alone
+from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
+from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.noise import residual_noise
+from eha_core.identification.observation import RESOLVED, SHORTEST, Observation, without_end
+from eha_core.identification.per_recording import base_name
+from eha_core.identification.problem import Problem, whole
+from eha_core.identification.shooting import Shooting
+from eha_core.identification.together import cut_together, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
 
 STEPS = (2e-4, 1e-4, 5e-5)

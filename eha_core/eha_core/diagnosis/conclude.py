@@ -13,16 +13,12 @@ from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, t
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
 from eha_core.diagnosis.explained import explained, predictions
-from eha_core.diagnosis.fit import Fit, fit, with_noise
-from eha_core.diagnosis.intervals import with_residual
+from eha_core.diagnosis.facts import facts_alone
 from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.locate import stated
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.outlook import RATE
-from eha_core.diagnosis.per_recording import base_name, is_one_of
-from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.result import (
     Alternative,
     ChannelFit,
@@ -36,13 +32,18 @@ from eha_core.diagnosis.result import (
     UnknownLaw,
 )
 from eha_core.diagnosis.search.prune import wald
-from eha_core.diagnosis.shooting import Shooting
 from eha_core.diagnosis.summary import summary
-from eha_core.diagnosis.together import cut_together, facts_alone
 from eha_core.diagnosis.tournament import Entry
-from eha_core.diagnosis.validate import channel_rmse, instants_of, judge, split
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import SITES, Effect
+from eha_core.identification.fit import Fit, fit, with_noise
+from eha_core.identification.intervals import with_residual
+from eha_core.identification.numbers import Array
+from eha_core.identification.per_recording import base_name, is_one_of
+from eha_core.identification.problem import Problem
+from eha_core.identification.shooting import Shooting
+from eha_core.identification.together import cut_together
+from eha_core.identification.validate import channel_rmse, instants_of, judge, split
 from eha_core.plant import Composition
 from eha_core.recording import Recording
 

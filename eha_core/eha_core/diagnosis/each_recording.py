@@ -8,11 +8,11 @@ import numpy as np
 
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.explained import predictions
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.per_recording import base_name, named, values_of
 from eha_core.diagnosis.result import ChannelFit, RecordingFit, TestedRecording
-from eha_core.diagnosis.together import check_alike
+from eha_core.identification.fit import Fit
+from eha_core.identification.observation import observe
+from eha_core.identification.per_recording import base_name, named, values_of
+from eha_core.identification.together import check_alike
 from eha_core.recording import Recording
 
 

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.balance import Balance
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.observation import Observation
 from eha_core.diagnosis.result import Location
-from eha_core.diagnosis.shooting import Shooting
-from eha_core.diagnosis.together import fit_alone, recording_alone
 from eha_core.diagnosis.tournament import Tournament
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
+from eha_core.identification.fit import Fit
+from eha_core.identification.observation import Observation
+from eha_core.identification.shooting import Shooting
+from eha_core.identification.together import fit_alone, recording_alone
+from eha_core.weak_form.balance import Balance
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.outlook import STEP, separation
 from eha_core.diagnosis.result import Experiment
+from eha_core.identification.fit import Fit
+from eha_core.identification.numbers import Array
 from eha_core.signals import make_signal
 
 DURATIONS = (10.0, 20.0, 40.0, 60.0)

@@ -8,12 +8,12 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import COHERENT, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.evidence import Evidence
-from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.locate import whereabouts
-from eha_core.diagnosis.observation import Observation
 from eha_core.diagnosis.result import Explained, Location, Prediction
-from eha_core.diagnosis.shooting import cut
 from eha_core.diagnosis.verdict import coherence
+from eha_core.identification.fit import Fit
+from eha_core.identification.observation import Observation
+from eha_core.identification.segments import cut
 
 AHEAD = (0.25, 1.0)
 """s; how far the model is run on from measured states."""

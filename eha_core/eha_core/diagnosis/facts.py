@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.observation import WITH_OIL, Observation
-from eha_core.diagnosis.shooting import Shooting, smooth
+from eha_core.identification.fit import Fit
+from eha_core.identification.numbers import Array
+from eha_core.identification.observation import WITH_OIL, Observation
+from eha_core.identification.segments import smooth
+from eha_core.identification.shooting import Shooting
 from eha_core.plant import COLUMNS
 
 SCALES = ("position", "time", "speed", "force", "spool", "pressure", "supply_flow", "leakage_flow")
@@ -57,3 +58,12 @@ def gather(observations: Sequence[Observation], shooting: Shooting, calibrated: 
         drive = calibrated.values["piston_area"] * (shooting.inputs[0] - shooting.inputs[1])
         scales["force"] = (0.0, float(np.std(drive)))
     return Facts(scales, rows)
+
+
+def facts_alone(shooting: Shooting, facts: Facts, number: int) -> Facts:
+    """The facts with the calibrated model's states in one recording only."""
+    if not len(facts.rows) or len(shooting.first_windows) == 1:
+        return facts
+    windows = shooting.recordings[number - 1]
+    begin, end = (int(shooting.edges[window]) // shooting.every for window in (windows.start, windows.stop))
+    return replace(facts, rows=facts.rows[begin:end])

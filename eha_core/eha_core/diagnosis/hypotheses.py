@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import product
 
 from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.observation import Observation
 from eha_core.effects import Effect
+from eha_core.identification.observation import Observation
 
 SITES_OF_DRIVE = {
     "voltage": ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),

@@ -12,10 +12,10 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise
 from eha_core.diagnosis.evidence import Evidence
-from eha_core.diagnosis.fit import Fit, fit
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.result import NOMINAL, RECALIBRATED, Correlation, Residual, Step
 from eha_core.diagnosis.search.candidates import Candidate, without_effect
+from eha_core.identification.fit import Fit, fit
 
 REFITTED = 8
 """Iterations of a fit without a member."""

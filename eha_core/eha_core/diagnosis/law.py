@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from eha_core.curve import KNOTS
-from eha_core.diagnosis.balance import Balance
-from eha_core.diagnosis.library import best_wave, powers, searched
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import UnknownLaw
-from eha_core.diagnosis.terms import Sighting, Sum, Term, fewest
+from eha_core.identification.numbers import Array
+from eha_core.weak_form.balance import Balance
+from eha_core.weak_form.library import best_wave, powers, searched
+from eha_core.weak_form.terms import Sighting, Sum, Term, fewest
 
 SIMPLE = 0.95
 """R^2 that an expression has to reach."""

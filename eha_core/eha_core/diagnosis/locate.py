@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.balance import Balance
-from eha_core.diagnosis.calibrate import Calibration
-from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.result import Location
-from eha_core.diagnosis.shooting import Shooting
-from eha_core.diagnosis.together import facts_alone, fit_alone, recording_alone
-from eha_core.diagnosis.tournament import Tournament
+from eha_core.diagnosis.facts import Facts, facts_alone
 from eha_core.effects import SITES
+from eha_core.identification.fit import Fit
+from eha_core.identification.numbers import Array
+from eha_core.identification.shooting import Shooting
+from eha_core.identification.together import fit_alone, recording_alone
 
 SLICE = 0.25
 """s; resolution in time of "when"."""
@@ -34,31 +29,6 @@ class Region:
     energy_share: float
 
 
-def locate(
-    calibration: Calibration,
-    nominal: Fit,
-    facts: Facts,
-    tournament: Tournament,
-    equations: Sequence[Balance],
-    recording: int = 1,
-) -> tuple[Location, ...]:
-    """The sites by the share of the unexplained chi^2 that their best hypothesis takes away, the largest first.
-
-    Where in state space and when is told of one `recording`, counted from one.
-    """
-    shooting = calibration.shooting
-    unexplained = max(nominal.objective - nominal.count, 1.0)
-    gains = _site_gains(tournament, equations)
-    where, when = whereabouts(shooting, nominal, facts, recording)
-    found: list[Location] = []
-    for site, gain in sorted(gains.items(), key=lambda item: -item[1])[:4]:
-        share = float(np.clip(gain / unexplained, 0.0, 1.0))
-        if share < 0.01 and found:
-            continue
-        found.append(Location(site, share, where, when, stated(site, share, where, when)))
-    return tuple(found)
-
-
 def whereabouts(
     shooting: Shooting, result: Fit, facts: Facts, recording: int = 1
 ) -> tuple[str, tuple[tuple[float, float], ...]]:
@@ -71,24 +41,6 @@ def stated(site: str, share: float, where: str, when: tuple[tuple[float, float],
     """A location in words."""
     place = f"{SITES[site].words}, {where}{_times(when)}"
     return f"{share:.0%} of what the calibrated model leaves unexplained sits {place}"
-
-
-def _site_gains(tournament: Tournament, equations: Sequence[Balance]) -> dict[str, float]:
-    """The refitted gain of each site's best hypothesis, or else the promised one, which never counts as much."""
-    gains: dict[str, float] = {}
-    nominal = tournament.nominal.fit
-    refitted: dict[str, float] = {}
-    for entry in tournament.entries:  # an effect may be among them twice: acting always, and for a while
-        if len(entry.ids) == 1:
-            gain = nominal.objective - entry.fit.objective
-            refitted[entry.ids[0]] = max(gain, refitted.get(entry.ids[0], gain))
-    most = max([0.0, *refitted.values()])
-    for promise in tournament.promises:
-        effect = promise.start.effect
-        gain = refitted.get(effect.id, min(promise.gain, 0.5 * most))
-        if gain > gains.get(effect.site, 0.0):
-            gains[effect.site] = gain
-    return gains
 
 
 def _energy(shooting: Shooting, result: Fit) -> tuple[Array, Array]:

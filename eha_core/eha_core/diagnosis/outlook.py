@@ -9,11 +9,11 @@ from itertools import permutations
 
 import numpy as np
 
-from eha_core.diagnosis.fit import SETTLED, Fit
-from eha_core.diagnosis.freedom import Free
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.per_recording import is_one_of
 from eha_core.diagnosis.refine import NOMINAL_NAMES
+from eha_core.identification.fit import SETTLED, Fit
+from eha_core.identification.freedom import Free
+from eha_core.identification.numbers import Array
+from eha_core.identification.per_recording import is_one_of
 from eha_core.plant import COLUMNS, Plant
 
 STEP = 2e-4

@@ -14,15 +14,15 @@ from math import log
 
 import numpy as np
 
-from eha_core.diagnosis.fit import Fit, fit, fit_in_stages, refit_states
-from eha_core.diagnosis.freedom import effect_freedom, span_freedom
+from eha_core.diagnosis.effect_freedom import effect_freedom, span_freedom
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.parallel import each
-from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.refine import OUT_OF_REACH, Found, Progress, cross, settle
 from eha_core.diagnosis.screen import Promise, scaled, screen_spells
+from eha_core.identification.fit import Fit, fit, fit_in_stages, refit_states
+from eha_core.identification.numbers import Array
+from eha_core.identification.parallel import each
+from eha_core.identification.problem import Problem
 from eha_core.parameters import ACTING
 
 OUTSTANDING = 1.5

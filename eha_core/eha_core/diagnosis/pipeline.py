@@ -7,24 +7,24 @@ from dataclasses import replace
 
 from threadpoolctl import threadpool_limits
 
-from eha_core.diagnosis.balance import balances, least
+from eha_core.diagnosis.attribution import attribute
 from eha_core.diagnosis.calibrate import calibrate_but_for_the_ends
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.criteria import chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
-from eha_core.diagnosis.locate import locate
-from eha_core.diagnosis.observation import observe, reaching
-from eha_core.diagnosis.parallel import side_by_side
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.sets import with_sets
-from eha_core.diagnosis.together import check_alike, fit_alone, recording_alone
 from eha_core.diagnosis.tournament import compete, from_every_start
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
+from eha_core.identification.observation import observe, reaching
+from eha_core.identification.parallel import side_by_side
+from eha_core.identification.together import check_alike, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
 from eha_core.recording import Recording
+from eha_core.weak_form.balance import balances, least
 
 Progress = Callable[[str], None]
 
@@ -69,7 +69,7 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
     recovery = recover(calibration.problem, tournament, facts, progress)
     decision = decide(calibration, model.values, tournament, recovery)
     equations = least(alternatives)
-    location = locate(calibration, tournament.nominal.fit, facts, tournament, equations, lead)
+    location = attribute(calibration, tournament.nominal.fit, facts, tournament, equations, lead)
     return Evidence(
         observations, lead, model.values, calibration, facts, equations, alternatives, tournament, recovery, decision,
         location,

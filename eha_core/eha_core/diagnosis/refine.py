@@ -11,14 +11,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.fit import Fit, fit, fit_in_stages
-from eha_core.diagnosis.freedom import LATE, Free, effect_freedom
+from eha_core.diagnosis.effect_freedom import effect_freedom
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.hypothesis import Hypothesis
-from eha_core.diagnosis.per_recording import is_one_of
-from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
 from eha_core.effects import Effect
+from eha_core.identification.fit import Fit, fit, fit_in_stages
+from eha_core.identification.freedom import LATE, Free
+from eha_core.identification.per_recording import is_one_of
+from eha_core.identification.problem import Problem
 from eha_core.parameters import ACTING, NOMINAL
 
 FAR_OFF = 5.0

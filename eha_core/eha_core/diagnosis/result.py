@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from eha_core.diagnosis.numbers import Array
+from eha_core.identification.numbers import Array
 from eha_core.plant import PAPER, Composition
 
 VERDICTS = ("consistent", "parameters", "missing_physics", "ambiguous", "unknown_physics")

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypotheses import Start
-from eha_core.diagnosis.normal_matrix import Eliminated
-from eha_core.diagnosis.numbers import Array, Integers
-from eha_core.diagnosis.parallel import each, threads
-from eha_core.diagnosis.per_recording import named
-from eha_core.diagnosis.problem import LINK, Linearised, Problem, changes, linearise, normal_equations
-from eha_core.diagnosis.shooting import STATE_SIZE
+from eha_core.identification.fit import Fit
+from eha_core.identification.normal_matrix import Eliminated
+from eha_core.identification.numbers import Array, Integers
+from eha_core.identification.parallel import each, threads
+from eha_core.identification.per_recording import named
+from eha_core.identification.problem import LINK, Linearised, Problem, changes, linearise, normal_equations
+from eha_core.identification.shooting import STATE_SIZE
 from eha_core.plant.lane_rows import LANES
 
 MOST_SPANS = 100

@@ -9,13 +9,9 @@ from math import log
 import numpy as np
 
 from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.freedom import Free
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.passing import passing_effects
-from eha_core.diagnosis.per_recording import base_name
-from eha_core.diagnosis.problem import Problem
 from eha_core.diagnosis.refine import (
     FAR_OFF,
     Attempt,
@@ -30,6 +26,10 @@ from eha_core.diagnosis.refine import (
 )
 from eha_core.diagnosis.screen import Promise, screen_spells
 from eha_core.effects import Effect
+from eha_core.identification.fit import Fit
+from eha_core.identification.freedom import Free
+from eha_core.identification.per_recording import base_name
+from eha_core.identification.problem import Problem
 from eha_core.parameters import catalogue
 
 REFINED = 8

@@ -10,13 +10,13 @@ from scipy.linalg import LinAlgError
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.fit import Fit, fit
-from eha_core.diagnosis.freedom import Free
-from eha_core.diagnosis.observation import WITH_OIL
-from eha_core.diagnosis.problem import Problem, linearise, normal_equations
-from eha_core.diagnosis.shooting import Shooting
 from eha_core.diagnosis.tournament import Tournament, parameter_cost
 from eha_core.effects import Effect
+from eha_core.identification.fit import Fit, fit
+from eha_core.identification.freedom import Free
+from eha_core.identification.observation import WITH_OIL
+from eha_core.identification.problem import Problem, linearise, normal_equations
+from eha_core.identification.shooting import Shooting
 
 LEFT_OVER = 0.05
 """A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""

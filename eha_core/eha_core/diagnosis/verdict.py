@@ -11,14 +11,14 @@ import numpy as np
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import Calibration, has_changed
 from eha_core.diagnosis.criteria import COHERENT
-from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
-from eha_core.diagnosis.noise import NORMAL_MEDIAN
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.refine import FAR_OFF
 from eha_core.diagnosis.tournament import ENOUGH, TIE, Entry, Tournament, bounded, parameter_cost
 from eha_core.diagnosis.unknown import Recovery
-from eha_core.diagnosis.validate import Judged, instants_of, judge
+from eha_core.identification.fit import Fit
+from eha_core.identification.noise import NORMAL_MEDIAN
+from eha_core.identification.numbers import Array
+from eha_core.identification.validate import Judged, instants_of, judge
 
 HELD_OUT = 5.0
 """A named effect must lower chi^2 on held-out windows by this."""

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
-from eha_core.diagnosis.noise import estimate_noise
 from eha_core.errors import RecordingError
+from eha_core.identification.noise import estimate_noise
 from eha_core.recording import Recording
 
 Array = NDArray[np.float64]

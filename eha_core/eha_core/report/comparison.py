@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array, Integers
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.identification.numbers import Array, Integers
 from eha_core.parameters import nominal_values
 from eha_core.recording import RecordingWriter
 from eha_core.recording.message_rows import encode_rows

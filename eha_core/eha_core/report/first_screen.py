@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.identification.numbers import Array
 from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from eha_core.diagnosis.numbers import Array
+from eha_core.identification.numbers import Array
 
 COLOURS = {
     "measured": "#22303c",

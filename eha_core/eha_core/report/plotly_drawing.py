@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array
+from eha_core.identification.numbers import Array
 from eha_core.report.picture import (
     COLOURS,
     NOISE_SHADE,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array
+from eha_core.identification.numbers import Array
 
 DRAWN = 3000
 """Most points of one curve: about two for each pixel of a wide screen."""

@@ -7,17 +7,18 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from eha_core.diagnosis.effect_freedom import effect_freedom
 from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.fit import Fit, fit, fit_in_stages, with_noise
-from eha_core.diagnosis.freedom import Free, effect_freedom
 from eha_core.diagnosis.hypothesis import Hypothesis, neutral
-from eha_core.diagnosis.noise import residual_noise
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.observation import RESOLVED
-from eha_core.diagnosis.per_recording import base_name, is_one_of
-from eha_core.diagnosis.problem import Problem
-from eha_core.diagnosis.shooting import Shooting
 from eha_core.effects import Effect
+from eha_core.identification.fit import Fit, fit, fit_in_stages, with_noise
+from eha_core.identification.freedom import Free
+from eha_core.identification.noise import residual_noise
+from eha_core.identification.numbers import Array
+from eha_core.identification.observation import RESOLVED
+from eha_core.identification.per_recording import base_name, is_one_of
+from eha_core.identification.problem import Problem
+from eha_core.identification.shooting import Shooting
 
 Progress = Callable[[str], None]
 

@@ -7,16 +7,16 @@ from which the search goes on.
 
 from __future__ import annotations
 
-from eha_core.diagnosis.fit import fit
-from eha_core.diagnosis.freedom import LATE, Free
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, neutral
-from eha_core.diagnosis.per_recording import is_one_of
 from eha_core.diagnosis.refine import as_given
 from eha_core.diagnosis.screen import Promise, one_each, screen, sized
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects
 from eha_core.diagnosis.search.prune import wald
 from eha_core.effects import Effect
+from eha_core.identification.fit import fit
+from eha_core.identification.freedom import LATE, Free
+from eha_core.identification.per_recording import is_one_of
 
 SHARES = (0.1, 0.3)
 """Of an effect's usual first guess, at which it is switched on."""

@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.freedom import LATE
 from eha_core.diagnosis.hypotheses import Start, starts
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.per_recording import is_one_of
 from eha_core.diagnosis.refine import _set_free, as_given, with_dynamics_as_given
 from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects, without_effect
+from eha_core.identification.fit import Fit
+from eha_core.identification.freedom import LATE
+from eha_core.identification.per_recording import is_one_of
 
 AT_THE_FIT = 8
 AT_NOMINAL_VALUES = 6

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from eha_core.diagnosis.criteria import CHANCE, CONVINCING, OF_ITS_FORM, OF_SAMPLES, OF_SAMPLES_BESIDE_A_FORM
-from eha_core.diagnosis.fit import Fit
 from eha_core.diagnosis.hypothesis import NOTHING, Member, neutral
-from eha_core.diagnosis.per_recording import base_name, is_one_of
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, without_effect
 from eha_core.effects import Effect
+from eha_core.identification.fit import Fit
+from eha_core.identification.per_recording import base_name, is_one_of
 
 REFITTED = 8
 """Iterations of a fit without a member."""

@@ -8,8 +8,8 @@ from importlib import import_module
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import NamedEffect
+from eha_core.identification.numbers import Array
 from eha_core.report.stage import SURE
 
 CURVE = 241

@@ -1,7 +1,7 @@
 """The models behind a diagnosis, and the weak form that measured channels are held against them in.
 
 Each equation is multiplied by a smooth test function in time and integrated by parts, so that no measured channel is
-differentiated (see `eha_core.diagnosis.balance`). A law's point is the law itself under that test function plus what
+differentiated (see `eha_core.weak_form.balance`). A law's point is the law itself under that test function plus what
 the equation's residual, measured less modelled, adds to it: the component-plus-residual plot of W. A. Larsen and
 S. J. McCleary, Technometrics 14 (1972). All other terms of the equation, named effects included, cancel out.
 """
@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.diagnosis.balance import HOPS, Bumps, bumps
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.observation import Measured
 from eha_core.diagnosis.result import Diagnosis, NamedEffect
+from eha_core.identification.numbers import Array
+from eha_core.identification.observation import Measured
 from eha_core.parameters import nominal_values
+from eha_core.weak_form.balance import HOPS, Bumps, bumps
 
 POINT_WIDTH = 0.02
 """s, half the width of a point's test function: some ten samples, and short against the time between reversals."""

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import NamedEffect
+from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import CURVE, Axis, Law, band
 from eha_core.report.laws.models import Models, contribution, in_order
 from eha_core.report.wording import capital, effect_title

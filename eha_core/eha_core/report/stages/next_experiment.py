@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.identification.numbers import Array
 from eha_core.quantities import scale_for
 from eha_core.report.experiment_file import FILE, channels_to_record, commands
 from eha_core.report.picture import Group, Line, Panel, Picture

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eha_core.diagnosis.numbers import Array
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.identification.numbers import Array
 from eha_core.quantities import Scale, quantity, scale_for, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import improvement, left_over

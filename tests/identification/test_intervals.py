@@ -7,8 +7,8 @@ from made import recorded
 from scipy.signal import lfilter
 
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.intervals import at_its_end, with_residual
-from eha_core.diagnosis.observation import observe
+from eha_core.identification.intervals import at_its_end, with_residual
+from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 

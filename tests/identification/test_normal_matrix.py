@@ -5,11 +5,11 @@ import pytest
 from made import recorded
 from scipy.linalg import LinAlgError
 
-from eha_core.diagnosis.freedom import nominal_freedom
-from eha_core.diagnosis.normal_matrix import NormalMatrix
-from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.problem import LINK, STATE_TRUST, Problem, linearise, normal_equations, whole
-from eha_core.diagnosis.shooting import cut
+from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.normal_matrix import NormalMatrix
+from eha_core.identification.observation import observe
+from eha_core.identification.problem import LINK, STATE_TRUST, Problem, linearise, normal_equations, whole
+from eha_core.identification.segments import cut
 from eha_core.parameters import nominal_values
 
 UNITS = np.array([1e-5, 1e-3, 1e4, 1e4])

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.noise import estimate_noise, find_outliers
-from eha_core.diagnosis.numbers import Array
 from eha_core.errors import RecordingError
+from eha_core.identification.noise import estimate_noise, find_outliers
+from eha_core.identification.numbers import Array
 from eha_core.nominal import NominalModel
 from eha_core.plant import PAPER, Composition
 from eha_core.plant.parts import Source

@@ -8,10 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from eha_core.diagnosis.fit import Fit, fit, refit_states
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.problem import Problem
-from eha_core.diagnosis.shooting import Shooting, held_out
+from eha_core.identification.fit import Fit, fit, refit_states
+from eha_core.identification.numbers import Array
+from eha_core.identification.problem import Problem
+from eha_core.identification.segments import held_out
+from eha_core.identification.shooting import Shooting
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.observation import Measured, Observation
-from eha_core.diagnosis.shooting import Shooting, smooth
+from eha_core.identification.fit import Fit
+from eha_core.identification.numbers import Array
+from eha_core.identification.observation import Measured, Observation
+from eha_core.identification.segments import smooth
+from eha_core.identification.shooting import Shooting
 from eha_core.plant import COLUMNS
 
 HALF_WIDTH = 0.06

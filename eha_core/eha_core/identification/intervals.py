@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.problem import Linearised, Problem, linearise, normal_equations
-from eha_core.diagnosis.shooting import STATE_SIZE
+from eha_core.identification.fit import Fit
+from eha_core.identification.numbers import Array
+from eha_core.identification.problem import Linearised, Problem, linearise, normal_equations
+from eha_core.identification.shooting import STATE_SIZE
 
 BLOCK = 0.1
 """s; over longer spans a residual is taken to be independent. Friction's and the oil's transients are shorter."""

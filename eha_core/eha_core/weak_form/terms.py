@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.diagnosis.numbers import Array
+from eha_core.identification.numbers import Array
 
 Function = Callable[[Array], Array]
 

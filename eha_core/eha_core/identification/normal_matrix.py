@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, cho_solve_banded, cholesky_banded
 
-from eha_core.diagnosis.numbers import Array, Flags
+from eha_core.identification.numbers import Array, Flags
 
 RIDGE = 1e-12
 """Of the scaled matrix' unit diagonal: what is added where rounding alone keeps the states' part from being positive

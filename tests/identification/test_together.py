@@ -7,14 +7,14 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis import diagnose_together
-from eha_core.diagnosis.fit import fit
-from eha_core.diagnosis.freedom import nominal_freedom
-from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.problem import changes, residuals, whole
-from eha_core.diagnosis.shooting import cut
-from eha_core.diagnosis.together import cut_together, fit_alone, recording_alone
-from eha_core.diagnosis.validate import split
 from eha_core.errors import RecordingError
+from eha_core.identification.fit import fit
+from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.observation import observe
+from eha_core.identification.problem import changes, residuals, whole
+from eha_core.identification.segments import cut
+from eha_core.identification.together import cut_together, fit_alone, recording_alone
+from eha_core.identification.validate import split
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from eha_core.diagnosis.freedom import Free
+from eha_core.identification.freedom import Free
 
 
 def named(name: str, number: int) -> str:

@@ -13,11 +13,12 @@ from functools import cached_property
 import numpy as np
 
 from eha_core.compiled import compiled
-from eha_core.diagnosis.freedom import Free
-from eha_core.diagnosis.normal_matrix import NormalMatrix
-from eha_core.diagnosis.numbers import Array, Flags, Integers
-from eha_core.diagnosis.parallel import each, threads
-from eha_core.diagnosis.shooting import SLOPE_STEP, STATE_SIZE, Shooting, coarser
+from eha_core.identification.freedom import Free
+from eha_core.identification.normal_matrix import NormalMatrix
+from eha_core.identification.numbers import Array, Flags, Integers
+from eha_core.identification.parallel import each, threads
+from eha_core.identification.segments import coarser
+from eha_core.identification.shooting import SLOPE_STEP, STATE_SIZE, Shooting
 from eha_core.plant.lane_rows import LANES, REGISTER
 
 LINK = np.array([3e-5, 3e-3, 3e4, 3e4])

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from made import recorded
 
-from eha_core.diagnosis.freedom import Free
-from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.parallel import side_by_side
-from eha_core.diagnosis.problem import STATE_STEP, Problem, changes, linearise, whole
-from eha_core.diagnosis.shooting import Shooting, cut
+from eha_core.identification.freedom import Free
+from eha_core.identification.observation import observe
+from eha_core.identification.parallel import side_by_side
+from eha_core.identification.problem import STATE_STEP, Problem, changes, linearise, whole
+from eha_core.identification.segments import cut
+from eha_core.identification.shooting import Shooting
 from eha_core.parameters import nominal_values
 
 

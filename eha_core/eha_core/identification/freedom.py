@@ -6,8 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from math import exp, log
 
-from eha_core.diagnosis.observation import WITH_OIL
-from eha_core.effects import Effect
+from eha_core.identification.observation import WITH_OIL
 from eha_core.plant import PAPER, Composition
 
 
@@ -144,37 +143,3 @@ def nominal_freedom(
 def _not_known(trust: Trust) -> Trust:
     """The trust in the nominal value of a parameter that is not known."""
     return replace(NOT_KNOWN, scale=trust.scale)
-
-
-EFFECT_TRUST = 30.0
-"""An effect's parameter may move by this many times its starting size, or by e^3 where it moves by factors."""
-
-
-SHORTEST_INSTANT = 0.01
-"""s; over this much an instant is moved to see what that changes."""
-
-
-def effect_freedom(effect: Effect, start: Mapping[str, float]) -> tuple[Free, ...]:
-    """An effect's parameters, free about `start` (full names)."""
-    free = []
-    for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
-        value = start[name]
-        if row.logarithmic and value > 0.0:
-            free.append(Free(name, value, True, 0.0, 3.0, row.lower, row.upper))
-        else:
-            scale = abs(value - row.nominal) or abs(row.typical) or 1.0
-            resolution = SHORTEST_INSTANT / scale if row.relative_to == "time" else 0.0
-            free.append(Free(name, value, False, scale, EFFECT_TRUST, row.lower, row.upper, resolution))
-    return tuple(free)
-
-
-SPAN_SCALE = 0.3
-"""s; the coordinate's unit of an instant from which, or until which, an effect acts."""
-
-
-def span_freedom(span: Mapping[str, float], bounds: Mapping[str, tuple[float, float]]) -> tuple[Free, ...]:
-    """The instants between which the effects act, free about where they are taken to be, within bounds [s]."""
-    resolution = SHORTEST_INSTANT / SPAN_SCALE
-    return tuple(
-        Free(name, at, False, SPAN_SCALE, EFFECT_TRUST, *bounds[name], resolution) for name, at in span.items()
-    )

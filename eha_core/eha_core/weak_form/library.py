@@ -8,7 +8,7 @@ from math import exp, log, pi
 import numpy as np
 from scipy.optimize import minimize
 
-from eha_core.diagnosis.terms import Sighting, Term, fitted, number, signed
+from eha_core.weak_form.terms import Sighting, Term, fitted, number, signed
 
 WIDTHS = (0.003, 0.01, 0.03, 0.1, 0.3)
 """Widths of a smooth step that are tried, as shares of the largest value of the variable."""

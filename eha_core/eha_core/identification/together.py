@@ -11,12 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.fit import Fit
-from eha_core.diagnosis.observation import Observation
-from eha_core.diagnosis.per_recording import named, values_of
-from eha_core.diagnosis.shooting import Sampling, Shooting, cut, rows_every
 from eha_core.errors import RecordingError
+from eha_core.identification.fit import Fit
+from eha_core.identification.observation import Observation
+from eha_core.identification.per_recording import named, values_of
+from eha_core.identification.segments import cut, rows_every
+from eha_core.identification.shooting import Sampling, Shooting
 
 
 def cut_together(
@@ -111,15 +111,6 @@ def fit_alone(shooting: Shooting, result: Fit, number: int) -> Fit:
         objective=data,
         count=sum(len(one) for one in residuals),
     )
-
-
-def facts_alone(shooting: Shooting, facts: Facts, number: int) -> Facts:
-    """The facts with the calibrated model's states in one recording only."""
-    if not len(facts.rows) or len(shooting.first_windows) == 1:
-        return facts
-    windows = shooting.recordings[number - 1]
-    begin, end = (int(shooting.edges[window]) // shooting.every for window in (windows.start, windows.stop))
-    return replace(facts, rows=facts.rows[begin:end])
 
 
 def _belongs(sampling: Sampling, windows: range) -> bool:

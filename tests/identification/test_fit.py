@@ -5,8 +5,8 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.observation import observe
-from eha_core.diagnosis.shooting import coarser, cut
+from eha_core.identification.observation import observe
+from eha_core.identification.segments import coarser, cut
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 

@@ -12,11 +12,11 @@ from enum import Enum
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from eha_core.diagnosis.freedom import LATE, Free
-from eha_core.diagnosis.normal_matrix import NormalMatrix
-from eha_core.diagnosis.numbers import Array
-from eha_core.diagnosis.per_recording import base_name, in_each, is_one_of
-from eha_core.diagnosis.problem import (
+from eha_core.identification.freedom import LATE, Free
+from eha_core.identification.normal_matrix import NormalMatrix
+from eha_core.identification.numbers import Array
+from eha_core.identification.per_recording import base_name, in_each, is_one_of
+from eha_core.identification.problem import (
     Problem,
     linearise,
     normal_equations,
@@ -25,7 +25,7 @@ from eha_core.diagnosis.problem import (
     simulate,
     values_at,
 )
-from eha_core.diagnosis.shooting import STATE_SIZE, Shooting
+from eha_core.identification.shooting import STATE_SIZE, Shooting
 from eha_core.parameters import catalogue
 
 SETTLED = 0.5

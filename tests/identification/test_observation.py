@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eha_core.diagnosis.observation import observe
+from eha_core.identification.observation import observe
 from eha_core.recording import CHANNEL_KINDS, Channel, Recording
 
 TIME = np.arange(0.0, 4.0, 2e-3)

@@ -7,7 +7,7 @@ from math import comb, sqrt
 import numpy as np
 from scipy.ndimage import median_filter
 
-from eha_core.diagnosis.numbers import Array, Flags
+from eha_core.identification.numbers import Array, Flags
 
 NORMAL_MEDIAN = 0.6744897501960817
 """The median of |z| for a standard normal z."""
