@@ -19,6 +19,7 @@ def test_no_threshold_moved():
         "CONVINCING": 0.4,
         "WORTH_ADDING": 0.1,
         "LEFT_IN_A_CHANNEL": 1.2,
+        "LEAST_OF_A_LAW": 0.5,
         "COHERENT": 1.5,
     }
 

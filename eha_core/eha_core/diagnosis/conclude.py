@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise, has_changed, identifiable
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEAST_OF_A_LAW
 from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, tested_recordings
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
@@ -224,12 +224,18 @@ def _in_span(one: Location, span: tuple[float, float]) -> Location:
 
 
 def _unknown(evidence: Evidence) -> UnknownLaw | None:
-    """The law that no name fits: as the weak balances hold it, or as the simulated curve where that explains more.
+    """The law that no name fits, if there is one that explains more than it leaves."""
+    if evidence.decision.verdict != "unknown_physics":
+        return None
+    law = _best_law(evidence)
+    return law if law is not None and law.r_squared >= LEAST_OF_A_LAW else None
+
+
+def _best_law(evidence: Evidence) -> UnknownLaw | None:
+    """The law as the weak balances hold it, or as the simulated curve where that explains more.
 
     The balances tell the site; a curve of another site only makes up for what it does not describe.
     """
-    if evidence.decision.verdict != "unknown_physics":
-        return None
     law, curve = weak_law(evidence.balances), evidence.recovery
     if curve is not None and (law is None or (curve.effect.site == law.site and curve.share > law.r_squared)):
         x, y = np.array(curve.knots, dtype=np.float64).reshape(-1, 2).T
@@ -241,9 +247,11 @@ def _unknown(evidence: Evidence) -> UnknownLaw | None:
 
 
 def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> Decision:
-    """The decision, on the nominal equations where its curve is another law than the one that was found."""
+    """The decision, on the nominal equations where its curve is not the law that was found."""
     decision, curve = evidence.decision, evidence.recovery
-    if unknown is None or curve is None or (unknown.site, unknown.function_of) == (curve.effect.site, curve.variable):
+    if decision.verdict != "unknown_physics" or curve is None:
+        return decision
+    if unknown is not None and (unknown.site, unknown.function_of) == (curve.effect.site, curve.variable):
         return decision
     return replace(decision, winner=evidence.tournament.nominal, judged_winner=decision.judged_nominal)
 
