@@ -28,4 +28,4 @@ def test_a_function_that_leaves_more_than_it_explains_is_no_law(share, told):
     assert (law is not None) == told
     if law is not None:
         assert law.function_of == "velocity"
-        assert law.expression.startswith("3000 v")
+        assert law.expression == "3e3 v [N], v in m/s"
