@@ -32,6 +32,10 @@ CONVINCING = 0.4
 """A member must be worth this share of what the set leaves without it. Of false members it was 0.42 of what is left
 with them at most, of true ones 19 and more but for one of 0.74 (nine rigs of four to six effects)."""
 
+NEXT_TO_NOTHING = 0.15
+"""Share of its typical size below which a shape, such as the rounding of an edge, is no parameter that a law makes use
+of: no recording tells it from none (assumed; weak effects of the exam have as much of their typical size)."""
+
 WORTH_ADDING = 0.1
 """Share of what is left over that an effect must explain to be added: the first of several does, and it ends a
 search that only bends what is there (assumed)."""

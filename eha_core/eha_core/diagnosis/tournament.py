@@ -8,6 +8,7 @@ from math import log
 
 import numpy as np
 
+from eha_core.diagnosis.criteria import NEXT_TO_NOTHING
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
@@ -27,7 +28,6 @@ from eha_core.diagnosis.refine import (
 from eha_core.diagnosis.screen import Promise, screen_spells
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
-from eha_core.identification.freedom import Free
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import Problem
 from eha_core.parameters import catalogue
@@ -161,18 +161,17 @@ def parameter_cost(count: int, left_over: float) -> float:
 
 
 def freedom_used(result: Fit) -> int:
-    """How many parameters a fit makes use of: one of an effect's that is shown to be next to nothing is none.
+    """How many parameters a fit makes use of: a shape of an effect's that is next to nothing is none.
 
-    A deadband with sharp edges has no rounding to pay for; a shape that cannot be told is paid for all the same.
+    A deadband with sharp edges has no rounding to pay for.
     """
-    return sum(not _rests_at_nothing(result, one) for one in result.free)
+    return sum(not _is_no_shape(result, one.name) for one in result.free)
 
 
-def _rests_at_nothing(result: Fit, one: Free) -> bool:
-    row = catalogue()[base_name(one.name)]
-    if "." not in one.name or one.logarithmic or one.lower != row.nominal:
-        return False
-    return result.values[one.name] - one.lower < result.deviation(one.name) < abs(row.typical)
+def _is_no_shape(result: Fit, name: str) -> bool:
+    row = catalogue()[base_name(name)]
+    may_be_nothing = "." in name and not row.switches and row.lower == row.nominal
+    return may_be_nothing and result.values[name] - row.lower < NEXT_TO_NOTHING * abs(row.typical)
 
 
 def rank(problem: Problem, nominal: Fit, found: Found) -> tuple[Entry, ...]:

@@ -15,6 +15,7 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="force",
+    kind="dry friction",
     approximate=True,
     statement="the seals rub the more the oil presses them: dry friction is {coefficient} times the pressure across "
     "the piston",
