@@ -24,7 +24,7 @@ def test_each_recording_has_its_errors_and_its_own_values(friction: Diagnosis) -
 def test_an_unseen_recording_has_every_model_s_errors_beside_the_noise(friction: Diagnosis) -> None:
     errors = {"nominal": 9e-4, "recalibrated": 5e-4, "augmented": 1.1e-5}
     prediction = {name: {"position": Prediction({0.25: one}, 2.0 * one)} for name, one in errors.items()}
-    tested = replace(friction, tests=(result.TestedRecording("bags/c.mcap", prediction, {"position": 1e-5}),))
+    tested = replace(friction, tests=(result.PredictedRecording("bags/c.mcap", prediction, {"position": 1e-5}),))
     (table,) = recording_tables(tested)
     assert "c.mcap" in table.title
     assert table.rows == (

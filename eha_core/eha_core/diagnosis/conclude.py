@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise, has_changed, identifiable
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEAST_OF_A_LAW
-from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, tested_recordings
+from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, predicted_recordings
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import propose
 from eha_core.diagnosis.explained import explained, predictions
@@ -105,7 +105,7 @@ def conclude(
             evidence.calibration.shooting.step_size,
         ),
         together=fitted_recordings(evidence, final, held_out),
-        tests=tested_recordings(evidence, final, tests),
+        tests=predicted_recordings(evidence, final, tests),
         steps=steps,
         without=without,
         correlation=correlation(final),

@@ -8,7 +8,7 @@ import numpy as np
 
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.explained import predictions
-from eha_core.diagnosis.result import ChannelFit, RecordingFit, TestedRecording
+from eha_core.diagnosis.result import ChannelFit, PredictedRecording, RecordingFit
 from eha_core.identification.fit import Fit
 from eha_core.identification.observation import observe
 from eha_core.identification.per_recording import base_name, named, values_of
@@ -37,7 +37,7 @@ def of_recording(channels: Mapping[str, ChannelFit], number: int) -> Mapping[str
     return {base_name(name): one for name, one in channels.items() if name == named(base_name(name), number)}
 
 
-def tested_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recording]) -> tuple[TestedRecording, ...]:
+def predicted_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recording]) -> tuple[PredictedRecording, ...]:
     """How well the three models predict recordings that nothing was fitted to.
 
     What has a value of its own in each recording is not known of these: a nominal parameter has its nominal value
@@ -57,7 +57,7 @@ def tested_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recording]
         step = evidence.calibration.shooting.step_size
         predicted = {name: predictions(observation, values, step) for name, values in models.items()}
         noise = {channel.name: channel.noise for channel in observation.measured}
-        found.append(TestedRecording(observation.path, predicted, noise))
+        found.append(PredictedRecording(observation.path, predicted, noise))
     return tuple(found)
 
 

@@ -15,10 +15,8 @@ from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.result import NOMINAL, RECALIBRATED, Correlation, Residual, Step
 from eha_core.diagnosis.search.candidates import Candidate, without_effect
+from eha_core.diagnosis.search.prune import REFITTED
 from eha_core.identification.fit import Fit, fit
-
-REFITTED = 8
-"""Iterations of a fit without a member."""
 
 
 def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, Residual]]:

@@ -135,7 +135,7 @@ class RecordingFit:
 
 
 @dataclass(frozen=True)
-class TestedRecording:
+class PredictedRecording:
     """A recording that nothing was fitted to: how the nominal, the recalibrated and the augmented model (by these
     names) predict each channel, and the channels' noise [their unit]."""
 
@@ -250,7 +250,7 @@ class Diagnosis:
     prediction: Mapping[str, Prediction] = field(default_factory=dict)
     provenance: Mapping[str, str] = field(default_factory=dict)
     together: tuple[RecordingFit, ...] = ()
-    tests: tuple[TestedRecording, ...] = ()
+    tests: tuple[PredictedRecording, ...] = ()
     steps: tuple[Step, ...] = ()
     without: Mapping[str, Residual] = field(default_factory=dict)
     correlation: Correlation = Correlation()

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from eha_core.diagnosis.result import Diagnosis, TestedRecording
+from eha_core.diagnosis.result import Diagnosis, PredictedRecording
 from eha_core.parameters import catalogue
 from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
@@ -30,7 +30,7 @@ def each_recording(diagnosis: Diagnosis) -> list[str]:
     return lines
 
 
-def _tested(tested: TestedRecording) -> Iterator[str]:
+def _tested(tested: PredictedRecording) -> Iterator[str]:
     title = f"Test on {Path(tested.path).name} (RMSE)"
     yield f"{title:40}" + "".join(f"{name:>14}" for name in MODELS)
     for channel in tested.noise:
@@ -68,7 +68,7 @@ def _together(diagnosis: Diagnosis) -> Table:
     return Table(headings, rows, "Recordings fitted together: held-out errors, and the values that are their own")
 
 
-def _prediction(tested: TestedRecording) -> Table:
+def _prediction(tested: PredictedRecording) -> Table:
     rows = []
     for channel in tested.noise:
         unit = CHANNEL_KINDS[channel].unit
