@@ -73,7 +73,7 @@ def conclude(
     recording = recordings[evidence.lead - 1]
     steps, without = ladder(replace(evidence, decision=decision), final)
     order = [one.added for one in steps]
-    effects = () if decision.verdict == "unknown_physics" else _named(decision.winner, final)
+    effects = _named(decision.winner, final)
     effects = tuple(sorted(effects, key=lambda one: order.index(one.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
@@ -183,7 +183,7 @@ def _parameters(final: Fit, nominal: Mapping[str, float], composition: Compositi
 
 def _named(winner: Entry, final: Fit) -> tuple[NamedEffect, ...]:
     found = []
-    for member in winner.hypothesis.members:
+    for member in (one for one in winner.hypothesis.members if one.effect.named):
         effect = member.effect
         values = {
             row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
@@ -237,6 +237,8 @@ def _best_law(evidence: Evidence) -> UnknownLaw | None:
     The balances tell the site; a curve of another site only makes up for what it does not describe.
     """
     law, curve = weak_law(evidence.balances), evidence.recovery
+    if curve is not None and curve.named:
+        law = None  # the balances lack what is named, too
     if curve is not None and (law is None or (curve.effect.site == law.site and curve.share > law.r_squared)):
         x, y = np.array(curve.knots, dtype=np.float64).reshape(-1, 2).T
         text = express(x, y, curve.variable, UNITS_OF_LAWS[curve.effect.site]).text

@@ -14,7 +14,8 @@ def summary(decision: Decision, effects: tuple[NamedEffect, ...], unknown: Unkno
     if left.complete or not effects:
         return said
     most = max(left.times_noise, key=lambda name: left.times_noise[name])
-    many = "One effect explains" if len(effects) == 1 else f"{len(effects)} effects explain"
+    many = "One effect" if len(effects) == 1 else f"{len(effects)} effects"
+    many += " and a law explain" if unknown else " explains" if len(effects) == 1 else " explain"
     rest = (
         f"what is left is {left.times_noise[most]:.3g} times the noise, most in {most.replace('_', ' ')}"
         if left.times_noise[most] >= LEFT_IN_A_CHANNEL
@@ -29,7 +30,7 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
     if decision.verdict == "parameters":
         return "No physics is missing: parameter values differ from the nominal ones."
     if decision.verdict == "unknown_physics":
-        return _summary_of_unknown(unknown)
+        return _summary_of_unknown(effects, unknown)
     named = "; and ".join(effect.statement for effect in effects)
     kind = kind_alone(decision)
     if decision.verdict == "ambiguous" and kind:
@@ -56,8 +57,12 @@ def kind_alone(decision: Decision) -> str:
     return kinds.pop() if len(kinds) == 1 else ""
 
 
-def _summary_of_unknown(law: UnknownLaw | None) -> str:
+def _summary_of_unknown(effects: tuple[NamedEffect, ...], law: UnknownLaw | None) -> str:
     if law is None:
         return "Something is missing that the catalogue does not name, and no law over the measured states explains it."
     statement = next(effect.statement for effect in every_effect() if effect.site == law.site and not effect.named)
-    return f"Something is missing: {statement}, as a function of {law.function_of}."
+    unknown = f"{statement}, as a function of {law.function_of}"
+    if not effects:
+        return f"Something is missing: {unknown}."
+    named = "; and ".join(effect.statement for effect in effects)
+    return f"Physics is missing: {named}; and beside it a law that the catalogue does not name: {unknown}."

@@ -1,4 +1,5 @@
-"""A law outside the catalogue: recovered as a curve over whichever variable explains most."""
+"""A law outside the catalogue: recovered as a curve over whichever variable explains most, alone or beside named
+effects."""
 
 from __future__ import annotations
 
@@ -9,8 +10,12 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eha_core.curve import KNOTS
+from eha_core.diagnosis.criteria import CONVINCING, chance_gain
 from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.tournament import Tournament, parameter_cost
+from eha_core.diagnosis.hypothesis import Hypothesis, Member
+from eha_core.diagnosis.search.candidates import without_effect
+from eha_core.diagnosis.search.prune import REFITTED
+from eha_core.diagnosis.tournament import Entry, Tournament, parameter_cost
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.freedom import Free
@@ -34,41 +39,90 @@ VARIABLES = {
 
 @dataclass(frozen=True)
 class Recovery:
-    """The best curve: the effect that carries it, what it is over, its fit, and its score as of an `Entry`."""
+    """The best curve: the effect that carries it, what it is over, the hypothesis (with the named effects beside it),
+    its fit, its score as of an `Entry`, and the share that it explains of what the same effects leave without it."""
 
     effect: Effect
     variable: str
+    hypothesis: Hypothesis
     fit: Fit
     score: float
     share: float
     knots: tuple[tuple[float, float], ...]
 
+    @property
+    def named(self) -> tuple[Effect, ...]:
+        """The effects of the catalogue beside the curve."""
+        return tuple(effect for effect in self.hypothesis.effects if effect.named)
+
 
 def recover(
     problem: Problem, tournament: Tournament, facts: Facts, progress: Callable[[str], None] = lambda _: None
 ) -> Recovery | None:
-    """Fit curves where the catalogue's best leaves something over; None where it does not, or no curve helps."""
+    """Fit curves where the catalogue's best leaves something over: alone, and beside the effects that are named.
+
+    None where nothing is left over, or no curve helps.
+    """
     nominal = tournament.nominal.fit
-    best = tournament.entries[0].fit if tournament.entries else nominal
-    if best.data / best.count < 1.0 + LEFT_OVER or nominal.data / nominal.count < 1.0 + LEFT_OVER:
+    best = tournament.entries[0] if tournament.entries else tournament.nominal
+    if best.fit.data / best.fit.count < 1.0 + LEFT_OVER or nominal.data / nominal.count < 1.0 + LEFT_OVER:
         return None
     progress("recovering an unknown law as a curve")
+    bases = [tournament.nominal, *([best] if best.effects and best.span is None else [])]
+    found = [_beside(problem, base, tournament, facts, progress) for base in bases]
+    return max((one for one in found if one is not None), key=lambda one: one.score, default=None)
+
+
+def _beside(
+    problem: Problem, base: Entry, tournament: Tournament, facts: Facts, progress: Callable[[str], None]
+) -> Recovery | None:
+    """The best curve beside the effects of an entry, of which those go that the curve makes idle."""
+    fits = []
+    for effect, variable, result in _fitted_curves(problem, base, facts, progress):
+        law = Hypothesis((*base.hypothesis.members, Member(effect.id, effect=effect)), (effect.id, variable))
+        fits.append((law, effect, variable, result))
+    if not fits:
+        return None
+    hypothesis, effect, variable, result = min(fits, key=lambda one: one[3].objective)
+    hypothesis, result = _without_idle(problem, hypothesis, result)
+    nominal = tournament.nominal.fit
+    variance = max(1.0, min(result.data / result.count, tournament.scatter))
+    cost = (len(result.free) - len(nominal.free)) * parameter_cost(problem.count(), variance)
+    share = (base.fit.data - result.data) / max(base.fit.data - base.fit.count, 1.0)
+    return Recovery(
+        effect, variable, hypothesis, result, (nominal.objective - result.objective) / variance - cost,
+        float(np.clip(share, 0.0, 1.0)), _seen(effect, result),
+    )  # fmt: skip
+
+
+def _fitted_curves(
+    problem: Problem, base: Entry, facts: Facts, progress: Callable[[str], None]
+) -> Iterator[tuple[Effect, str, Fit]]:
+    """The curves that promise most beside the effects of an entry, fitted."""
     promises = []
-    for effect, variable, values in _curves(nominal.values, facts, problem.shooting):
-        free = (*nominal.free, *_knots_free(effect, values, facts))
-        promises.append((_promised(problem, nominal, values, free), effect, variable, values, free))
+    for effect, variable, values in _curves(base.fit.values, facts, problem.shooting):
+        free = (*base.fit.free, *_knots_free(effect, values, facts))
+        promises.append((_promised(problem, base.fit, values, free), effect, variable, values, free))
     promises.sort(key=lambda one: -one[0])
-    found: list[Recovery] = []
+    beside = f" beside {' and '.join(base.ids)}" if base.ids else ""
     for gain, effect, variable, values, free in promises[:FULLY_FITTED]:
-        if gain <= 0.0:
+        if gain > 0.0:
+            progress(f"fitting {effect.id} over {variable}{beside}")
+            yield effect, variable, fit(problem, values, free, base.fit.states, iterations=10)
+
+
+def _without_idle(problem: Problem, hypothesis: Hypothesis, result: Fit) -> tuple[Hypothesis, Fit]:
+    """The hypothesis without the named effects that only made up for the law which a curve now draws."""
+    needed = chance_gain(problem.count(), result.data / result.count)
+    for member in hypothesis.members:
+        if not member.effect.named:
             continue
-        progress(f"fitting {effect.id} over {variable}")
-        result = fit(problem, values, free, nominal.states, iterations=10)
-        variance = max(1.0, min(result.data / result.count, tournament.scatter))
-        score = (nominal.objective - result.objective) / variance - KNOTS * parameter_cost(problem.count(), variance)
-        share = (nominal.data - result.data) / max(nominal.data - nominal.count, 1.0)
-        found.append(Recovery(effect, variable, result, score, float(np.clip(share, 0.0, 1.0)), _seen(effect, result)))
-    return min(found, key=lambda one: one.fit.objective, default=None)
+        values, free = without_effect(result, member.effect)
+        simpler = fit(problem, values, free, result.states, iterations=REFITTED)
+        left = max(result.data - result.count, 0.0)
+        if simpler.objective - result.objective < max(needed, CONVINCING / (1.0 - CONVINCING) * left):
+            hypothesis, result = hypothesis.without(member), simpler
+    return hypothesis, result
 
 
 def _curves(

@@ -10,11 +10,11 @@ import numpy as np
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import Calibration, has_changed
-from eha_core.diagnosis.criteria import COHERENT
-from eha_core.diagnosis.hypothesis import Hypothesis, Member
+from eha_core.diagnosis.criteria import COHERENT, LEAST_OF_A_LAW
 from eha_core.diagnosis.refine import FAR_OFF
 from eha_core.diagnosis.tournament import ENOUGH, TIE, Entry, Tournament, bounded, parameter_cost
 from eha_core.diagnosis.unknown import Recovery
+from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.noise import NORMAL_MEDIAN
 from eha_core.identification.numbers import Array
@@ -88,9 +88,7 @@ def _unnamed(calibration: Calibration, tournament: Tournament, recovery: Recover
     """Something is missing that no name fits: with the recovered curve, if one explains anything."""
     entry = tournament.nominal
     if recovery is not None and recovery.score > ENOUGH:
-        law = (recovery.effect.id, recovery.variable)
-        curve = Hypothesis((Member(recovery.effect.id, effect=recovery.effect),), law)
-        entry = Entry(curve, recovery.fit, recovery.score)
+        entry = Entry(recovery.hypothesis, recovery.fit, recovery.score)
     judged = judge(calibration.shooting, tournament.nominal.fit)
     after = judge(calibration.shooting, entry.fit) if entry.effects else judged
     return Decision("unknown_physics", entry, (), judged, after)
@@ -114,7 +112,8 @@ def coherence(residual: Array) -> float:
 
 
 def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
-    """Whether the curve explains so much more than the best named effects that its many knots are paid for.
+    """Whether the curve, with what is named beside it, explains so much more than the best named effects alone that its
+    many knots are paid for.
 
     A curve that stays far above the noise is not the law either, but bends to whatever is there; then names that
     explain nearly all stand. So do they where the curve only draws the form of the law that they name.
@@ -128,9 +127,15 @@ def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
     forms = [one for one in best.effects if one.approximate]
     if left < WHATEVER_FORM and forms or left < ITS_FORM and any(one.site == recovery.effect.site for one in forms):
         return False
+    if recovery.named and recovery.share < LEAST_OF_A_LAW:
+        return False
     more = (best.fit.objective - recovery.fit.objective) / variance
-    knots = KNOTS - sum(len(effect.parameters) for effect in best.effects)
+    knots = KNOTS + _parameters(recovery.named) - _parameters(best.effects)
     return recovery.score > ENOUGH and more > UNKNOWN_MARGIN + knots * parameter_cost(recovery.fit.count, variance)
+
+
+def _parameters(effects: Sequence[Effect]) -> int:
+    return sum(len(effect.parameters) for effect in effects)
 
 
 def contenders(winner: Entry, tournament: Tournament) -> tuple[Entry, ...]:

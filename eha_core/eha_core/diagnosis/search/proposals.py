@@ -7,7 +7,7 @@ which nothing has biased; and with the valve's dynamics held, which would imitat
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypotheses import Start, starts
@@ -23,6 +23,10 @@ AT_THE_FIT = 8
 AT_NOMINAL_VALUES = 6
 WITH_DYNAMICS_HELD = 2
 """How many effects are taken from each score test."""
+
+LEAST_PROMISING = 0.02
+"""Where the fit is not far from the noise, so that predictions hold, an effect that predicts less than this share of
+what the first predicts is left for a later round: it is asked again once the first has been added (assumed)."""
 
 HELD_SHARE = 0.25
 """With the dynamics held an effect is proposed where it predicts this share of what others must."""
@@ -48,13 +52,20 @@ def at_the_fit(search: Search, base: Candidate, most: int) -> list[Guess]:
     return [_guess(base, base.fit, promise) for promise in promises]
 
 
+def _leading(promises: Sequence[Promise], base: Candidate) -> Sequence[Promise]:
+    """Those that promise enough beside the first."""
+    if base.times_noise > FAR_FROM_NOISE:
+        return promises
+    return [one for one in promises if one.gain > LEAST_PROMISING * promises[0].gain]
+
+
 def _begin(search: Search, base: Candidate) -> list[Start]:
     able = [effect for effect in search.able if base.hypothesis.admits(effect)]
     return [start for effect in able for start in starts(effect, search.facts)]
 
 
 def _at_the_fit(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
-    for promise in one_each(screen(search.problem, base.fit, begin), AT_THE_FIT):
+    for promise in _leading(one_each(screen(search.problem, base.fit, begin), AT_THE_FIT), base):
         yield _guess(base, base.fit, promise)
 
 
