@@ -22,8 +22,7 @@ def velocity_gain(parameters: Mapping[str, float]) -> float:
     a = _at_rest(parameters).A
     spool, velocity = State._fields.index("spool_position"), State._fields.index("velocity")
     chambers = a[[State._fields.index("pressure_a"), State._fields.index("pressure_b")]]
-    gain: float = -np.mean(chambers[:, spool] / chambers[:, velocity]) / parameters["coil_resistance"]
-    return gain
+    return -float(np.mean(chambers[:, spool] / chambers[:, velocity])) / parameters["coil_resistance"]
 
 
 def reduced(parameters: Mapping[str, float]) -> tuple[Array, Array]:
