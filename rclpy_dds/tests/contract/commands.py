@@ -63,5 +63,5 @@ def in_the_end(graph: Graph, text: str, *arguments: str) -> str:
         status, output, _ = run(graph, *arguments)
         if status == 0 and text in output:
             break
-    assert status == 0
+    assert status == 0 and text in output
     return output
