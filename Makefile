@@ -32,12 +32,14 @@ lint: env  ## style, types and the walls between the packages
 	$(RUN)/mypy $(TYPED)
 	$(RUN)/lint-imports --no-cache
 
-contract: env  ## the compatibility layer beside a real rclpy from PyPI (x86_64, Python 3.12), in .venv-rclpy/
+contract: env  ## the contract tests on a real rclpy from PyPI (x86_64; PYTHON_OF_RCLPY=python3.12), then with it
+	@$(PYTHON_OF_RCLPY) -c "import sys; sys.exit(sys.version_info[:2] != (3, 12))" || \
+	    { echo "PYTHON_OF_RCLPY=$(PYTHON_OF_RCLPY) is no Python 3.12; name one" >&2; exit 2; }
 	test -x .venv-rclpy/bin/pytest || { $(PYTHON_OF_RCLPY) -m venv .venv-rclpy && \
 	    .venv-rclpy/bin/pip install --quiet setuptools==79.0.1 && \
 	    .venv-rclpy/bin/pip install --quiet --requirement requirements/rclpy.txt; }
-	.venv-rclpy/bin/python -m pytest rclpy_dds/tests/contract -p no:launch_testing -p no:cacheprovider \
-	    -W ignore::DeprecationWarning
+	$(WITH_PATH) .venv-rclpy/bin/python -m pytest rclpy_dds/tests/contract -rs -p no:launch_testing \
+	    -p no:cacheprovider -W ignore::DeprecationWarning
 	$(WITH_PATH) $(RUN)/python -m pytest rclpy_dds/tests/peers
 
 demo: env  ## the paper's experiment over DDS, then a rig with concealed physics diagnosed; all in out/demo/

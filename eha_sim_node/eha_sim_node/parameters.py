@@ -34,7 +34,6 @@ class Row:
     upper: float | None = None
     fixed: bool = False
     choices: tuple[str, ...] = ()
-    hint: str = ""
 
     def convert(self, value: object) -> Value:
         """Return the value in the parameter's type, or raise ParameterError.
@@ -81,7 +80,7 @@ class Row:
     def descriptor(self) -> ParameterDescriptor:
         """Return what `ros2 param describe` shows and rqt_reconfigure makes sliders from."""
         descriptor = ParameterDescriptor(name=self.name, description=self.meaning, read_only=self.fixed)
-        descriptor.additional_constraints = f"one of {', '.join(self.choices)}" if self.choices else self.hint
+        descriptor.additional_constraints = f"one of {', '.join(self.choices)}" if self.choices else ""
         if self.lower is not None and self.upper is not None and isfinite(self.lower) and isfinite(self.upper):
             if isinstance(self.default, list):
                 descriptor.additional_constraints = f"{len(self.default)} numbers from {self.lower:g} to {self.upper:g}"
@@ -121,8 +120,9 @@ def _plant_row(name: str, parameter: PlantParameter, default: float | list[float
     meaning = f"{parameter.meaning} {parameter.symbol} [{parameter.unit}]; {parameter.source}"
     if isinstance(default, list):
         meaning = f"values at the knots from `lower` to `upper` [{parameter.unit}]; {parameter.source}"
-    hint = "spans orders of magnitude: turn it by factors" if parameter.logarithmic else ""
-    return Row(name, default, meaning, parameter.lower, parameter.upper, hint=hint)
+    if parameter.logarithmic:  # in the meaning, which is what rqt_reconfigure shows
+        meaning += "; spans orders of magnitude: type it, by factors"
+    return Row(name, default, meaning, parameter.lower, parameter.upper)
 
 
 def plant_values(values: Mapping[str, Value], composition: Composition = PAPER) -> dict[str, float]:

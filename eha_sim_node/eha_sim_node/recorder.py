@@ -13,6 +13,7 @@ from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
 from eha_core.errors import RecordingError
 from eha_core.recording import OfferedQuality, RecordingWriter, definition_of
@@ -135,7 +136,8 @@ class Recorder:
         namespace = self._node.get_namespace().rstrip("/") + "/"
         for topic, types in self._node.get_topic_names_and_types():
             known = topic in self._types or topic in self.unrecorded
-            if not known and (topic.startswith(namespace) or topic in _ALWAYS):
+            hidden = topic_or_service_is_hidden(topic)
+            if not known and not hidden and (topic.startswith(namespace) or topic in _ALWAYS):
                 self._subscribe(topic, types[0])
 
     def _subscribe(self, topic: str, type_name: str) -> None:

@@ -6,21 +6,22 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Sequence
+from random import randrange
 
 import rclpy
-from rcl_interfaces.srv import GetParameterTypes
 from rclpy.executors import ExternalShutdownException
 from rclpy.logging import get_logger
 from rclpy.node import Node
-from rclpy.task import Future
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import UInt64
 
 from eha_core.errors import EhaError
 from eha_core.plant import Plant
 from eha_sim_node.parameters import Row
 
 _DISCOVERY = 1.5  # s until a node that is there has surely been seen, on a busy machine too
-_ANSWER = 5.0  # s within which a node that lives answers
-_AGAIN = 0.5  # s until it is asked once more
+_ANSWER = 5.0  # s within which one that is in the graph says when it began, if it lives
+_SHUFFLE = 1_000_000  # ns; nodes that begin within so little are put in a random order
 
 
 class StartError(EhaError):
@@ -103,33 +104,39 @@ def _join() -> None:
 
 
 def _refuse_namesake(node: Node) -> None:
-    """Raise StartError if a living node has this one's full name.
+    """Raise StartError if another node of this one's full name runs, or began to start before this one did.
 
-    A node that was killed stays in the graph for a while. It does not answer, and must not keep its successor out.
+    Each says on a latched topic when it began, and 0 once it runs; who hears a smaller number gives way, so that of
+    several that start at once one stays. A node that was killed is in the graph for a while, but says nothing: it does
+    not keep its successor out.
     """
     name = node.get_fully_qualified_name()
-    deadline = time.monotonic() + _DISCOVERY
-    while _count(node, name) < 2:
-        if time.monotonic() > deadline:
-            return
-        time.sleep(0.05)
-    # Asked from a node of its own: this node's parameter services stay silent as long as nobody spins it.
+    latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    began = time.time_ns() // _SHUFFLE * _SHUFFLE + randrange(1, _SHUFFLE)
+    claims = node.create_publisher(UInt64, "~/_began", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    claims.publish(UInt64(data=began))
+    # Heard by a node of its own: nothing of this one may act before it is clear that it stays.
     probe = Node("eha_start_probe", use_global_arguments=False, start_parameter_services=False, enable_rosout=False)
     try:
-        client = probe.create_client(GetParameterTypes, f"{name}/get_parameter_types")
-        asked: list[Future] = []
-        deadline = time.monotonic() + _ANSWER
-        while not any(future.done() for future in asked):
-            if time.monotonic() > deadline:
-                return
-            # Again and again: a request gets lost as long as the name has been discovered, but not yet the service.
-            asked.append(client.call_async(GetParameterTypes.Request(names=["use_sim_time"])))
-            rclpy.spin_until_future_complete(probe, asked[-1], timeout_sec=_AGAIN)
+        heard: set[int] = set()
+        probe.create_subscription(UInt64, f"{name}/_began", lambda message: heard.add(message.data), latched)
+        start = time.monotonic()
+        while _undecided(heard, began, time.monotonic() - start, lambda: _count(node, name)):
+            rclpy.spin_once(probe, timeout_sec=0.05)
+    finally:
+        probe.destroy_node()
+    if min(heard, default=began) < began:
         raise StartError(
             f"a node named {name} is running already; stop it, or start this one with --ros-args -r __node:=OTHER_NAME"
         )
-    finally:
-        probe.destroy_node()
+    claims.publish(UInt64(data=0))
+
+
+def _undecided(heard: set[int], began: int, waited: float, namesakes: Callable[[], int]) -> bool:
+    """Tell whether it pays to listen on: nobody came first so far, and who is in the graph may not have been heard."""
+    if min(heard, default=began) < began:
+        return False
+    return waited < _DISCOVERY or (waited < _ANSWER and namesakes() > max(1, len(heard)))
 
 
 def _count(node: Node, name: str) -> int:

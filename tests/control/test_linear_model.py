@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eha_core.control.linear_model import discretise, linearise, velocity_gain
+from eha_core.control.linear_model import discretise, reduced, velocity_gain
 from eha_core.parameters import changed, nominal_values
 from eha_core.plant import Plant
 
@@ -21,7 +21,7 @@ def test_a_gentle_command_moves_model_and_simulator_alike(changes: dict[str, flo
     values = changed(nominal_values(), changes)
     voltage = 1e-3 * np.sin(2 * np.pi * 20 * PERIOD * np.arange(300))
     seen = Plant(changes).run(np.repeat(voltage, 10), every=10)
-    over, into = discretise(*linearise(values), PERIOD)
+    over, into = discretise(*reduced(values), PERIOD)
     state, rows = np.zeros(6), []
     for volts in voltage:
         state = over @ state + into * volts

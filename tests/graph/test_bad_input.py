@@ -74,6 +74,16 @@ def test_a_second_node_of_the_same_name_is_refused(rig: Rig) -> None:
     assert first.process.poll() is None
 
 
+def test_of_three_nodes_of_one_name_that_start_at_once_one_stays(rig: Rig) -> None:
+    started = [rig.start("sim") for _ in range(3)]
+    rig.wait(lambda: sum(one.process.poll() is not None for one in started) >= 2, "the end of two")
+    rig.spin(6.0)  # longer than any of them listens for others
+    assert sorted(one.process.poll() or 0 for one in started) == [0, 2, 2]
+    [stays] = [one for one in started if one.process.poll() is None]
+    assert "running already" not in stays.output
+    assert rig.call(GetParameters, "eha_sim/get_parameters", names=["use_sim_time"]).values
+
+
 def test_a_killed_node_does_not_keep_its_successor_out(rig: Rig) -> None:
     rig.start_sim().end(signal.SIGKILL)
     successor = rig.start("sim")

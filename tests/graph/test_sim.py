@@ -108,8 +108,9 @@ def test_every_plant_parameter_is_described_with_unit_and_range(rig: Rig) -> Non
             assert item.additional_constraints == f"25 numbers from {row.lower:g} to {row.upper:g}"
             continue
         assert f"[{row.unit}]" in item.description
+        assert ("orders of magnitude" in item.description) == row.logarithmic  # what rqt_reconfigure shows
         bounds = item.floating_point_range[0]
-        assert (bounds.from_value, bounds.to_value) == (row.lower, row.upper)
+        assert (bounds.from_value, bounds.to_value, bounds.step) == (row.lower, row.upper, 0.0)  # every value between
 
 
 def test_names_of_before_are_read_with_a_warning_and_laws_are_lists(rig: Rig) -> None:

@@ -1,13 +1,15 @@
-"""The actuator linearised at rest in the middle of its stroke."""
+"""The plant's linearisation as controllers want it: at rest in mid stroke, one pressure difference, sampled."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
+
+from eha_core.parameters import NOMINAL
+from eha_core.plant import LinearPlant, State, linearise
 
 Array = NDArray[np.float64]
 
@@ -16,32 +18,28 @@ STATES = ("position", "velocity", "load_pressure", "spool_position", "spool_velo
 
 
 def velocity_gain(parameters: Mapping[str, float]) -> float:
-    """Steady velocity per volt without load [(m/s)/V]: the valve's no-load flow over the piston's area."""
-    return _flow_gain(parameters) / (parameters["coil_resistance"] * _area(parameters))
+    """Steady velocity per volt without load [(m/s)/V]: the mean of both chambers' no-load flow over their area."""
+    a = _at_rest(parameters).A
+    spool, velocity = State._fields.index("spool_position"), State._fields.index("velocity")
+    chambers = a[[State._fields.index("pressure_a"), State._fields.index("pressure_b")]]
+    return -float(np.mean(chambers[:, spool] / chambers[:, velocity])) / parameters["coil_resistance"]
 
 
-def linearise(parameters: Mapping[str, float]) -> tuple[Array, Array]:
+def reduced(parameters: Mapping[str, float]) -> tuple[Array, Array]:
     """Return A [6, 6] and B [6] of x' = A x + B u, u in volts, states as in STATES.
 
-    The model's equations (1) to (10) at zero opening and equal chamber pressures; coil and spool far from their
-    limits. The cylinder is taken as symmetric, with the mean of its areas.
+    `plant.linearise` with the chambers' mean pressure held: in a symmetric cylinder no voltage moves it, and no sensor
+    of motion or force sees it. Effects are left out.
     """
-    get = parameters.__getitem__
-    area, mass = _area(parameters), get("moving_mass")
-    volume = area * get("actuator_displacement") + get("line_volume")
-    stiffness = get("bulk_modulus") / volume  # of one chamber, Pa/m^3
-    frequency, damping = get("valve_natural_frequency"), get("valve_damping_ratio")
-    a = np.zeros((6, 6))
-    a[0, 1] = 1.0
-    a[1, :3] = -get("spring_stiffness") / mass, -get("damping_coefficient") / mass, area / mass
-    leak = 2.0 * get("internal_leakage") + get("external_leakage")
-    a[2, 1:4] = -2.0 * stiffness * area, -stiffness * leak, 2.0 * stiffness * _flow_gain(parameters)
-    a[3, 4] = 1.0
-    a[4, 3:] = -(frequency**2), -2.0 * damping * frequency, frequency**2
-    a[5, 5] = -get("coil_resistance") / get("coil_inductance")
-    b = np.zeros(6)
-    b[5] = 1.0 / get("coil_inductance")
-    return a, b
+    plant = _at_rest(parameters)
+    gather, spread = np.zeros((len(STATES), len(State._fields))), np.zeros((len(State._fields), len(STATES)))
+    for row, name in enumerate(STATES):
+        of_name = {"pressure_a": 1.0, "pressure_b": -1.0} if name == "load_pressure" else {name: 1.0}
+        for field, sign in of_name.items():
+            column = State._fields.index(field)
+            gather[row, column] = sign
+            spread[column, row] = sign / len(of_name)
+    return gather @ plant.A @ spread, gather @ plant.B[:, 0]
 
 
 def discretise(a: Array, b: Array, period: float) -> tuple[Array, Array]:
@@ -53,11 +51,6 @@ def discretise(a: Array, b: Array, period: float) -> tuple[Array, Array]:
     return over[:size, :size], over[:size, size]
 
 
-def _area(parameters: Mapping[str, float]) -> float:
-    return 0.5 * (parameters["piston_area"] + parameters["piston_area_b"])
-
-
-def _flow_gain(parameters: Mapping[str, float]) -> float:
-    """No-load flow per ampere-equivalent of spool position [m^3/(s A)]."""
-    drop = 0.5 * (parameters["supply_pressure"] - parameters["return_pressure"])
-    return parameters["valve_gain"] * sqrt(drop)
+def _at_rest(parameters: Mapping[str, float]) -> LinearPlant:
+    """The nominal plant about mid stroke, whatever effects the parameters switch on."""
+    return linearise({row.name: parameters[row.name] for row in NOMINAL})

@@ -7,7 +7,7 @@ from scipy.linalg import solve_discrete_are
 
 from eha_core.control.integrator import Integrator
 from eha_core.control.interface import Controller, Measurement, Target
-from eha_core.control.linear_model import Array, discretise, linearise
+from eha_core.control.linear_model import Array, discretise, reduced
 
 POSITION_ERROR = 3e-3
 """m; the position error that is as bad as VOLTAGE_USED."""
@@ -35,7 +35,7 @@ class LinearQuadratic(Controller):
 
     def reset(self) -> None:
         """Forget what was seen."""
-        a, b = linearise(self._parameters)
+        a, b = reduced(self._parameters)
         self._over, self._into = discretise(a, b, self._period)
         area = 0.5 * (self._parameters["piston_area"] + self._parameters["piston_area_b"])
         self._sensors = np.zeros((3, 6))

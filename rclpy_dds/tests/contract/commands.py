@@ -9,9 +9,19 @@ import subprocess
 import sys
 from pathlib import Path
 
-from contract.conftest import Graph
+import pytest
+import rclpy
+
+from contract.conftest import IS_LAYER, Graph
 
 ROS2 = shutil.which("ros2", path=os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", "")]))
+needs_ros2 = pytest.mark.skipif(ROS2 is None, reason="no ros2 command")
+# A real rclpy without a `ros2` of its own is looked at with the layer's: all but services work between the two.
+_ACROSS = not IS_LAYER and ROS2 is not None and "rclpy_dds" in Path(ROS2).read_text(encoding="utf-8", errors="replace")
+calls_services = pytest.mark.skipif(
+    _ACROSS and rclpy.get_rmw_implementation_identifier() == "rmw_fastrtps_cpp",
+    reason="calls a service between Cyclone DDS and Fast DDS, which do not understand each other's",
+)
 
 
 class Command:
@@ -44,3 +54,14 @@ def run(graph: Graph | None, *arguments: str) -> tuple[int, str, str]:
     if graph is not None:
         assert graph.spin_until(lambda: command.process.poll() is not None, 30.0)
     return command.result()
+
+
+def in_the_end(graph: Graph, text: str, *arguments: str) -> str:
+    """Return a command's output once it holds a text: ROS 2's daemon and the layer first have to find the nodes."""
+    status, output = 1, ""
+    for _ in range(5):
+        status, output, _ = run(graph, *arguments)
+        if status == 0 and text in output:
+            break
+    assert status == 0 and text in output
+    return output

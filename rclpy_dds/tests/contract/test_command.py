@@ -15,11 +15,11 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool
 
-from contract.commands import ROS2, Command
+from contract.commands import Command, calls_services, in_the_end, needs_ros2
 from contract.commands import run as _run
-from contract.conftest import Graph, Program, only_layer
+from contract.conftest import Graph, Program
 
-pytestmark = pytest.mark.skipif(ROS2 is None, reason="no ros2 command")
+pytestmark = needs_ros2
 
 
 LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -28,13 +28,13 @@ LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 def test_lists_show_what_is_there(graph: Graph) -> None:
     node = graph.node("sim", namespace="/rig")
     node.create_publisher(Float64, "volts", 10)
-    status, output, _ = _run(graph, "topic", "list", "-t")
-    assert status == 0 and "/rig/volts [std_msgs/msg/Float64]" in output.splitlines()
-    assert "/rig/sim" in _run(graph, "node", "list")[1].splitlines()
-    assert "/rig/sim/set_parameters" in _run(graph, "service", "list")[1].splitlines()
-    information = _run(graph, "node", "info", "/rig/sim")[1]
+    output = in_the_end(graph, "/rig/volts", "topic", "list", "-t")
+    assert "/rig/volts [std_msgs/msg/Float64]" in output.splitlines()
+    assert "/rig/sim" in in_the_end(graph, "/rig/sim", "node", "list", "--spin-time", "3").splitlines()
+    assert "/rig/sim/set_parameters" in in_the_end(graph, "/rig/sim", "service", "list").splitlines()
+    information = in_the_end(graph, "/rig/volts", "node", "info", "/rig/sim", "--spin-time", "3")
     assert "  Publishers:\n" in information and "    /rig/volts: std_msgs/msg/Float64\n" in information
-    assert "Publisher count: 1" in _run(graph, "topic", "info", "-v", "/rig/volts")[1]
+    assert in_the_end(graph, "Publisher count: 1", "topic", "info", "-v", "/rig/volts")
 
 
 def test_echo_prints_yaml(graph: Graph) -> None:
@@ -55,17 +55,25 @@ def test_pub_sends_the_number_asked_for(graph: Graph) -> None:
 def test_hz_tells_the_rate(graph: Graph) -> None:
     node = graph.node("speaker")
     publisher = node.create_publisher(Float64, "x", 10)
-    node.create_timer(0.01, lambda: publisher.publish(Float64()))
+    sent: list[float] = []
+
+    def send() -> None:
+        publisher.publish(Float64())
+        sent.append(time.monotonic())
+
+    node.create_timer(0.01, send)
     command = Command("topic", "hz", "/x")
     assert graph.spin_until(lambda: publisher.get_subscription_count() == 1, 15.0)
     end = time.monotonic() + 2.5  # it tells once a second
+    sent.clear()
     graph.spin_until(lambda: time.monotonic() > end)
     command.interrupt()
     output = command.result()[1]
     rate = float(output.split("average rate: ")[1].split()[0])
-    assert rate == pytest.approx(100.0, rel=0.2)
+    assert rate == pytest.approx((len(sent) - 1) / (sent[-1] - sent[0]), rel=0.2)  # 100, but on a busy machine
 
 
+@calls_services
 def test_parameters_are_set_got_and_described(graph: Graph) -> None:
     node = graph.node("sim")
     node.declare_parameter("leakage", 1e-12)
@@ -79,20 +87,7 @@ def test_parameters_are_set_got_and_described(graph: Graph) -> None:
     assert _run(graph, "param", "get", "/nobody", "leakage")[::2] == (1, "Node not found\n")
 
 
-@only_layer  # ROS 2's own loses one of the two values that share a name, or fails
-def test_a_dump_of_a_group_called_like_a_parameter_is_a_parameters_file(graph: Graph, tmp_path: Path) -> None:
-    node, values = graph.node("sim"), {"gain": 1.5, "gain.a": 2.5, "valve.lag.time": 3.5}
-    node.declare_parameters("", list(values.items()))
-    status, output, errors = _run(graph, "param", "dump", "/sim")
-    assert status == 0, errors
-    assert "    gain: 1.5\n    gain.a: 2.5\n" in output and "    valve:\n      lag:\n        time: 3.5\n" in output
-    file = tmp_path / "dumped.yaml"
-    file.write_text(output)
-    other = graph.node("other", cli_args=["--ros-args", "-r", "__node:=sim", "--params-file", str(file)])
-    other.declare_parameters("", [(name, 0.0) for name in values])
-    assert {name: other.get_parameter(name).value for name in values} == values
-
-
+@calls_services
 def test_a_service_is_called(graph: Graph) -> None:
     def answer(request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         response.success, response.message = request.data, "set"
@@ -220,37 +215,7 @@ def test_launch_starts_and_ends_what_the_file_says(package: Path, graph: Graph) 
     assert graph.spin_until(lambda: "/rig/renamed" not in observer.get_fully_qualified_node_names(), 2.0)
 
 
-@only_layer
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (["run", "no_package", "x"], "Package 'no_package' not found"),
-        (["topic", "pub", "/x", "no_msgs/msg/X", "{}"], "The passed message type is invalid"),
-        (["topic", "pub", "-1", "/x", "std_msgs/msg/Float64", "{dada: 1}"], "no attribute 'dada'"),
-        (["topic", "pub", "-1", "/x", "std_msgs/msg/Float64", "5"], "dictionary in YAML format"),
-        (["topic", "echo", "/nothing"], "Could not determine the type"),
-        (["bag", "info", "/nothing.mcap"], "does not exist"),
-        (["launch", "no_package", "x.launch.yaml"], "not found"),
-        (["action", "list"], "does not offer actions"),
-    ],
-)
-def test_what_cannot_be_done_is_one_line_and_a_status(arguments: list[str], told: str) -> None:
-    status, output, errors = _run(None, *arguments)
-    assert status == 1 and told in errors
-    assert "Traceback" not in output + errors
-
-
-@only_layer
-@pytest.mark.parametrize(
-    "text", ["launch: 5", "launch:\n- fly: {}", "launch:\n- node: {exec: x}", "{", "launch:\n- arg: {name: a}"]
-)
-def test_an_unusable_launch_file_is_one_line(tmp_path: Path, text: str) -> None:
-    file = tmp_path / "bad.launch.yaml"
-    file.write_text(text)
-    status, _, errors = _run(None, "launch", str(file))
-    assert status == 1 and str(file) in errors and len(errors.strip().splitlines()) == 1
-
-
+@calls_services
 def test_parameters_of_another_process(graph: Graph, program: Callable[..., Program]) -> None:
     source = (
         "import rclpy; rclpy.init(); n = rclpy.create_node('far'); n.declare_parameter('a', 1); "

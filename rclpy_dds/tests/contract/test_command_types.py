@@ -4,34 +4,22 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
 import yaml
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
 
-from contract.commands import ROS2, run
+from contract.commands import calls_services, in_the_end, needs_ros2, run
 from contract.conftest import Graph
 
-pytestmark = pytest.mark.skipif(ROS2 is None, reason="no ros2 command")
-
-
-def _in_the_end(graph: Graph, *arguments: str) -> str:
-    """Return a command's output; a real ROS 2 answers from a daemon that first has to find the nodes."""
-    status, output = 1, ""
-    for _ in range(5):
-        status, output, _ = run(graph, *arguments)
-        if status == 0:
-            break
-    assert status == 0
-    return output
+pytestmark = needs_ros2
 
 
 def test_types_are_told_by_name(graph: Graph) -> None:
     node = graph.node("sim")
     node.create_publisher(Float64, "volts", 10)
     node.create_service(SetBool, "switch", lambda request, response: response)
-    assert _in_the_end(graph, "topic", "type", "/volts") == "std_msgs/msg/Float64\n"
-    assert _in_the_end(graph, "service", "type", "/switch") == "std_srvs/srv/SetBool\n"
+    assert in_the_end(graph, "", "topic", "type", "/volts") == "std_msgs/msg/Float64\n"
+    assert in_the_end(graph, "", "service", "type", "/switch") == "std_srvs/srv/SetBool\n"
     assert run(graph, "topic", "type", "/nothing")[0] == 1
 
 
@@ -43,10 +31,11 @@ def test_interfaces_are_listed_and_shown() -> None:
     assert status == 0 and [line for line in shown if line] == ["bool data", "---", "bool success", "string message"]
 
 
+@calls_services
 def test_parameters_are_dumped_as_a_file_and_loaded_from_one(graph: Graph, tmp_path: Path) -> None:
     node = graph.node("sim", namespace="/rig")
     node.declare_parameters("", [("leakage", 1e-12), ("group.names", ["a", "b"]), ("count", 3)])
-    dumped = yaml.safe_load(_in_the_end(graph, "param", "dump", "/rig/sim"))["/rig/sim"]["ros__parameters"]
+    dumped = yaml.safe_load(in_the_end(graph, "", "param", "dump", "/rig/sim"))["/rig/sim"]["ros__parameters"]
     assert (float(dumped["leakage"]), dumped["group"]["names"], dumped["count"]) == (1e-12, ["a", "b"], 3)
     file = tmp_path / "parameters.yaml"
     file.write_text("/rig/sim:\n  ros__parameters:\n    leakage: 0.25\n    group: {names: [c]}\n")

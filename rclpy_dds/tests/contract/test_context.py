@@ -14,7 +14,7 @@ from rclpy.node import Node
 from rclpy.task import Future
 from std_msgs.msg import Float64
 
-from contract.conftest import Graph, only_layer
+from contract.conftest import Graph
 
 
 def test_a_context_is_between_init_and_shutdown() -> None:
@@ -37,14 +37,6 @@ def test_the_default_context_may_begin_again() -> None:
         assert rclpy.ok()
         rclpy.create_node("brief").destroy_node()
         rclpy.shutdown()
-        assert not rclpy.ok()
-
-
-@only_layer  # the first releases of Jazzy cannot do this
-def test_a_with_statement_ends_what_init_began() -> None:
-    for _ in range(2):
-        with rclpy.init(args=[]):
-            assert rclpy.ok()
         assert not rclpy.ok()
 
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
-from contract.conftest import Graph, Program, only_layer
+from contract.conftest import Graph, Program
 
 Start = Callable[..., Program]
 
@@ -59,36 +58,3 @@ def test_localhost_only_still_finds_what_is_on_this_machine(
     monkeypatch.setenv("ROS_LOCALHOST_ONLY", "1")
     program(NODE).wait_for("ready")
     assert _is_seen(graph, 5.0)
-
-
-@only_layer
-def test_cyclone_dds_is_configured_by_its_own_variable(
-    program: Start, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    log = tmp_path / "cyclone.log"
-    tracing = f"<Tracing><Verbosity>config</Verbosity><OutputFile>{log}</OutputFile></Tracing>"
-    monkeypatch.setenv("CYCLONEDDS_URI", f"<CycloneDDS><Domain>{tracing}</Domain></CycloneDDS>")
-    program(NODE).wait_for("ready")
-    assert "Discovery/Peers" in log.read_text()  # the layer's own settings stand beside the user's
-
-
-@only_layer
-@pytest.mark.parametrize(
-    ("name", "value", "told"),
-    [
-        ("ROS_DOMAIN_ID", "233", "ROS_DOMAIN_ID='233'"),
-        ("ROS_DOMAIN_ID", "one", "ROS_DOMAIN_ID='one'"),
-        (
-            "CYCLONEDDS_URI",
-            '<General><Interfaces><NetworkInterface name="none0"/></Interfaces></General>',
-            "network interface",
-        ),
-        ("CYCLONEDDS_URI", "<General><Nonsense/></General>", "CYCLONEDDS_URI"),
-    ],
-)
-def test_what_cannot_be_joined_is_an_error_that_says_why(
-    program: Start, monkeypatch: pytest.MonkeyPatch, name: str, value: str, told: str
-) -> None:
-    monkeypatch.setenv(name, value)
-    source = "import rclpy\ntry:\n    rclpy.init()\nexcept RuntimeError as error:\n    print('refused:', error)"
-    assert told in program(source).wait_for("refused")

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import array
-import os
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy
 import pytest
@@ -16,7 +14,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import ByteMultiArray, Float64, Header
 from std_srvs.srv import SetBool
 
-from contract.conftest import Program, only_layer
+from contract.conftest import Program
 
 
 def test_defaults_and_field_types() -> None:
@@ -91,28 +89,3 @@ def test_slots_are_the_fields_and_constants_belong_to_the_class() -> None:
     assert set(JointState.__slots__) >= {"_header", "_name", "_position", "_velocity", "_effort"}
     assert list(JointState.get_fields_and_field_types()) == ["header", "name", "position", "velocity", "effort"]
     assert (DiagnosticStatus.WARN, DiagnosticStatus.STALE) == (b"\x01", b"\x03")
-
-
-@only_layer  # elsewhere they are made when a package is built
-def test_messages_of_a_package_are_found_where_it_is_installed(
-    program: Callable[..., Program], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    share = tmp_path / "share" / "found_msgs"
-    for folder, name, text in (
-        ("msg", "Found.msg", "int8 LOW=-5\nfloat64[3] x [1, 2.5, -3]\nstd_msgs/Header header\n"),
-        ("srv", "Ask.srv", "string word\n---\nfound_msgs/Found answer\n"),
-    ):
-        (share / folder).mkdir(parents=True)
-        (share / folder / name).write_text(text)
-    before = os.environ.get("AMENT_PREFIX_PATH")
-    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tmp_path}{os.pathsep}{before}" if before else str(tmp_path))
-    source = """
-from found_msgs.msg import Found
-from found_msgs.srv import Ask
-from rclpy.serialization import deserialize_message, serialize_message
-sent = Ask.Response(answer=Found(x=[4.0, 5.0, 6.0]))
-sent.answer.header.frame_id = "rig"
-assert deserialize_message(serialize_message(sent), Ask.Response) == sent
-print("found", Found().x.tolist(), Found.LOW, sent.answer.header.frame_id)
-"""
-    assert program(source).wait_for("found").strip() == "found [1.0, 2.5, -3.0] -5 rig"

@@ -1,14 +1,12 @@
-"""On the wire: against peers that know nothing of the layer, and byte for byte."""
+"""On the wire: Cyclone DDS without the layer, its own settings, and what is malformed."""
 
 from __future__ import annotations
 
-import random
+from pathlib import Path
 
 import pytest
-
-from contract.conftest import Graph, Program, only_layer
-
-pytestmark = only_layer
+from contract.conftest import Graph, Program
+from contract.test_environment import NODE, Start
 
 # A plain Cyclone DDS process with a type declared by hand, as rmw_cyclonedds_cpp would announce it.
 PEER = """
@@ -86,77 +84,6 @@ def test_a_plain_cyclone_dds_peer_reads_and_answers(graph: Graph, program: type[
     )
 
 
-def _fill(message: object, generator: random.Random) -> object:
-    """Give every field of a message a value of its type."""
-    import array
-
-    import numpy
-
-    from rclpy_dds.interfaces.definition import STRINGS
-    from rclpy_dds.interfaces.message import Message, message_class
-    from rclpy_dds.interfaces.store import message as definition
-
-    for field in definition(message.__ros_name__).fields:  # type: ignore[attr-defined]
-        kind, value = field.type, getattr(message, field.name)
-        count = kind.size if kind.container == "array" else min(generator.randrange(4), kind.size or 9)
-        if kind.is_message:
-            made = [_fill(message_class(kind.base)(), generator) for _ in range(count if kind.container else 1)]
-        elif kind.base in STRINGS:
-            made = [
-                "".join(generator.choices("aü€ ", k=generator.randrange(5)))
-                for _ in range(count if kind.container else 1)
-            ]
-        elif kind.base == "byte":
-            made = [bytes([generator.randrange(256)]) for _ in range(count if kind.container else 1)]
-        else:
-            whole = generator.choices(range(2 if kind.base == "bool" else 100), k=count if kind.container else 1)
-            made = (
-                [bool(n) for n in whole]
-                if kind.base == "bool"
-                else [n / 4 if "float" in kind.base else n for n in whole]
-            )
-        if isinstance(value, array.array):
-            value = array.array(value.typecode, made)
-        elif isinstance(value, numpy.ndarray):
-            value = numpy.array(made, dtype=value.dtype)
-        else:
-            value = made if kind.container else made[0]
-        setattr(message, field.name, value)
-        assert not isinstance(value, Message) or value == getattr(message, field.name)
-    return message
-
-
-def test_the_codec_agrees_with_rosbags_on_every_type_and_both_byte_orders() -> None:
-    from rclpy_dds.interfaces.codec import decoder, encoder
-    from rclpy_dds.interfaces.message import message_class
-    from rclpy_dds.interfaces.store import typestore
-
-    generator, store = random.Random(1), typestore()
-    names = sorted(store.fielddefs)
-    assert len(names) > 100
-    for name in names:
-        message = _fill(message_class(name)(), generator)
-        data = encoder(name)(message)
-        assert decoder(name)(data) == message, name
-        other = store.deserialize_cdr(data, name)
-        assert bytes(store.serialize_cdr(other, name, little_endian=True)).ljust(len(data), b"\0") == data, name
-        assert decoder(name)(bytes(store.serialize_cdr(other, name, little_endian=False))) == message, name
-
-
-def test_type_hashes_agree_with_rosbags() -> None:
-    from rclpy_dds.interfaces.store import message, typestore
-    from rclpy_dds.wire.hashes import type_hash
-
-    def has_char(name: str) -> bool:
-        types = [field.type.base for field in message(name).fields]
-        return "char" in types or any(has_char(base) for base in types if "/" in base)
-
-    # char is uint8 to ROS 2; rosbags numbers it on its own.
-    for name in sorted(typestore().fielddefs):
-        if not has_char(name):
-            assert type_hash(name) == typestore().hash_rihs01(name), name
-
-
 def test_cyclone_dds_itself_still_works_beside_the_layer(program: type[Program]) -> None:
     source = """
 import rclpy
@@ -211,39 +138,6 @@ def test_a_malformed_sample_is_logged_and_the_executor_goes_on(
     assert "dropped a malformed sample on '/x'" in capfd.readouterr().err
 
 
-@pytest.mark.parametrize(
-    "text", ["float64", "float64 1x", "Float64[ x", "int8 A=text", "float64 x\nfloat64 x", "nonsense x y"]
-)
-def test_an_unparsable_definition_names_type_and_line(text: str) -> None:
-    from rclpy_dds.interfaces.definition import DefinitionError, parse_message
-
-    with pytest.raises(DefinitionError, match=r"some_msgs/msg/Bad, line \d"):
-        parse_message("some_msgs/msg/Bad", text)
-
-
-def test_definitions_hold_defaults_bounds_and_constants() -> None:
-    from rclpy_dds.interfaces.definition import Constant, Field, FieldType, parse_message
-
-    text = (
-        "# head\nint8 LOW=-5\nstring NAME='a#b'  # text\nfloat64[3] x [1, 2.5, -3]\n"
-        "string<=4[<=2] words\nHeader header\nbool on true\n"
-    )
-    definition = parse_message("some_msgs/msg/Some", text)
-    assert definition.constants == (Constant("LOW", "int8", -5), Constant("NAME", "string", "a#b"))
-    assert definition.fields == (
-        Field("x", FieldType("float64", "array", 3), [1.0, 2.5, -3.0]),
-        Field("words", FieldType("string", "sequence", 2, 4)),
-        Field("header", FieldType("std_msgs/msg/Header")),
-        Field("on", FieldType("bool"), True),
-    )
-
-
-def test_what_is_not_offered_says_so_at_import() -> None:
-    for module in ("action", "lifecycle", "service_introspection"):
-        with pytest.raises(ImportError, match="install ROS 2"):
-            __import__(f"rclpy.{module}")
-
-
 def test_who_is_heard_through_loopback_alone_is_found(
     graph: Graph, program: type[Program], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -253,3 +147,34 @@ def test_who_is_heard_through_loopback_alone_is_found(
     monkeypatch.setenv("CYCLONEDDS_URI", pinned)
     program("import rclpy; rclpy.init(); n = rclpy.create_node('near'); print('up'); rclpy.spin(n)").wait_for("up")
     assert graph.spin_until(lambda: "near" in observer.get_node_names())
+
+
+def test_cyclone_dds_is_configured_by_its_own_variable(
+    program: Start, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    log = tmp_path / "cyclone.log"
+    tracing = f"<Tracing><Verbosity>config</Verbosity><OutputFile>{log}</OutputFile></Tracing>"
+    monkeypatch.setenv("CYCLONEDDS_URI", f"<CycloneDDS><Domain>{tracing}</Domain></CycloneDDS>")
+    program(NODE).wait_for("ready")
+    assert "Discovery/Peers" in log.read_text()  # the layer's own settings stand beside the user's
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("ROS_DOMAIN_ID", "233", "ROS_DOMAIN_ID='233'"),
+        ("ROS_DOMAIN_ID", "one", "ROS_DOMAIN_ID='one'"),
+        (
+            "CYCLONEDDS_URI",
+            '<General><Interfaces><NetworkInterface name="none0"/></Interfaces></General>',
+            "network interface",
+        ),
+        ("CYCLONEDDS_URI", "<General><Nonsense/></General>", "CYCLONEDDS_URI"),
+    ],
+)
+def test_what_cannot_be_joined_is_an_error_that_says_why(
+    program: Start, monkeypatch: pytest.MonkeyPatch, name: str, value: str, told: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    source = "import rclpy\ntry:\n    rclpy.init()\nexcept RuntimeError as error:\n    print('refused:', error)"
+    assert told in program(source).wait_for("refused")
