@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from itertools import pairwise
 
 from eha_core.plausibility import check
+from tools.hostile.extent import Extent
 from tools.hostile.row import Row
 from tools.hostile.wrong_recordings import SUBSETS, as_recording, kinds, make_wrong, rigs
 
@@ -13,12 +13,12 @@ MOST_RIGS = 500
 """Rigs that a trial checks at most; a longer one would repeat what it says."""
 
 
-def try_sound(seconds: float, seed: int) -> list[Row]:
+def try_sound(extent: Extent, seed: int) -> list[Row]:
     """Check the sound recordings of as many rigs as there is time for."""
     row = Row("sound recordings of simulated rigs checked", seed)
-    end = time.monotonic() + seconds
+    course = extent.begin()
     for rig in rigs(seed, MOST_RIGS):
-        if time.monotonic() > end:
+        if course.over(row.times):
             break
         lacking = SUBSETS[row.times % len(SUBSETS)]
         arrays = {name: pair for name, pair in rig.arrays.items() if name not in lacking}
@@ -27,14 +27,14 @@ def try_sound(seconds: float, seed: int) -> list[Row]:
     return [row]
 
 
-def try_mistakes(seconds: float, seed: int) -> list[Row]:
+def try_mistakes(extent: Extent, seed: int) -> list[Row]:
     """Check recordings with every kind of mistake, of as many rigs as there is time for."""
     row = Row(f"recordings with one of {len(list(kinds()))} kinds of mistakes checked", seed)
-    end = time.monotonic() + seconds
+    course = extent.begin()
     whole = (rig for rig in rigs(seed, MOST_RIGS) if len(rig.case.channels) == 4)
     for other, rig in pairwise(whole):
         for mistake, without in kinds():
-            if time.monotonic() > end:
+            if course.over(row.times):
                 return [row]
             finding = check(make_wrong(mistake, rig, other, without), rig.nominal)
             if finding is None:
