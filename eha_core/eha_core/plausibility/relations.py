@@ -11,15 +11,12 @@ import numpy as np
 from eha_core.plausibility.command import command
 from eha_core.plausibility.regression import correlation, fitted, regression
 from eha_core.plausibility.relation import Relation, Values, off_by, within
-from eha_core.plausibility.signals import Signals, on_grid
+from eha_core.plausibility.signals import BLOCK, Signals, on_grid
 from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
 
 MOVING = 0.1
 """Share of the largest speed above which the valve, and no leak, sets the pressures."""
-BLOCK = 2.0
-"""s; the force is compared with the speed block by block, so that a stop that is hit or a load that comes and goes
-spoils only its own."""
 
 
 def relations(recording: Recording, nominal: Values) -> dict[str, Relation]:
@@ -50,7 +47,7 @@ def _reach(signals: Signals, nominal: Values) -> Relation:
 def _velocity(signals: Signals) -> list[Relation]:
     """The velocity against the position's derivative."""
     velocity = signals.channels.get("velocity")
-    if velocity is None:
+    if velocity is None or not signals.is_motion_seen:
         return []
     together = correlation(signals.speed, velocity)
     slope = float(regression(velocity, signals.speed)[0][0])
@@ -72,7 +69,7 @@ def _force_of(signals: Signals, nominal: Values) -> FloatArray | None:
 def _force(signals: Signals, nominal: Values) -> list[Relation]:
     """What of the force goes with the speed, beside inertia and spring: the load dissipates."""
     force = _force_of(signals, nominal)
-    if force is None:
+    if force is None or not signals.is_motion_seen:
         return []
     count = max(1, round(len(force) * signals.step / BLOCK))
     columns = (force, signals.speed, signals.acceleration, signals.channels["position"])
