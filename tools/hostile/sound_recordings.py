@@ -15,12 +15,15 @@ from eha_core.exam.second import with_other_loads
 from eha_core.exam.tiers import plan
 from eha_core.parameters import nominal_values
 from eha_core.recording import Recording
+from tools.hostile.plant_tests import is_of_the_catalogue, run_on_plant
 from tools.hostile.wrong_recordings import SUBSETS, Arrays, as_recording, with_velocity
 
 SHORTEST = 2.0
 """s; a shorter recording of these rigs' motions holds too little to judge."""
 
 
+BY_TRUTH = 10
+"""One in so many recordings is made by the exam's truth whatever is concealed."""
 LONGEST = 8.0
 """s of a test are made, and all of it where an effect begins or ends during it."""
 
@@ -36,7 +39,11 @@ class Sound:
 
 
 def sound_recordings(seed: int, count: int) -> Iterator[Sound]:
-    """Recordings of the exam's rigs, every tier and every kind in turn, by an independent simulation."""
+    """Recordings of the exam's rigs, every tier and every kind in turn.
+
+    One in ten, and those of effects that the catalogue does not have or that act for a while, by the exam's independent
+    truth; the others by the simulated plant.
+    """
     for index, (tier, number) in enumerate(plan(count)):
         kind = list(KINDS)[index % len(KINDS)]
         case = draw_case(tier, number, seed)
@@ -45,7 +52,8 @@ def sound_recordings(seed: int, count: int) -> Iterator[Sound]:
         if case.loads and index % 2:
             kind, measured = f"{kind}, second load", with_other_loads(case)[0]
         else:
-            truth = simulate_case(case)
+            by_plant = index % BY_TRUTH and is_of_the_catalogue(case)
+            truth = run_on_plant(case) if by_plant else simulate_case(case)
             measured = with_velocity(case, measure(case, truth), truth)
         if kind == "reversed polarity" and case.family != "single_rod":
             measured = mirrored(measured)
