@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import importlib
 import importlib.abc
 import importlib.util
 import os
@@ -119,6 +120,22 @@ class _Mutated(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         exec(compile(self._source, str(self._path), "exec"), module.__dict__)
 
 
+def _built_on(name: str) -> set[str]:
+    """The loaded modules of the library that took something from this one, directly or through others, and itself."""
+    loaded = {key: vars(module) for key, module in sys.modules.items() if key.startswith("eha_core")}
+    stale, more = {name} & set(loaded), True
+    while more:
+        taken = {
+            key
+            for key, held in loaded.items()
+            if any(getattr(value, "__name__", "") in stale or getattr(value, "__module__", "") in stale
+                   for value in held.values())
+        }  # fmt: skip
+        more = not taken <= stale
+        stale |= taken
+    return stale
+
+
 def _run(room: str, path: Path, source: str) -> None:
     """Run the tests against a mutant, and end with 0 where they pass."""
     import resource
@@ -129,7 +146,10 @@ def _run(room: str, path: Path, source: str) -> None:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.dup2(nowhere, 2)
-    sys.meta_path.insert(0, _Mutated(f"eha_core.{room}.{path.stem}", path, source))
+    name = f"eha_core.{room}.{path.stem}"
+    for stale in _built_on(name):
+        del sys.modules[stale]
+    sys.meta_path.insert(0, _Mutated(name, path, source))
     sys.path.insert(0, str(ROOT / "tests" / room))
     os._exit(int(pytest.main([*tests_of(room, path.stem), "-x", "-q", "-p", "no:cacheprovider", "-o", "timeout=0"])))
 
@@ -162,13 +182,13 @@ def main() -> int:
         ]
         drawn = random.Random(f"{arguments.seed} {room}").sample(everywhere, min(arguments.mutants, len(everywhere)))
         noticed = 0
-        for count, (path, number) in enumerate(drawn, 1):
+        for path, number in drawn:
             source, what = mutant(path, number)
+            importlib.import_module(f"eha_core.{room}.{path.stem}")  # what it needs is then loaded once for all
             found = outcome(room, path, source)
             noticed += found == KILLED
             print(f"{found}: {what}", file=sys.stderr, flush=True)
-            print(f"\r{room}: {noticed} of {count}", end="", file=sys.stderr, flush=True)
-        print(f"\n{room}: {noticed} of {len(drawn)} mutants noticed, of {len(everywhere)}; seed {arguments.seed}")
+        print(f"{room}: {noticed} of {len(drawn)} mutants noticed, of {len(everywhere)}; seed {arguments.seed}")
     return 0
 
 
