@@ -49,6 +49,7 @@ def sound_recordings(seed: int, count: int) -> Iterator[Sound]:
         case = draw_case(tier, number, seed)
         chance = np.random.default_rng([case.seed, 12])
         case = KINDS[kind](_shortened(case), chance)
+        measured: Arrays
         if case.loads and index % 2:
             kind, measured = f"{kind}, second load", with_other_loads(case)[0]
         else:
@@ -101,8 +102,9 @@ def _small(case: Case, chance: np.random.Generator) -> Case:
 
 def _coarse(case: Case, chance: np.random.Generator) -> Case:
     """Sensors of a cheap logger: 25 um to 0.1 mm, 0.05 to 0.2 MPa, 100 or 200 samples a second."""
-    steps = {"position_step": float(chance.uniform(25e-6, 1e-4)), "pressure_step": float(chance.uniform(5e4, 2e5))}
-    return replace(case, **steps, rate=float(chance.choice((100.0, 200.0))))
+    position_step, pressure_step = float(chance.uniform(25e-6, 1e-4)), float(chance.uniform(5e4, 2e5))
+    rate = float(chance.choice((100.0, 200.0)))
+    return replace(case, position_step=position_step, pressure_step=pressure_step, rate=rate)
 
 
 KINDS: Mapping[str, Callable[[Case, np.random.Generator], Case]] = {
