@@ -12,6 +12,7 @@ import yaml
 
 from eha_core.errors import RecordingError
 from eha_core.exam.drawing import draw_case
+from eha_core.exam.second import with_other_loads
 from eha_core.plausibility import admit, check
 from eha_core.recording import Recording
 
@@ -147,6 +148,14 @@ def test_pressures_that_fall_together_in_noise_are_no_copies(rigs: dict[str, wro
         noise = 1e5 * rng.standard_normal(len(time))
         arrays[name] = (time, common + side * force / rig.nominal["piston_area"] + noise)
     assert check(wrong.as_recording(arrays), rig.nominal) is None
+
+
+def test_a_command_that_a_leak_shifts_midway_has_to_do_with_the_motion() -> None:
+    """A seal that tears under a load: the valve holds the load from then on, with far more than it moves it with."""
+    case = draw_case("recordings", 1, 7077)
+    torn = with_other_loads(case)[0]
+    assert "leakage_onset" in case.effect_ids and np.std(torn["voltage_command"][1]) > 0.05
+    assert check(wrong.as_recording(torn), {**draw_nominal(), **case.nominal}) is None
 
 
 def draw_nominal() -> dict[str, float]:

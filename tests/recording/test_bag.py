@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import apsw
 import numpy as np
 import pytest
 from recordings import SECOND, START, piston_recording
@@ -78,3 +79,21 @@ def test_what_is_no_recording_is_refused_in_one_line(
     with pytest.raises(RecordingError, match=message) as caught:
         read_recording(path.parent if "folder" in name else path)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("stamp", ["'soon'", "0.5e300", "x'00'"])
+def test_a_stamp_that_is_no_whole_number_ends_what_can_be_read(tmp_path: Path, stamp: str) -> None:
+    """SQLite keeps any value in any column."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(tmp_path / "bag", version=8, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connection = writer.add_connection("/voltage_command", FLOAT, typestore=store)
+        for k in range(4):
+            message = store.types[FLOAT](data=k * 0.1)  # type: ignore[call-arg]
+            writer.write(connection, START + k * SECOND, store.serialize_cdr(message, FLOAT))
+    (path,) = (tmp_path / "bag").glob("*.db3")
+    database = apsw.Connection(str(path))
+    database.execute(f"UPDATE messages SET timestamp = {stamp} WHERE id = (SELECT max(id) FROM messages)")
+    database.close()
+    recording = read_recording(path)
+    assert recording.damaged is not None and "damaged place" in recording.damaged
+    np.testing.assert_allclose(recording.channels["voltage_command"].values, [0.0, 0.1, 0.2])

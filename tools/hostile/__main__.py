@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
+from tools.hostile.extent import Extent
 from tools.hostile.row import Row, as_markdown
 
 
@@ -12,6 +13,7 @@ def main() -> int:
     """Run the trials; exit status 1 where a fault was found."""
     parser = argparse.ArgumentParser(prog="make hostile", description=__doc__)
     parser.add_argument("--seconds", type=float, default=20.0, help="how long each trial goes on (default %(default)s)")
+    parser.add_argument("--times", type=int, help="how often each trial is made instead, the same on every run")
     parser.add_argument("--seed", type=int, default=1, help="what the trials are drawn from (default %(default)s)")
     parser.add_argument("trials", nargs="*", help="files, kills, commands, nodes, sound, mistakes (default all)")
     arguments = parser.parse_args()
@@ -29,9 +31,10 @@ def main() -> int:
     if unknown:
         parser.error(f"there is no trial {unknown[0]}; give some of {', '.join(trials)}, or none for all")
     rows: list[Row] = []
+    extent = Extent(arguments.seconds, arguments.times)
     for name in arguments.trials or trials:
         print(f"{name} ...", file=sys.stderr, flush=True)
-        rows += trials[name](arguments.seconds, arguments.seed)
+        rows += trials[name](extent, arguments.seed)
     print(as_markdown(rows))
     for row in rows:
         for failure in row.failures[:3]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import time
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from eha_core.errors import ParameterError
 from eha_core.parameters import catalogue, nominal_values
 from eha_core.plant import COLUMNS, Plant
 from eha_core.realtime import CommandInput
+from tools.hostile.extent import Extent
 from tools.hostile.row import Row
 
 VOLTS = (0.0, -0.0, 1e-300, 5e-324, 1.0, -1.0, 10.0, 1e3, -1e9, 1e308, float("inf"), -float("inf"), float("nan"))
@@ -20,15 +20,15 @@ BEYOND = 1e-9
 """m past the stroke's end that rounding may leave."""
 
 
-def try_commands(seconds: float, seed: int) -> list[Row]:
-    """Send commands and set parameters, legal and not, for so long."""
+def try_commands(extent: Extent, seed: int) -> list[Row]:
+    """Send commands and set parameters, legal and not."""
     chance = random.Random(seed)
     row = Row("command and parameter events on the simulated plant", seed)
     rows = catalogue()
     names = list(rows)
     plant, command = Plant(nominal_values(), 1e-4, 0.0), CommandInput(10.0, 0.5)
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
+    course = extent.begin()
+    while not course.over(row.times):
         if chance.random() < 0.002:  # a new rig, or one that an earlier value has stiffened would be tried for ever
             plant = Plant(nominal_values(), 1e-4, 0.0)
         if chance.random() < 0.7:

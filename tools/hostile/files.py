@@ -6,10 +6,11 @@ import random
 import resource
 import signal
 import tempfile
-import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from multiprocessing import Pipe, get_context
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import h5py
@@ -23,12 +24,17 @@ from scipy.io import savemat
 from eha_core.errors import EhaError
 from eha_core.parameters import load_parameters
 from eha_core.recording import RecordingWriter, encode, load_topics_file, read_recording
+from tools.hostile.extent import Course, Extent
 from tools.hostile.row import Row
 
 LONGEST = 20.0
 """s that a file of some kB may take, on a busy machine."""
 MOST_MEMORY = 512_000
 """kB that the process may reach."""
+BATCH = 10_000
+"""Files that one process reads."""
+MEMORY = Path("/dev/shm")
+"""A file system in memory, where there is one: to write a file then takes no longer than to read it."""
 SECOND = 1_000_000_000
 START = 1_700_000_000 * SECOND
 
@@ -157,21 +163,52 @@ READERS: dict[str, Callable[[Path], object]] = {
 }  # fmt: skip
 
 
-def try_files(seconds: float, seed: int) -> list[Row]:
-    """Mutate and read files of each kind in turn for so long."""
-    chance = random.Random(seed)
+def try_files(extent: Extent, seed: int) -> list[Row]:
+    """Mutate and read files of each kind in turn, a batch at a time in a process of its own, which may die."""
     rows = {name: Row(f"mutated {name}", seed) for name in READERS}
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
-        content = sound_files(folder)
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            for name, read in READERS.items():
-                path = folder / f"mutated{Path(name).suffix}"
-                data = mutated(content[name], chance)
-                path.write_bytes(data)
-                _try(rows[name], read, path, data)
+    with tempfile.TemporaryDirectory(dir=MEMORY if MEMORY.is_dir() else None) as temporary:
+        content = sound_files(Path(temporary))
+        course, done = extent.begin(), 0
+        while not course.over(done):
+            for name, found in _in_its_own_process(content, Path(temporary), f"{seed} {done}", course, done).items():
+                rows[name].add(found)
+            done = sum(row.times for row in rows.values())
     return list(rows.values())
+
+
+def _in_its_own_process(
+    content: dict[str, bytes], folder: Path, seed: str, course: Course, done: int
+) -> dict[str, Row]:
+    """The rows of a batch; where its process died, those of the file that it died of."""
+    there, here = Pipe(duplex=False)
+    process = get_context("fork").Process(target=_batch, args=(content, folder, seed, course, done, here))
+    process.start()
+    here.close()
+    try:
+        rows: dict[str, Row] = there.recv()
+    except EOFError:
+        process.join()
+        path = max(folder.glob("mutated*"), key=lambda path: path.stat().st_mtime_ns)
+        rows = {name: Row(name, 0) for name in READERS if name.endswith(path.suffix)}
+        next(iter(rows.values())).fail(f"the process ended with {process.exitcode}: {path.read_bytes().hex()}")
+    process.join()
+    return rows
+
+
+def _batch(
+    content: dict[str, bytes], folder: Path, seed: str, course: Course, done: int, answer: Connection
+) -> None:
+    chance = random.Random(seed)
+    rows = {name: Row(name, 0) for name in READERS}
+    count = 0
+    while count < BATCH and not course.over(done + count):
+        for name, read in READERS.items():
+            path = folder / f"mutated{Path(name).suffix}"
+            data = mutated(content[name], chance)
+            path.write_bytes(data)
+            _try(rows[name], read, path, data)
+        count += len(READERS)
+    answer.send(rows)
 
 
 def _try(row: Row, read: Callable[[Path], object], path: Path, data: bytes) -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 from mcap.reader import make_reader
 
 from eha_core.recording import RecordingWriter, definition_of, read_recording
+from tools.hostile.extent import Extent
 from tools.hostile.row import Row
 
 AT_ONCE = 8
@@ -25,16 +26,16 @@ _TYPE = "std_msgs/msg/Float64"
 _STAMP = struct.Struct("<q")
 
 
-def try_kills(seconds: float, seed: int) -> list[Row]:
-    """Kill recorders for so long."""
+def try_kills(extent: Extent, seed: int) -> list[Row]:
+    """Kill recorders, some at once."""
     chance = random.Random(seed)
     row = Row("recorder killed while it writes 500 messages a second", seed)
     worst = 0.0
     definition_of(_TYPE)  # made once for all recorders: their time is for writing
     with tempfile.TemporaryDirectory() as temporary:
-        end = time.monotonic() + seconds
+        course = extent.begin()
         round_number = 0
-        while time.monotonic() < end:
+        while not course.over(row.times):
             paths = [Path(temporary) / f"{round_number}-{k}.mcap" for k in range(AT_ONCE)]
             recorders = [(_start(path), path) for path in paths]
             moments = sorted((chance.uniform(0.0, LONGEST_LIFE), k) for k in range(AT_ONCE))

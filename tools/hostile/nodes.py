@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from tools.hostile.extent import Extent
 from tools.hostile.row import Row
 
 DOMAIN = 88
@@ -27,8 +28,8 @@ MOST_MEMORY = 700_000
 """kB that the simulator may reach."""
 
 
-def try_nodes(seconds: float, seed: int) -> list[Row]:
-    """Start a simulator, harm it for so long, and ask after each harm whether it still answers as it should."""
+def try_nodes(extent: Extent, seed: int) -> list[Row]:
+    """Start a simulator, harm it, and ask after each harm whether it still answers as it should."""
     os.environ["ROS_DOMAIN_ID"] = str(DOMAIN)
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     with tempfile.TemporaryDirectory() as temporary:
@@ -38,7 +39,7 @@ def try_nodes(seconds: float, seed: int) -> list[Row]:
             process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, cwd=temporary)
         try:
             with _silent():
-                return _harm(process, log, seconds, seed)
+                return _harm(process, log, extent, seed)
         finally:
             process.kill()
             process.wait()
@@ -57,7 +58,7 @@ def _silent() -> Iterator[None]:
         os.close(former)
 
 
-def _harm(process: subprocess.Popen[bytes], log: Path, seconds: float, seed: int) -> list[Row]:
+def _harm(process: subprocess.Popen[bytes], log: Path, extent: Extent, seed: int) -> list[Row]:
     import rclpy
     from rclpy.node import Node
 
@@ -75,8 +76,9 @@ def _harm(process: subprocess.Popen[bytes], log: Path, seconds: float, seed: int
     rows = {name: Row(f"simulator node: {name}", seed) for name in harms}
     try:
         user.wait_for_services()
-        end = time.monotonic() + seconds
-        while time.monotonic() < end and process.poll() is None:
+        course, rounds = extent.begin(), 0
+        while not course.over(rounds) and process.poll() is None:
+            rounds += 1
             for name, harm in harms.items():
                 try:
                     harm()

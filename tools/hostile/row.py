@@ -26,6 +26,12 @@ class Row:
         self.times += 1
         self.failures.append(what)
 
+    def add(self, other: Row) -> None:
+        """What another row counted of the same kind."""
+        self.times += other.times
+        self.outcomes += other.outcomes
+        self.failures += other.failures
+
     def cells(self) -> tuple[str, ...]:
         """The row as text."""
         did = ", ".join(f"{name} {count:,}" for name, count in self.outcomes.most_common())

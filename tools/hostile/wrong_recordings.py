@@ -42,9 +42,13 @@ def rigs(seed: int, count: int) -> Iterator[Rig]:
 def make_rig(case: Case) -> Rig:
     """Run a case's test on the truth and record it."""
     truth = simulate_case(case)
+    return Rig(case, with_velocity(case, measure(case, truth), truth), {**nominal_values(), **case.nominal})
+
+
+def with_velocity(case: Case, arrays: Arrays, truth: Mapping[str, FloatArray]) -> Arrays:
+    """What was measured of a truth, and what a noisy velocity sensor tells beside it."""
     noise = case.noise * VELOCITY_NOISE * np.random.default_rng([case.seed, 3]).standard_normal(len(truth["time"]))
-    arrays = {**measure(case, truth), "velocity": (truth["time"], truth["velocity"] + noise)}
-    return Rig(case, arrays, {**nominal_values(), **case.nominal})
+    return {**arrays, "velocity": (truth["time"], truth["velocity"] + noise)}
 
 
 def as_recording(arrays: Arrays) -> Recording:

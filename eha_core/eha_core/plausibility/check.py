@@ -9,7 +9,8 @@ from eha_core.errors import RecordingError
 from eha_core.plausibility.copies import copies
 from eha_core.plausibility.finding import Finding, Suspect
 from eha_core.plausibility.mistakes import suspects, unrelated
-from eha_core.plausibility.relations import Relation, relations
+from eha_core.plausibility.relation import Relation
+from eha_core.plausibility.relations import relations
 from eha_core.recording import Recording
 
 CLOSER = 0.5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -15,20 +16,32 @@ SMOOTHED_OVER = 0.05
 """s; each of three passes averages over so much: long against a sensor's noise, short against a piston's motion."""
 FEWEST_SAMPLES = 5
 """Samples that each pass averages over at least, where a recording is sampled slowly."""
+LARGEST_NOISE = 0.5
+"""Share of the speed's standard deviation that noise may have where the speed is said to be seen."""
 FINEST_STEP = 1e-3
 """s; signs and scales need no finer grid."""
+BLOCK = 2.0
+"""s; what may come and go is compared block by block: a stop that is hit or a load that changes then spoils only its
+own."""
 LARGEST_GRID = 200_000
 """Samples that a long recording's grid has at most."""
 
 
 @dataclass(frozen=True)
 class Signals:
-    """`channels` by name, `speed` [m/s] and `acceleration` [m/s^2] of the position, all (n,) and `step` [s] apart."""
+    """`channels` by name, `speed` [m/s] and `acceleration` [m/s^2] of the position, all (n,) and `step` [s] apart;
+    `speed_noise` [m/s] is the standard deviation that the position sensor's noise has in the speed."""
 
     step: float
     channels: Mapping[str, FloatArray]
     speed: FloatArray
     acceleration: FloatArray
+    speed_noise: float
+
+    @property
+    def is_motion_seen(self) -> bool:
+        """Whether the speed is more than its noise: a piston that friction or a dead band holds tells nothing."""
+        return bool(self.speed_noise < LARGEST_NOISE * np.std(self.speed))
 
 
 def on_grid(recording: Recording) -> Signals | None:
@@ -50,7 +63,10 @@ def on_grid(recording: Recording) -> Signals | None:
         return values
 
     raw = {name: np.interp(time, channel.time, channel.values) for name, channel in recording.channels.items()}
-    speed = np.gradient(smooth(raw["position"], 1), step)
+    def speed_of(position: FloatArray) -> FloatArray:
+        return np.asarray(np.gradient(smooth(position, 1), step))
+
+    speed = speed_of(raw["position"])
     acceleration = np.gradient(smooth(speed, 1), step)
     stride = width // FEWEST_SAMPLES  # what is smoothed needs no more
     inside = slice(2 * width, -2 * width, stride)
@@ -59,4 +75,17 @@ def on_grid(recording: Recording) -> Signals | None:
         {name: smooth(values)[inside] for name, values in raw.items()},
         smooth(speed, 2)[inside],
         smooth(acceleration, 1)[inside],
+        _noise(recording.channels["position"].values) * float(np.linalg.norm(smooth(speed_of(_impulse(width)), 2))),
     )
+
+
+def _noise(values: FloatArray) -> float:
+    """Standard deviation of a channel's noise, by what is rough in it."""
+    return float(np.std(np.diff(values, 2))) / sqrt(6.0) if len(values) > 2 else 0.0
+
+
+def _impulse(width: int) -> FloatArray:
+    """One sample of 1: the root of its response's energy is the noise that a filter lets through, over the input's."""
+    impulse = np.zeros(8 * width)
+    impulse[4 * width] = 1.0
+    return impulse

@@ -127,6 +127,8 @@ def _read_sqlite(path: Path, sinks: Sinks) -> RawRecording:
                 recording.counts[connection.topic] = connection.msgcount
             connections = [connection for connection in reader.connections if connection.topic in sinks]
             for connection, log_time, data in reader.messages(connections) if connections else ():
+                if not isinstance(log_time, int):
+                    raise ValueError(f"a message on {connection.topic} has no stamp")
                 ceiling.take(len(data) + _ROW)
                 sinks[connection.topic].add(log_time, bytes(data))
                 read += 1

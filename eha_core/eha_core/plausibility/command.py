@@ -1,0 +1,94 @@
+"""The command against the motion: what it must be made of, whatever physics is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from eha_core.plausibility.regression import correlation, regression
+from eha_core.plausibility.relation import Relation, Values, off_by, within
+from eha_core.plausibility.signals import BLOCK, Signals
+from eha_core.recording.recording import FloatArray
+
+LATEST_MOTION = 0.1
+"""s by which the piston may follow the command: coil, spool, delays and sensors' lags."""
+IDLE = 0.03
+"""Share of the rated current that overlap and hysteresis of a worn valve may take before it moves anything (assumed:
+data sheets of servo valves give up to 3 % for hysteresis)."""
+OTHER_MOMENTS = 20
+"""Shifts of the command along the recording that its own moment is compared with: one in as many unrelated commands
+explains more where it is than anywhere else."""
+
+Fit = tuple[float, float, float]
+"""Share of the command that the motion explains, the command's correlation with the speed, its slope on it."""
+
+
+def gain(nominal: Values) -> float:
+    """Steady speed of the unloaded nominal piston per volt, the mean of both directions [m/(s V)]."""
+    ratio = nominal["piston_area_b"] / nominal["piston_area"]
+    roots = [np.sqrt(share / (1.0 + ratio**3) * nominal["supply_pressure"]) for share in (1.0, ratio)]
+    return float(np.mean(roots)) * nominal["valve_gain"] / nominal["piston_area"] / nominal["coil_resistance"]
+
+
+def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list[Relation]:
+    """The command against what it must be made of: the flow that moves the piston, and leakage under the force."""
+    voltage = signals.channels.get("voltage_command")
+    if voltage is None or not np.ptp(voltage) > 0.0 or not signals.is_motion_seen:
+        return []
+    others = (force,) if force is not None else (signals.channels["position"], signals.acceleration)
+    motion = (signals.speed, *others)
+    explained, together, slope = max(_fits(voltage, motion, signals.step))
+    ratio = slope * gain(nominal)  # command per speed, over the nominal
+    related = explained > 0.3 and abs(together) > 0.3
+    rated = nominal["saturation_current"] * nominal["coil_resistance"]
+    moves = float(np.ptp(voltage)) > 2.0 * IDLE * rated
+    foreign = moves and explained < 0.18 and explained <= _elsewhere(voltage, motion, signals.step)
+    return [
+        Relation("command", explained, foreign, explained > 0.3, 0.0),
+        Relation("command_scale", ratio, related and not within(ratio, 25.0), related and within(ratio, 12.0),
+                 off_by(ratio) if related else 0.0),
+    ]  # fmt: skip
+
+
+def _fits(voltage: FloatArray, motion: tuple[FloatArray, ...], step: float) -> Iterator[Fit]:
+    """What the motion explains of the command with each delay, as it is and within blocks."""
+    for delay in range(0, round(LATEST_MOTION / step) + 1, max(1, round(0.01 / step))):
+        columns = voltage[: len(voltage) - delay], *(column[delay:] for column in motion)
+        yield _fit(*columns)
+        yield _fit(*_within_blocks(columns, step))
+
+
+def _fit(voltage: FloatArray, speed: FloatArray, *others: FloatArray) -> Fit:
+    explained = regression(voltage, speed, *others)[1]
+    # The slope on the speed alone: beside a force that goes with it, its own share is any.
+    together = correlation(voltage, speed)
+    return explained, together, together * float(np.std(voltage) / (np.std(speed) + 1e-300))
+
+
+def _within_blocks(columns: tuple[FloatArray, ...], step: float) -> tuple[FloatArray, ...]:
+    """The columns less their mean in each block, the blocks with about the same weight in the first column.
+
+    A leak that begins, or a load that changes, shifts the command by more than the motion takes: it spoils its own
+    block, and no other.
+    """
+    count = max(1, round(len(columns[0]) * step / BLOCK))
+    parts = [np.array_split(column, count) for column in columns]
+    variances = np.array([np.var(part) for part in parts[0]])
+    weights = 1.0 / np.sqrt(variances + np.median(variances) + 1e-300)
+    return tuple(
+        np.concatenate([weight * (part - part.mean()) for weight, part in zip(weights, column, strict=True)])
+        for column in parts
+    )
+
+
+def _elsewhere(voltage: FloatArray, motion: tuple[FloatArray, ...], step: float) -> float:
+    """The most that the motion explains of the command where that is shifted along the recording, its end to its start.
+
+    A valve that hardly opens leaves most of the command unexplained, but what the motion explains of it, it explains
+    where it is.
+    """
+    shifts = np.linspace(0, len(voltage), OTHER_MOMENTS + 1)[1:-1].astype(int)
+    shifted = [(np.roll(voltage, shift), *motion) for shift in shifts]
+    views = [view for columns in shifted for view in (columns, _within_blocks(columns, step))]
+    return max(regression(*view)[1] for view in views)

@@ -1,0 +1,29 @@
+"""How columns go together: correlation and least squares."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eha_core.recording.recording import FloatArray
+
+
+def correlation(one: FloatArray, other: FloatArray) -> float:
+    """Pearson's, which is 0 where one of the two does not vary."""
+    one, other = one - one.mean(), other - other.mean()
+    return float(one @ other / np.sqrt((one @ one) * (other @ other) + 1e-300))
+
+
+def regression(values: FloatArray, *columns: FloatArray) -> tuple[FloatArray, float]:
+    """Coefficients of the columns, and the share of the variance that they and a constant explain."""
+    table = np.stack([*columns, np.ones(len(values))], axis=1)
+    scale = np.max(np.abs(table), axis=0) + 1e-300
+    solution = np.linalg.lstsq(table / scale, values, rcond=None)[0]
+    rest = values - (table / scale) @ solution
+    variance = float(np.sum((values - values.mean()) ** 2)) + 1e-300
+    return solution / scale, 1.0 - float(rest @ rest) / variance
+
+
+def fitted(values: FloatArray, *columns: FloatArray) -> FloatArray:
+    """What the columns and a constant explain of the values."""
+    coefficients, _ = regression(values, *columns)
+    return np.asarray(np.stack([*columns, np.ones(len(values))], axis=1) @ coefficients)
