@@ -22,7 +22,7 @@ from eha_core.plant.lane_rows import (
     VELOCITY,
 )
 from eha_core.plant.simulator import LONGEST_DELAY, Array, pack
-from eha_core.plant.spells import pieces, span
+from eha_core.plant.active_intervals import pieces, span
 
 
 class LockStep:
