@@ -15,11 +15,11 @@ from scipy.linalg import expm
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.parameters import catalogue
+from eha_core.plant.active_intervals import intervals, span
 from eha_core.plant.composite import compiled_given_step, compiled_step, given_names, given_sources
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.given import VALVES
 from eha_core.plant.parts import Source
-from eha_core.plant.active_intervals import intervals, span
 from eha_core.plant.state import AT, COLUMNS, PISTON, Places, Row
 
 Array = NDArray[np.float64]
