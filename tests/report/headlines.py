@@ -223,7 +223,14 @@ def _sure(document: Document, answer: str, basis: str) -> None:
         return
     chosen = {one["id"] for one in document["effects"]}
     scores = {frozenset(one["effects"]): one["score"] for one in document["rivals"]}
-    others = [score for effects, score in scores.items() if effects and effects != chosen]
+    if answer == "Each effect is needed":
+        least, shown = min(one["overall"] for one in document["without"].values()), re.findall(r"\d+\.?\d*", basis)
+        assert np.allclose([float(one) for one in shown], [least, document["steps"][-1]["overall"]], rtol=6e-3)
+        assert least > document["steps"][-1]["overall"]
+        return
+    others = [
+        score for effects, score in scores.items() if effects != chosen and len(effects) >= len(chosen)
+    ]
     gaps = (scores[frozenset(chosen)] - max(others), scores[frozenset(chosen)])
     for text, gap in zip((answer, basis.rpartition("Nothing added: ")[2]), gaps, strict=True):
         shown = re.search(r"([\d.,]+)( million)? behind", text)
