@@ -20,9 +20,7 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").g
 MADE = re.compile(r"catalogue/\w+\.md")
 """Pages that are made when the site is."""
 
-COMMAND = re.compile(
-    r"^(?:    |\$ )?(?:\.venv/bin/)?((?:eha|make|ros2 (?:run|launch) eha_\w+) [^|\n]*(?:\\\n[^\n]*)*)", re.MULTILINE
-)
+COMMAND = re.compile(r"^(?:    |\$ )?(?:\.venv/bin/)?((?:eha|make|ros2 (?:run|launch) eha_\w+) [^|\n]*)", re.MULTILINE)
 """A command that a page tells to type: in a block, or after a console's prompt."""
 
 OPTION = re.compile(r"--[a-z][a-z-]*")
@@ -42,10 +40,10 @@ def test_every_link_leads_to_a_file(page: Path) -> None:
 
 def commands_of(page: Path) -> list[list[str]]:
     """The words of each command of a page, without comments."""
-    text = page.read_text()
+    text = page.read_text().replace("\\\n", " ")
     blocks = re.findall(r"```(?:sh|console)\n(.*?)```|((?:^    [^\n]*\n)+)", text, re.DOTALL | re.MULTILINE)
     found = (line for pair in blocks for line in COMMAND.findall("".join(pair)))
-    return [shlex.split(line.replace("\\\n", " "), comments=True) for line in found]
+    return [shlex.split(line, comments=True) for line in found]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
