@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -11,12 +12,18 @@ import pytest
 from matplotlib.image import imread
 from nbclient import NotebookClient
 
+from eha_core.cli import main, verbs
 from eha_core.effects import effects
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 MADE = re.compile(r"catalogue/\w+\.md")
 """Pages that are made when the site is."""
+
+COMMAND = re.compile(r"^(?:    |\$ )?(?:\.venv/bin/)?((?:eha|make|ros2 (?:run|launch) eha_\w+) [^|\n]*)", re.MULTILINE)
+"""A command that a page tells to type: in a block, or after a console's prompt."""
+
+OPTION = re.compile(r"--[a-z][a-z-]*")
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 
@@ -29,6 +36,39 @@ def test_every_link_leads_to_a_file(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)", page.read_text()):
         if not target.startswith("http") and not MADE.fullmatch(target):
             assert (page.parent / target).exists(), target
+
+
+def commands_of(page: Path) -> list[list[str]]:
+    """The words of each command of a page, without comments."""
+    text = page.read_text().replace("\\\n", " ")
+    blocks = re.findall(r"```(?:sh|console)\n(.*?)```|((?:^    [^\n]*\n)+)", text, re.DOTALL | re.MULTILINE)
+    found = (line for pair in blocks for line in COMMAND.findall("".join(pair)))
+    return [shlex.split(line, comments=True) for line in found]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_command_has_a_verb_and_options_that_there_are(page: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    for words in commands_of(page):
+        if words[0] == "make":
+            assert {word for word in words[1:] if "=" not in word} <= targets, words
+        elif words[0] == "ros2":
+            package, name = ROOT / words[2], words[3]
+            there = [*package.glob("launch/*"), *(path.with_suffix("") for path in package.glob(f"{words[2]}/*.py"))]
+            assert name in {path.name for path in there}, words
+        elif words[1] in verbs():
+            with pytest.raises(SystemExit):
+                main([words[1], "--help"])
+            offered = set(OPTION.findall(capsys.readouterr().out))
+            assert {word for word in words[2:] if OPTION.fullmatch(word)} <= offered, words
+        else:
+            assert words[1] == "--version", words
+
+
+def test_commands_are_found_on_the_pages() -> None:
+    found = [words for page in PAGES for words in commands_of(page)]
+    assert {words[0] for words in found} == {"eha", "make", "ros2"}
+    assert {words[1] for words in found if words[0] == "eha"} >= {"diagnose", "exam", "inspect", "paper", "simulate"}
 
 
 @pytest.mark.parametrize("effect", effect_pages.named_effects(), ids=lambda effect: effect.id)

@@ -82,5 +82,6 @@ def test_the_page_has_key_matrix_shares_and_linked_cases() -> None:
     assert "100 %<small>2/2, 34 to 100 %</small>" in page  # single, noise 1x
     assert "33 %<small>1/3, 6 to 79 %</small>" in page  # single, noise 3x
     assert page.count('<a href="a/b.html">single-0003</a>') == 2  # among the lost, and among all
-    assert "Lost cases (3)" in page
+    assert "Wrong or failed cases (3)" in page
+    assert '<td data-label="right">50 %<small>3/6, 19 to 81 %</small></td>' in page  # all
     assert "All cases (6)" in page

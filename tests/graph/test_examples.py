@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import NodeProcess, Rig
+from headlines import hold_against
 from mcap.reader import make_reader
 from sensor_msgs.msg import JointState
 
@@ -61,6 +62,7 @@ def test_what_is_concealed_in_a_rig_is_named_and_simulated(tmp_path: Path) -> No
     assert answer == concealment.draw(1)
     document = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
     assert document["verdict"] == "missing_physics"
+    hold_against((tmp_path / "diagnosis" / "report.html").read_text(encoding="utf-8"), document)
     assert {effect["id"] for effect in document["effects"]} == set(answer.effects)
     for effect in document["effects"]:
         for name, true in answer.effects[effect["id"]].items():

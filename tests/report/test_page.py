@@ -156,7 +156,7 @@ def test_an_unknown_law_is_drawn_and_written(unknown: Diagnosis) -> None:
     stage = {one.name: one for one in story(unknown)}["model"]
     assert stage.code == "250 tanh(20 v)"
     assert "the simulation goes on without it" in " ".join(stage.sentences)
-    assert "may have bent" in " ".join({one.name: one for one in story(unknown)}["calibrate"].sentences)
+    assert "may have biased" in " ".join({one.name: one for one in story(unknown)}["calibrate"].sentences)
     assert unknown.unknown is not None
     product = replace(unknown.unknown, function_of="position, times velocity")
     simulated = replace(unknown, unknown=product, fitted_values={"recovered_force.knot_00": 3.0})

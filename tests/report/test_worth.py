@@ -10,6 +10,7 @@ import pytest
 from eha_core.diagnosis.result import Diagnosis, FittedValue
 from eha_core.report.account import account
 from eha_core.report.claims import left_in_words
+from eha_core.report.evidence import rung
 from eha_core.report.finding import headline, told_parameters, warnings
 from eha_core.report.html import page
 from eha_core.report.picture import Bars, Cells, Upright
@@ -93,10 +94,25 @@ def test_the_story_has_a_part_for_each_effect_with_its_law(several: Diagnosis) -
 
 def test_of_many_effects_the_first_sentence_has_the_names_and_the_table_the_values(several: Diagnosis) -> None:
     assert headline(several) == (
-        "The model leaves out three effects: valve deadband, Coulomb friction and constant load."
+        "The model leaves out valve deadband (half width 59.60 ± 0.84 µA), Coulomb friction (force 200.4 ± 2.5 N) and"
+        " constant load (force -76.4 ± 1.0 N); 95 % intervals."
     )
-    part = replace(several, explained=replace(several.explained, complete=False))
-    assert "three effects, and more that is not named: valve" in headline(part)
+    end = replace(several.effects[1], id="end_stop", parameters={})
+    many = replace(several, effects=(*several.effects, end))
+    assert headline(many) == (
+        "The model leaves out four effects: valve deadband, Coulomb friction, constant load and end stop."
+    )
+    part = replace(many, explained=replace(several.explained, complete=False))
+    assert "four effects, and more that is not named: valve" in headline(part)
+
+
+def test_a_hypothesis_that_swaps_one_effect_is_told_by_the_swap() -> None:
+    chosen = {"valve_deadband", "coulomb_friction", "constant_load"}
+    assert rung(chosen, chosen) == "the three named effects"
+    swapped = {"valve_deadband", "stribeck_friction", "constant_load"}
+    assert rung(swapped, chosen) == "Stribeck friction in place of Coulomb friction"
+    assert rung({*chosen, "end_stop"}, chosen) == "the named effects with end stop"
+    assert rung({"end_stop"}, chosen) == "end stop"
 
 
 def test_what_is_not_told_from_nothing_is_no_finding(several: Diagnosis) -> None:
@@ -116,11 +132,10 @@ def test_what_is_not_told_from_nothing_is_no_finding(several: Diagnosis) -> None
 def test_what_is_left_is_said_with_its_size_and_its_colour(several: Diagnosis) -> None:
     text = left_in_words(several)
     ratios = [one.rmse_after / one.noise for one in several.held_out.values()]
-    assert text.startswith(f"What is left is noise: {min(ratios):.2f} to {max(ratios):.2f} times the noise, and white")
+    assert text.startswith(f"{min(ratios):.2f} to {max(ratios):.2f} times the noise, and white")
     assert "largest autocorrelation 1.1 standard deviations" in text
     drifting = replace(several, whiteness={"position": 8.0, "pressure_a": 1.0})
-    assert "not white in position (largest autocorrelation 8.0" in left_in_words(drifting)
-    assert "is noise" not in left_in_words(drifting)
+    assert "not white in position: largest autocorrelation 8.0" in left_in_words(drifting)
 
 
 def test_a_recording_taken_as_it_is_and_a_damaged_one_are_announced_first(several: Diagnosis) -> None:

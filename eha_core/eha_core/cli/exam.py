@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 OWN = "eha diagnose"
 DIAGNOSE = "{python} -m eha_core.cli diagnose {recording} {nominal} --json {answer} --jobs 1"
 """The command of the project's own diagnosis, as a user would type it."""
-BELOW_THE_MARK = 1
+BELOW_REQUIRED = 1
 """Exit status where the score is below --require."""
 
 
@@ -51,7 +51,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--real", type=Path, metavar="DIR", help="ask measured rigs below this folder, and nothing else"
     )
     parser.add_argument("--bags", type=Path, metavar="DIR", help="show the project's own recordings in this folder too")
-    parser.add_argument("--lost", type=int, default=0, metavar="N", help="write the reports of the first N lost cases")
+    parser.add_argument(
+        "--lost", type=int, default=0, metavar="N", help="write reports of the first N wrong or failed cases"
+    )
     parser.add_argument("--require", type=float, metavar="SHARE", help="fail when fewer of all cases are right")
 
 
@@ -88,12 +90,12 @@ def run(arguments: argparse.Namespace) -> int:
     ):
         (exam.folder / name).write_text(text, encoding="utf-8")
     for summary in summaries:
-        _account(summary)
+        _print_summary(summary)
     print(f"tables: {exam.folder}/table.md, table.json, table.html")
     share = summaries[0].rows[0].right.value or 0.0
     if arguments.require is not None and share < arguments.require:
-        print(f"eha exam: {share:.3f} of the cases are right, below the mark of {arguments.require}", file=sys.stderr)
-        return BELOW_THE_MARK
+        print(f"eha exam: {share:.3f} of the cases are right, below --require {arguments.require}", file=sys.stderr)
+        return BELOW_REQUIRED
     return 0
 
 
@@ -112,8 +114,8 @@ def _run_real(arguments: argparse.Namespace) -> int:
     print(f"table and sealed predictions: {folder}/")
     share = sum(one.met for one in questions) / len(questions)
     if arguments.require is not None and share < arguments.require:
-        print(f"eha exam: {share:.3f} of the questions are met, below the mark of {arguments.require}", file=sys.stderr)
-        return BELOW_THE_MARK
+        print(f"eha exam: {share:.3f} of the questions are met, below --require {arguments.require}", file=sys.stderr)
+        return BELOW_REQUIRED
     return 0
 
 
@@ -134,7 +136,7 @@ def _show(stage: str, done: int, of: int) -> None:
     print(f"\r{stage}: {done} of {of}", end=end, file=sys.stderr, flush=True)
 
 
-def _account(summary: Summary) -> None:
+def _print_summary(summary: Summary) -> None:
     print(f"\n{summary.tool}")
     for row in summary.rows:
         print(

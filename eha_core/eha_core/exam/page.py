@@ -8,8 +8,8 @@ from importlib.resources import files
 
 from eha_core.exam.scoring import OUTCOMES, Mark, Proportion
 from eha_core.exam.shipped import Shown
-from eha_core.exam.summary import Summary, Target
-from eha_core.exam.tables import HEAD, SHOWN, outcome_rows, shown_rows
+from eha_core.exam.summary import Row, Summary, Target
+from eha_core.exam.tables import HEAD, SHOWN, shown_rows
 from eha_core.exam.tiers import MEANINGS
 
 RIGHT, WRONG, PALE = (29, 122, 140), (196, 85, 59), (233, 238, 241)
@@ -22,6 +22,7 @@ LEGIBLE = 0.55
 JUDGED = (
     "Met: yes or no where the whole 95 % interval (Wilson) of what was reached says so; open where the aim lies in it."
 )
+LINKED = "A linked name leads to the case's report; --lost N writes the reports of the first N of these cases."
 MATRIX = (
     "Row: what was concealed. Column: what was named. On the diagonal, effects that were named rightly; elsewhere, a"
     " name that was not there for each effect that was missed."
@@ -66,27 +67,40 @@ def as_html(
 
 def _tool(summary: Summary, marks: Sequence[Mark], reports: Mapping[str, str]) -> list[str]:
     """Everything about one tool."""
-    outcomes = [
-        f"<td>{escape(cells[0])}</td><td>{_bar((row.right, row.abstained, row.wrong, row.failed))}</td>"
-        + _cells(cells[2:])
-        for row, cells in zip(summary.rows, outcome_rows([summary]), strict=True)
-    ]
+    outcomes = [_outcome(row) for row in summary.rows]
     parts = [
         f"<h2>{escape(summary.tool)}</h2>",
         _table(("group", "", *HEAD), outcomes),
         f"<h3>Targets</h3><p>{JUDGED}</p>",
         _table(("target", "aim", "reached", "met"), map(_target, summary.targets)),
-        "<h3>Right, by tier and noise</h3><p>Share of cases, below it the cases and the 95 % interval.</p>",
+        "<h3>Right, by tier and noise</h3><p>Share of right cases; below it their number and 95 % interval.</p>",
         _by_noise(summary),
     ]
     if summary.confusion or summary.rightly:
         parts += [f"<h3>What was named in place of what</h3><p>{MATRIX}</p>", _matrix(summary)]
     if marks:
         count = sum(one.outcome in ("wrong", "failed") for one in marks)
-        parts.append(f"<details{' open' if count else ''}><summary>Lost cases ({count})</summary>")
+        parts.append(f"<details{' open' if count else ''}><summary>Wrong or failed cases ({count})</summary>")
+        parts.append(f"<p>{LINKED}</p>")
         parts.append(_cases([one for one in marks if one.outcome in ("wrong", "failed")], reports) + "</details>")
         parts.append(f"<details><summary>All cases ({len(marks)})</summary>{_cases(marks, reports)}</details>")
     return parts
+
+
+def _outcome(row: Row) -> str:
+    """A group of cases: a bar of its outcomes, each share with its interval, and the seconds that a case took."""
+    shares = (row.right, row.abstained, row.wrong, row.failed)
+    cells = "".join(f"<td>{_told(one)}</td>" for one in (*shares, row.site_right))
+    seconds = _cells((f"{row.median_seconds:.1f}", f"{row.longest_seconds:.1f}"))
+    return f"<td>{escape(row.group)}</td><td>{_bar(shares)}</td><td>{row.cases}</td>{cells}{seconds}"
+
+
+def _told(share: Proportion) -> str:
+    """A share in per cent, below it the cases and its interval."""
+    if share.value is None:
+        return "-"
+    low, high = (100.0 * end for end in share.interval)
+    return f"{100.0 * share.value:.0f} %<small>{share.successes}/{share.trials}, {low:.0f} to {high:.0f} %</small>"
 
 
 def _target(target: Target) -> str:
@@ -109,9 +123,7 @@ def _share(share: Proportion | None) -> str:
     """A share as a cell between two colours, with its interval."""
     if share is None or share.value is None:
         return "<td></td>"
-    low, high = (100.0 * end for end in share.interval)
-    text = f"{100.0 * share.value:.0f} %<small>{share.successes}/{share.trials}, {low:.0f} to {high:.0f} %</small>"
-    return f'<td style="{_colour(share.value)}">{text}</td>'
+    return f'<td style="{_colour(share.value)}">{_told(share)}</td>'
 
 
 def _colour(share: float) -> str:
@@ -163,11 +175,17 @@ def _cases(marks: Sequence[Mark], reports: Mapping[str, str]) -> str:
 
 
 def _table(head: Sequence[str], rows: Iterable[str], kind: str = "") -> str:
-    """A table of rows of cells."""
+    """A table of rows of cells, each of which names its column, as a phone shows them below each other."""
     headings = "".join(f"<th>{escape(one)}</th>" for one in head)
-    body = "".join(f"<tr>{row}</tr>" for row in rows)
+    body = "".join(f"<tr>{_labelled(row, head)}</tr>" for row in rows)
     table = f"<thead><tr>{headings}</tr></thead><tbody>{body}</tbody>"
     return f'<div class="scroll"><table class="{kind}">{table}</table></div>'
+
+
+def _labelled(row: str, head: Sequence[str]) -> str:
+    before, *cells = row.split("<td")
+    labelled = (f'<td data-label="{escape(one)}"{cell}' for one, cell in zip(head, cells, strict=True))
+    return before + "".join(labelled)
 
 
 def _cells(cells: Sequence[str]) -> str:

@@ -29,7 +29,7 @@ def as_json(
 
 
 def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown: Sequence[Shown] = ()) -> str:
-    """The tables as Markdown: one of outcomes with all tools, then each tool's targets and lost cases."""
+    """The tables as Markdown: one of outcomes with all tools, then each tool's targets, and wrong or failed cases."""
     lines = ["# The exam's table", "", *(f"- {name}: {value}" for name, value in about.items()), ""]
     lines += _markdown_table(("group", "tool", *HEAD), outcome_rows(summaries))
     for summary in summaries:
@@ -39,7 +39,7 @@ def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown
         lines += ["", f"## {summary.tool}: what was named in place of what", ""]
         lines += _markdown_table(("concealed", "named", "times"), _confusion(summary))
         if summary.lost:
-            lines += ["", f"## {summary.tool}: lost cases", ""]
+            lines += ["", f"## {summary.tool}: wrong or failed cases", ""]
             lines += _markdown_table(("case", "noise", "concealed", "verdict", "named"), _lost(summary))
     if shown:
         lines += ["", "## Recordings that the exam did not make", ""]

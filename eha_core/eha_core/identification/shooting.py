@@ -16,11 +16,11 @@ import numpy as np
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.per_recording import values_of
 from eha_core.plant import PAPER, Composition
+from eha_core.plant.active_intervals import intervals, span
 from eha_core.plant.composite import compiled_step
 from eha_core.plant.memory import starting_memory
 from eha_core.plant.one_by_one import side_by_side
 from eha_core.plant.simulator import LONGEST_DELAY, pack
-from eha_core.plant.spells import span, spells
 from eha_core.plant.state import AT, COLUMNS, PISTON, SEEN, Places
 
 STATE_SIZE = 4
@@ -146,7 +146,7 @@ class Shooting:
             state[PISTON] = states[window]
             memory[sensor_slots] = self.initial_states[window, 0]
             inputs, out = self.inputs[:, begin:end], rows[begin // self.every : end // self.every]
-            for spell in spells(begin - start, end - begin, self.every, acting):
+            for spell in intervals(begin - start, end - begin, self.every, acting):
                 if spell.acting and begin - start + spell.steps.start == acting[0] > 0:
                     memory, _ = starting_memory(state[AT.current], state[PISTON])
                 effects_on, piece = active if spell.acting else none, inputs[:, spell.steps]

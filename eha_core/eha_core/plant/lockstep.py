@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.effects import effects
+from eha_core.plant.active_intervals import pieces, span
 from eha_core.plant.composite import compiled_lanes, layout
 from eha_core.plant.lane_rows import (
     CURRENT,
@@ -22,7 +23,6 @@ from eha_core.plant.lane_rows import (
     VELOCITY,
 )
 from eha_core.plant.simulator import LONGEST_DELAY, Array, pack
-from eha_core.plant.spells import pieces, span
 
 
 class LockStep:

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.effects import effects
+from eha_core.plant.active_intervals import pieces, span
 from eha_core.plant.composite import compiled_given_step
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.lockstep import LockStep
 from eha_core.plant.simulator import Array, pack, step_inputs
-from eha_core.plant.spells import pieces, span
 from eha_core.plant.state import AT, PISTON, Places
 
 

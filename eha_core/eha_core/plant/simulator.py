@@ -15,11 +15,11 @@ from scipy.linalg import expm
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.parameters import catalogue
+from eha_core.plant.active_intervals import intervals, span
 from eha_core.plant.composite import compiled_given_step, compiled_step, given_names, given_sources
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.given import VALVES
 from eha_core.plant.parts import Source
-from eha_core.plant.spells import span, spells
 from eha_core.plant.state import AT, COLUMNS, PISTON, Places, Row
 
 Array = NDArray[np.float64]
@@ -273,11 +273,11 @@ class Plant:
 
     def _run(self, inputs: Array, every: int, rows: Array) -> None:
         self._state[AT.time] = self.time
-        for spell in spells(self.step_count, len(inputs), every, self._span):
-            if spell.acting and self.step_count + spell.steps.start == self._span[0] > 0:
+        for interval in intervals(self.step_count, len(inputs), every, self._span):
+            if interval.acting and self.step_count + interval.steps.start == self._span[0] > 0:
                 self._start_memory([True] * len(effects()))
-            active = self._active if spell.acting else self._none
-            self._steps(inputs[spell.steps], spell.every, rows[spell.rows], active)
+            active = self._active if interval.acting else self._none
+            self._steps(inputs[interval.steps], interval.every, rows[interval.rows], active)
         self.step_count += len(inputs)
         if self._hidden:
             rows[:, self._hidden] = np.nan

@@ -1,4 +1,4 @@
-"""The short account of a diagnosis that a person reads on the terminal."""
+"""The short report of a diagnosis that a person reads on the terminal."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def left_over(diagnosis: Diagnosis) -> str:
 
 
 def left_in_words(diagnosis: Diagnosis) -> str:
-    """What the final model leaves in size and colour, as a sentence; empty where nothing was judged."""
+    """How large what the final model leaves is and whether it is white; empty where nothing was judged."""
     ratios = [one.rmse_after / one.noise for one in judged(diagnosis).values() if np.isfinite(one.rmse_after)]
     if not ratios or not diagnosis.whiteness:
         return ""
@@ -61,10 +61,9 @@ def left_in_words(diagnosis: Diagnosis) -> str:
     size = f"{least} to {most} times the noise" if least != most else f"{most} times the noise"
     largest = max(diagnosis.whiteness.values())
     colour = f"not white in {_titles(coloured(diagnosis))}" if coloured(diagnosis) else "white"
-    told = f"noise: {size}, and white" if is_noise(diagnosis) else f"{size}, and {colour}"
     return (
-        f"What is left is {told} (largest autocorrelation {largest:.1f} standard deviations; white noise stays below"
-        f" {WHITE:g})."
+        f"{size[:1].upper()}{size[1:]}, and {colour}: largest autocorrelation {largest:.1f} standard deviations (white"
+        f" noise stays below {WHITE:g})."
     )
 
 
@@ -78,13 +77,19 @@ def equations_hold(diagnosis: Diagnosis) -> bool:
     return all(float(np.mean(residual**2)) < VIOLATED for residual in residuals)
 
 
-def improvement(diagnosis: Diagnosis) -> str:
-    """What the added physics does to the error of the position, or of the first channel there is."""
+def told_channel(diagnosis: Diagnosis) -> str:
+    """The channel whose error stands for all: the position, or the first that there is; none if it is not known."""
     fits = judged(diagnosis)
     name = "position" if "position" in fits else next(iter(fits), "")
-    if not name or not np.isfinite(fits[name].rmse_after):
+    return name if name and np.isfinite(fits[name].rmse_after) else ""
+
+
+def improvement(diagnosis: Diagnosis) -> str:
+    """What the added physics does to the error of the position, or of the first channel there is."""
+    name = told_channel(diagnosis)
+    if not name:
         return ""
-    fit, unit = fits[name], CHANNEL_KINDS[name].unit
+    fit, unit = judged(diagnosis)[name], CHANNEL_KINDS[name].unit
     where = "On data kept from the fit, the" if diagnosis.held_out else "The"
     before, after = quantity(fit.rmse_before, unit), quantity(fit.rmse_after, unit)
     noise = quantity(fit.noise, unit)

@@ -9,7 +9,6 @@ from importlib import import_module
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, FittedValue, NamedEffect
 from eha_core.effects import SITES, effects
 from eha_core.quantities import quantity, within
-from eha_core.report.claims import improvement, left_in_words
 from eha_core.report.stage import SURE
 from eha_core.report.wording import (
     VERDICT_TITLES,
@@ -27,7 +26,7 @@ NEARLY_ALL = 0.9999
 MOST_VALUES = 2
 """Values of one effect that the first sentence gives; the tables have all."""
 
-IN_A_SENTENCE = 2
+IN_A_SENTENCE = 3
 """Effects whose values the first sentence gives; of more it has the names, and a table the values."""
 
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
@@ -118,7 +117,7 @@ def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 
 def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """The sentences below it: the likely causes, what the physics is worth, and what it leaves."""
+    """The sentences below it: the likely causes, changed parameters, and how much of the mismatch is explained."""
     causes = [(one.title, one.cause) for one in map(missing, diagnosis.effects) if one.cause]
     likely = "; ".join(f"{cause} ({title})" for title, cause in causes)
     rivals = listed([" + ".join(map(effect_title, one.effects)) for one in diagnosis.alternatives])
@@ -127,11 +126,9 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
     found = (
         f"Likely cause{'s' if len(causes) > 1 else ''}: {likely}." if likely else "",
         f"This recording does not tell it from {rivals}." if rivals else "",
-        improvement(diagnosis),
         f"Parameters that differ from the nominal model: {values}{' and others' if len(changed) > 3 else ''}."
         if changed and not diagnosis.bent
         else "",
-        left_in_words(diagnosis),
         explanation(diagnosis),
     )
     return tuple(one for one in found if one)

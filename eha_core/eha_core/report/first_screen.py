@@ -1,4 +1,4 @@
-"""The pictures of the first screen: the laws, the residuals before and after, and the evidence."""
+"""The pictures of the first screen: the laws, what each model leaves, the evidence, and residuals over time."""
 
 from __future__ import annotations
 
@@ -11,12 +11,16 @@ from eha_core.identification.numbers import Array
 from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
+from eha_core.report.evidence import evidence_picture
 from eha_core.report.laws import Law, laws
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture, Ribbon
 from eha_core.report.series import spread, thinned
 from eha_core.report.stage import adds_physics
 from eha_core.report.wording import capital, channel_title
 from eha_core.report.worth import ladder_picture
+
+RIVALS = 5
+"""Hypotheses that the first screen compares; stage 4 has more."""
 
 ABREAST = 3
 """Panels beside each other."""
@@ -31,8 +35,15 @@ SURROUND = 0.12
 
 
 def pictures(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tuple[Picture, ...]:
-    """The way to the noise, the laws (those found already, if they are given), and the residuals."""
-    shown = (ladder_picture(diagnosis), law_picture(diagnosis, found), residual_picture(diagnosis))
+    """The laws (those found already, if they are given), what each model leaves, the evidence, and the residuals."""
+    rivals = bool(diagnosis.rivals)
+    title = "How far other explanations are behind"
+    shown = (
+        law_picture(diagnosis, found),
+        ladder_picture(diagnosis),
+        evidence_picture(diagnosis, RIVALS, "0-evidence", title) if rivals else None,
+        residual_picture(diagnosis),
+    )
     return tuple(one for one in shown if one)
 
 
@@ -43,9 +54,9 @@ def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) ->
         return None
     columns = (1,) * min(ABREAST, len(found))
     caption = (
-        "The law as fitted, with the band of its parameters' intervals (which may be narrower than the line), beside"
-        " what the nominal model has in its place. Points: what the equation that holds the law gives when the measured"
-        " channels are put into it; those of a force where the piston neither stops nor turns."
+        "Solid: the law as fitted, with the 95 % band of its parameters (which may be narrower than the line). Dashed:"
+        " the nominal model. Points: the law as the measured channels give it by the law's equation, without any"
+        " simulation; of a force, where the piston neither stops nor reverses."
     )
     return Picture(
         "0-laws", tuple(Group((law_panel(one),)) for one in found.values()), columns, "The missing physics", caption
@@ -83,11 +94,12 @@ def residual_picture(diagnosis: Diagnosis) -> Picture:
     names = list(diagnosis.pictures.after)[:ABREAST]
     groups = tuple(_residuals(diagnosis, name) for name in names)
     caption = (
-        "Above and below have scales of their own. Both models start anew in each window of the fit; the band is two"
-        " standard deviations of the noise."
+        "The upper and lower plots have different scales. Both models start from fitted states in each window of the"
+        " fit. Grey: two standard deviations of the noise."
     )
     columns = (1,) * max(1, len(names))
-    return Picture("0-residuals", groups, columns, "Measured less modelled, before and after", caption)
+    title = "Residuals, measured less modelled: nominal model and final model"
+    return Picture("0-residuals", groups, columns, title, caption)
 
 
 def _residuals(diagnosis: Diagnosis, name: str) -> Group:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from html import escape
 from importlib.resources import files
@@ -15,6 +16,7 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.report.contents import Contents, contents_of
 from eha_core.report.experiment_file import FILE
 from eha_core.report.finding import headline, supporting, warnings
+from eha_core.report.key_figures import KeyFigure, key_figures
 from eha_core.report.picture import Picture
 from eha_core.report.plotly_drawing import figure
 from eha_core.report.stage import Part, Stage, Table
@@ -37,8 +39,9 @@ def page(diagnosis: Diagnosis, contents: Contents | None = None) -> str:
         verdict=diagnosis.verdict,
         verdict_title=escape(VERDICT_TITLES[diagnosis.verdict]),
         warnings="".join(f'<p class="warning" role="alert">{escape(one)}</p>' for one in warnings(diagnosis)),
-        headline=escape(headline(diagnosis)),
-        supporting="".join(f"<li>{escape(one)}</li>" for one in supporting(diagnosis)),
+        headline=_text(headline(diagnosis)),
+        key_figures="".join(map(_key_figure, key_figures(diagnosis))),
+        supporting="".join(f"<li>{_text(one)}</li>" for one in supporting(diagnosis)),
         summary=f"<h3>{escape(summary.title)}</h3>{_table(summary, folded=False, kind='summary')}" if summary else "",
         proof="".join(_picture(one) for one in contents.first_screen),
         errors_title=escape(error_table(diagnosis).title),
@@ -58,11 +61,23 @@ def write_page(diagnosis: Diagnosis, path: Path, contents: Contents | None = Non
     path.write_text(page(diagnosis, contents), encoding="utf-8")
 
 
+UNIT_BEHIND = re.compile(r"(?<=\d) (?=[%°µ×±A-Za-z])|(?<=±) ")
+"""The space between a number and what it counts."""
+
 FILES = {
     "fitted.yaml": "starts the simulator with what was found",
     "comparison.mcap": "measured, nominal, recalibrated and augmented model and residuals, for PlotJuggler or Foxglove",
     "diagnosis.json": "the result for programs",
 }
+
+
+def _key_figure(one: KeyFigure) -> str:
+    return f"<div><dt>{_text(one.question)}</dt><dd><b>{_text(one.answer)}</b>{_text(one.basis)}</dd></div>"
+
+
+def _text(words: str) -> str:
+    """Words to read; a number and its unit stay on one line."""
+    return escape(re.sub(UNIT_BEHIND, "\N{NO-BREAK SPACE}", words))
 
 
 def _files(diagnosis: Diagnosis) -> str:
@@ -82,7 +97,7 @@ def _stage(number: int, stage: Stage) -> str:
     code = f"<pre>{escape(stage.code)}</pre>" if stage.code else ""
     return (
         f'<section id="{stage.name}"><p class="step"><span>{number}</span>{escape(stage.title)}</p>'
-        f"<h2>{escape(stage.headline)}</h2>{_paragraphs(stage.sentences)}{code}"
+        f"<h2>{_text(stage.headline)}</h2>{_paragraphs(stage.sentences)}{code}"
         f"{''.join(_part(one) for one in stage.parts)}"
         f"{''.join(_picture(one) for one in stage.pictures)}{''.join(_table(one) for one in stage.tables)}</section>"
     )
@@ -98,7 +113,7 @@ def _part(part: Part) -> str:
 
 
 def _paragraphs(sentences: Iterable[str]) -> str:
-    return f"<p>{' '.join(escape(one) for one in sentences if one)}</p>"
+    return f"<p>{' '.join(_text(one) for one in sentences if one)}</p>"
 
 
 def _picture(picture: Picture) -> str:

@@ -14,6 +14,7 @@ function inTwoLines(text) {
 
 function narrowed(layout, table) {
   if (table) table.showscale = false;
+  for (const note of layout.annotations || []) if (note.text.length > 28) note.font = { ...note.font, size: 11 };
   for (const key of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
     const axis = layout[key];
     if (key[0] === "y" && axis.ticktext) {

@@ -50,7 +50,7 @@ def spread(*columns: Array, most: int = DOTTED) -> tuple[Array, ...]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """How a residual hangs on a variable: its `means` over it, and the share of its variance that they explain."""
+    """How a residual depends on a variable: its `means` over it, and the share of its variance that they explain."""
 
     variable: str
     at: Array

@@ -1,4 +1,4 @@
-"""What a stage of the story is."""
+"""What a stage of the report is."""
 
 from __future__ import annotations
 

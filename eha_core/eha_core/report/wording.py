@@ -1,4 +1,4 @@
-"""The words that the account and the page share."""
+"""The labels that the terminal and the page share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The report's story: one stage of the diagnosis, one file; each makes a `Stage` from the result."""
+"""The report's stages, one file each: every one makes a `Stage` from the diagnosis."""
 
 from __future__ import annotations
 

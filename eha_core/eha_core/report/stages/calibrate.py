@@ -40,7 +40,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
             " these stay near their nominal values."
         )
     if diagnosis.bent and changed:
-        sentences.append("What is missing may have bent these values to imitate it: do not take them for the rig's.")
+        sentences.append("What is missing may have biased these values: do not take them for the rig's.")
     picture = _picture(diagnosis.parameters)
     return Stage(
         "calibrate", "Calibrate", headline, tuple(sentences), (picture,) if picture else (), (_table(diagnosis),)

@@ -48,8 +48,8 @@ def stage(diagnosis: Diagnosis) -> Stage:
         if 1 < len(when) <= 6:
             sentences.append(f"It departs from {listed([span(one) for one in when])}.")
     pictures = (
-        _picture("3-locate", "Each equation, held against the measured channels", diagnosis, _equations(diagnosis)),
-        _picture("3-locate-channels", "Each channel, measured less calibrated model", diagnosis, _channels(diagnosis)),
+        _picture("3-locate", "Each equation, evaluated with the measured channels", diagnosis, _equations(diagnosis)),
+        _picture("3-locate-channels", "Each channel less the recalibrated model", diagnosis, _channels(diagnosis)),
     )
     return Stage(
         "locate", "Locate", headline, tuple(sentences), tuple(one for one in pictures if one.groups), _tables(diagnosis)

@@ -29,7 +29,7 @@ from eha_core.report.wording import (
 )
 from eha_core.report.worth import step_table, worth
 
-WITHOUT = "It was read off the balances of measured channels; the simulation goes on without it."
+WITHOUT = "It was found from the equations of the measured channels; the simulation goes on without it."
 
 
 LAW_HEIGHT = 240  # pixels

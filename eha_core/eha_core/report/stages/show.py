@@ -67,7 +67,7 @@ def _overlays(diagnosis: Diagnosis) -> Picture:
     for name in diagnosis.pictures.after:
         groups += [_whole(diagnosis, name), _close_up(diagnosis, name)]
     caption = (
-        "Left: the spans used for judging and the mismatch in them. Right: where the calibrated model is worst."
+        "Left: the held-out spans and the residual in them. Right: where the recalibrated model is worst."
         " Drawn are the final models; for the errors in the table they were fitted again without these spans."
     )
     return Picture("6-show", tuple(groups), (3, 2), "Measured and modelled", caption)
@@ -139,7 +139,7 @@ def _whiteness(diagnosis: Diagnosis) -> Picture:
         tuple(groups),
         (1,) * min(3, max(1, len(groups))),
         "Is anything left to explain?",
-        "Autocorrelation of the mismatch. White noise stays in the band; a mismatch with a memory is not all noise.",
+        "Autocorrelation of the residual. White noise stays in the band; what leaves it is not noise alone.",
     )
 
 
@@ -162,5 +162,5 @@ def _over_input(diagnosis: Diagnosis) -> tuple[Picture, ...]:
         title = capital(channel_title(name))
         groups.append(Group((Panel(tuple(marks), f"voltage [{across.unit}]", up.unit, title, 220),)))
     columns = (1,) * min(3, max(1, len(groups)))
-    caption = "Measured less modelled over the voltage: what bends or leans depends on the input, and is no noise."
+    caption = "Measured less modelled over the voltage: a residual that depends on the input is not noise."
     return (Picture("6-show-input", tuple(groups), columns, "Does what is left depend on the input?", caption),)

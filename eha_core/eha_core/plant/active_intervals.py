@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 
-class Spell(NamedTuple):
+class Interval(NamedTuple):
     """Steps in a row that the effects act in, or do not: which steps, how many make a row, and which rows they fill."""
 
     steps: slice
@@ -45,7 +45,7 @@ def pieces(first: int, count: int, every: int, instants: Iterable[int]) -> Itera
             yield Piece(slice(whole, end), every, slice(whole // every, end // every))
 
 
-def spells(first: int, count: int, every: int, acting: tuple[int, int]) -> Iterator[Spell]:
+def intervals(first: int, count: int, every: int, acting: tuple[int, int]) -> Iterator[Interval]:
     """Cut steps, as `pieces` does, where the effects begin and cease to act."""
     for piece in pieces(first, count, every, acting):
-        yield Spell(*piece, acting[0] <= first + piece.steps.start < acting[1])
+        yield Interval(*piece, acting[0] <= first + piece.steps.start < acting[1])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eha_core.plant import Plant
-from eha_core.plant.spells import spells
+from eha_core.plant.active_intervals import intervals
 
 FRICTION = {"coulomb_friction.force": 300.0}
 SPAN = {"effects_from": 0.0503, "effects_until": 0.1201}
@@ -46,11 +46,11 @@ def test_a_lag_begins_from_the_position_when_it_begins_to_act() -> None:
 )
 def test_every_step_and_every_row_comes_once(first: int, count: int, every: int, acting: tuple[int, int]) -> None:
     steps, rows = [], []
-    for spell in spells(first, count, every, acting):
-        here = range(spell.steps.start, spell.steps.stop)
+    for interval in intervals(first, count, every, acting):
+        here = range(interval.steps.start, interval.steps.stop)
         steps += here
-        rows += range(spell.rows.start, spell.rows.stop)
-        assert len(here) // spell.every == spell.rows.stop - spell.rows.start
-        assert {acting[0] <= first + step < acting[1] for step in here} == {spell.acting}
+        rows += range(interval.rows.start, interval.rows.stop)
+        assert len(here) // interval.every == interval.rows.stop - interval.rows.start
+        assert {acting[0] <= first + step < acting[1] for step in here} == {interval.acting}
     assert steps == list(range(count))
     assert rows == list(range(count // every))

@@ -1,0 +1,101 @@
+"""The ladder of evidence: how far each hypothesis is behind the best, and what was screened out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.diagnosis.tournament import TIE
+from eha_core.effects import effects
+from eha_core.quantities import RAISED
+from eha_core.report.finding import counted
+from eha_core.report.picture import Bars, Group, Panel, Picture, Upright
+from eha_core.report.wording import effect_title, listed
+
+SHOWN = 12
+
+IN_FULL = 2
+"""Effects of a hypothesis that are listed; a larger set is told by how it differs from the one that was named."""
+
+STUB = 1.6
+"""How long the bar of what is not behind at all is drawn, as a factor on the logarithmic axis."""
+
+MILLION = 1e6
+
+NULL = "nothing added (recalibrated model)"
+
+
+def named(effects: tuple[str, ...]) -> str:
+    """A hypothesis by its effects."""
+    return " + ".join(map(effect_title, effects)) or "nothing added"
+
+
+def rung(effects: set[str], chosen: set[str]) -> str:
+    """A hypothesis by its effects; a large set by how it differs from the one that was named."""
+    if len(effects) <= IN_FULL:
+        return named(tuple(sorted(effects)))
+    if effects == chosen:
+        return f"the {counted(len(chosen))} named effects"
+    if chosen & effects and len(chosen - effects) == len(effects - chosen) == 1:
+        (lost,), (other,) = chosen - effects, effects - chosen
+        return f"{effect_title(other)} in place of {effect_title(lost)}"
+    lacks = [f"without {effect_title(one)}" for one in sorted(chosen - effects)]
+    more = [f"with {effect_title(one)}" for one in sorted(effects - chosen)]
+    return f"the named effects {listed([*lacks, *more])}" if chosen & effects else named(tuple(sorted(effects)))
+
+
+def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-name", title: str = "") -> Picture:
+    """How far each hypothesis is behind the best, on a logarithmic axis; the model that adds nothing is among them."""
+    best = float(diagnosis.rivals[0][1])
+    chosen = {one.id for one in diagnosis.effects}
+    ranked = [(rung(set(effects), chosen), set(effects), score) for effects, score in diagnosis.rivals[:most]]
+    if all(effects for _, effects, _ in ranked):
+        ranked.append((NULL, set(), 0.0))
+    ranked.sort(key=lambda one: -one[2])
+    top = max(best, 0.0)
+    behind = np.array([top - score for _, _, score in ranked])
+    tied = [set(one.effects) for one in diagnosis.alternatives]
+    roles = tuple(
+        "after" if effects == chosen else "calibrated" if effects in tied else "other" for _, effects, _ in ranked
+    )
+    texts = tuple(behind_in_words(one) for one in behind)
+    rungs = Bars(tuple(name for name, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
+    decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
+    ticks = tuple((exponent + np.log10(STUB), _decade(exponent)) for exponent in decades)
+    panel = Panel(
+        (Upright(float(np.log10(TIE * STUB)), "told apart"), rungs),
+        "evidence behind the best (log scale)",
+        height=50 + 30 * len(ranked),
+        x_range=(0.0, 1.45 * (decades[-1] + np.log10(STUB))),
+        x_ticks=ticks,
+    )
+    caption = (
+        "Evidence is the gain in χ² less what the parameters added cost; shown is how far each hypothesis is behind the"
+        " best. Left of the dotted line the recording cannot tell the two apart. Teal: what was named; ochre: what"
+        f" cannot be told from it. {_screened(diagnosis)}"
+    )
+    return Picture(name, (Group((panel,)),), title=title, caption=caption)
+
+
+def _decade(exponent: int) -> str:
+    return f"{10**exponent:,}" if exponent < 4 else f"10{str(exponent).translate(RAISED)}"
+
+
+def behind_in_words(value: float) -> str:
+    """How far a hypothesis is behind the best: "15 behind"."""
+    if value <= 0.0:
+        return "best"
+    return f"{value:,.0f} behind" if value < MILLION else f"{value / MILLION:.3g} million behind"
+
+
+def _screened(diagnosis: Diagnosis) -> str:
+    """Which effects were never refitted, and why."""
+    refitted = {effect for effects, _ in diagnosis.rivals for effect in effects}
+    left = [effect for effect in effects() if effect.named and effect.id not in refitted]
+    seen = {f"measured_{name}" for name in diagnosis.channels}
+    blind = [effect.id for effect in left if effect.needs and not set(effect.needs) <= seen]
+    weak = [effect.id for effect in left if effect.id not in blind]
+    told = [f"Screened out, as a score test says they would gain too little: {listed(list(map(effect_title, weak)))}."]
+    if blind:
+        told.append(f"Not tried, as their channels were not recorded: {listed(list(map(effect_title, blind)))}.")
+    return " ".join(told if weak else told[1:])

@@ -1,0 +1,92 @@
+"""The three answers at the top of the page: how much closer the model comes, what is left, and how sure it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from eha_core.diagnosis.result import Diagnosis
+from eha_core.diagnosis.tournament import TIE
+from eha_core.quantities import quantity, short
+from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.claims import judged, left_in_words, left_over, told_channel
+from eha_core.report.evidence import behind_in_words, named, rung
+from eha_core.report.wording import channel_title, effect_title, listed
+
+
+@dataclass(frozen=True)
+class KeyFigure:
+    """A question, its answer in a few characters, and what the answer rests on."""
+
+    question: str
+    answer: str
+    basis: str
+
+
+def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
+    """What is known of: the error with and without the physics, the rest, and the other explanations."""
+    return tuple(one for part in (_better, _left, _sure) for one in part(diagnosis))
+
+
+def _each_is_needed(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
+    """What is left without the effect that matters least; nothing where that is not more than with it."""
+    if not diagnosis.without:
+        return
+    name, rest = min(diagnosis.without.items(), key=lambda item: item[1].overall)
+    whole = diagnosis.steps[-1].residual.overall
+    if rest.overall > whole:
+        yield KeyFigure(
+            "How sure?",
+            "Each effect is needed",
+            f"Without the one that matters least, {effect_title(name)}, and the others fitted again,"
+            f" {short(rest.overall)} times the noise is left; with all of them {short(whole)}.",
+        )
+
+
+def _better(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
+    name = told_channel(diagnosis)
+    if not name:
+        return
+    fit, unit = judged(diagnosis)[name], CHANNEL_KINDS[name].unit
+    where = "on data kept from the fit" if diagnosis.held_out else "on the data of the fit"
+    yield KeyFigure(
+        "How much better?",
+        f"{quantity(fit.rmse_before, unit)} → {quantity(fit.rmse_after, unit)}",
+        f"RMS error of the {channel_title(name)}, nominal model and final model, {where}; the sensor's noise is"
+        f" {quantity(fit.noise, unit)}.",
+    )
+
+
+def _left(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
+    basis = left_in_words(diagnosis)
+    if basis:
+        answer = left_over(diagnosis).removeprefix("What is left is ")
+        yield KeyFigure("What is left?", f"{answer[:1].upper()}{answer[1:]}", basis)
+
+
+def _sure(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
+    """What the named effects are told from: another explanation of as many effects, or the set without one of them."""
+    if diagnosis.alternatives:
+        rivals = listed([named(one.effects) for one in diagnosis.alternatives])
+        yield KeyFigure("How sure?", "Not the only explanation", f"The recording does not tell it from {rivals}.")
+        return
+    chosen = {one.id for one in diagnosis.effects}
+    scores = [(set(effects), float(score)) for effects, score in diagnosis.rivals]
+    own = max((score for effects, score in scores if effects == chosen), default=float("nan"))
+    others = [(effects, score) for effects, score in scores if effects != chosen and len(effects) >= len(chosen)]
+    if not chosen or not np.isfinite(own):
+        return
+    if not others:
+        yield from _each_is_needed(diagnosis)
+        return
+    nearest, score = max(others, key=lambda one: one[1])
+    if own - score < TIE:  # then the search calls it ambiguous; a rival that rests on a bound is no rival
+        return
+    yield KeyFigure(
+        "How sure?",
+        f"Next explanation {behind_in_words(own - score)}",
+        f"In evidence; {TIE:g} is enough to tell two apart. Next: {rung(nearest, chosen)}."
+        f" Nothing added: {behind_in_words(own)}.",
+    )
