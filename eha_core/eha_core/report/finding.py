@@ -133,6 +133,7 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
         else "",
         left_in_words(diagnosis),
         explanation(diagnosis),
+        *(one.statement for one in diagnosis.long_records),
     )
     return tuple(one for one in found if one)
 
