@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eha_core.identification.noise import estimate_noise, find_outliers, quantisation, residual_noise
+from eha_core.identification.noise import estimate_noise, find_outliers, quantisation, residual_noise, usual_size
 
 TIME = np.arange(20_000) / 1000.0
 SMOOTH = 0.02 * np.sin(2 * np.pi * 0.7 * TIME) + 0.003 * np.sin(2 * np.pi * 9.0 * TIME)
@@ -56,3 +56,18 @@ def test_lone_spikes_are_outliers_and_steps_are_not():
     spikes = np.arange(300, 19_000, 1234)
     values[spikes] += 2e-3
     assert np.flatnonzero(find_outliers(values, 1e-5)).tolist() == spikes.tolist()
+
+
+@pytest.mark.parametrize("step", [0.25, 0.5, 1.0])
+def test_noise_on_a_coarse_grid_is_told_to_three_per_cent(step):
+    noise = np.random.default_rng(7).standard_normal(20_000)
+    coarse = np.round(noise / step) * step
+    assert residual_noise(coarse) == pytest.approx(np.sqrt(1.0 + step**2 / 12.0), rel=0.03)
+
+
+def test_the_usual_size_is_that_of_normal_values_whatever_a_fifth_of_them_is():
+    values = 3.0 * np.random.default_rng(8).standard_normal(50_000)
+    assert usual_size(values) == pytest.approx(3.0, rel=0.01)
+    values[::5] = 1e6
+    assert 3.0 < usual_size(values) < 4.2
+    assert usual_size(np.zeros(10)) == 0.0

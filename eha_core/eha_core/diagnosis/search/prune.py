@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import CHANCE, CONVINCING, OF_ITS_FORM, OF_SAMPLES, OF_SAMPLES_BESIDE_A_FORM
+from eha_core.diagnosis.criteria import (
+    CHANCE,
+    CONVINCING,
+    NOISE_KNOWN,
+    OF_ITS_FORM,
+    OF_SAMPLES,
+    OF_SAMPLES_BESIDE_A_FORM,
+)
 from eha_core.diagnosis.hypothesis import NOTHING, Member, neutral
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, without_effect
 from eha_core.effects import Effect
@@ -57,26 +64,37 @@ def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
 
 
 def prune(search: Search, best: Candidate) -> Candidate:
-    """The set without the members that do not earn their place beside the others."""
+    """The set without the members that do not earn their place beside the others.
+
+    What a refit loses without a member says what it is worth. Where friction sticks a refit can rest above its optimum,
+    and a member that does nothing would seem to be needed; so the curvature must show it beyond chance, too.
+    """
     while len(best.hypothesis.members) > 1:
         simpler = {member: refit_without(search, best, member) for member in best.hypothesis.members}
-        worth = {member: worth_of(member, one, best) for member, one in simpler.items()}
+        lost = {member: one.fit.objective - best.fit.objective for member, one in simpler.items()}
+        told = {member: wald(best.fit, member.effect) for member in simpler}
         explained = search.found[NOTHING].objective - best.fit.objective
-        asked = {member: asked_of(member, worth, best, explained) for member in worth}
-        least = min(worth, key=lambda member: worth[member] / asked[member])
-        search.progress(f"worth in chi^2: {', '.join(f'{one.id} {gain:.3g}' for one, gain in worth.items())}")
-        if worth[least] > asked[least]:
+        worth = {member: min(lost[member], told[member]) for member in simpler}
+        share = {
+            member: min(
+                lost[member] / asked_of(member, worth, best, explained),
+                told[member] / by_chance(member, worth, best),
+            )
+            for member in simpler
+        }
+        least = min(share, key=lambda member: share[member])
+        search.progress(f"chi^2 lost without: {', '.join(f'{one.id} {loss:.3g}' for one, loss in lost.items())}")
+        if share[least] > 1.0:
             break
         best = simpler[least]
     return best
 
 
-def worth_of(member: Member, without: Candidate, best: Candidate) -> float:
-    """Chi^2 that a member is worth: what a refit without it loses, and no more than the curvature says.
-
-    Where friction sticks a refit can rest above its optimum, and a member that does nothing would seem to be needed.
-    """
-    return min(without.fit.objective - best.fit.objective, wald(best.fit, member.effect))
+def by_chance(member: Member, others: Iterable[Member], best: Candidate) -> float:
+    """Chi^2 that a member may be worth beside the others by chance."""
+    beside_a_form = any(other.effect.approximate for other in others if other != member)
+    of_samples = OF_SAMPLES_BESIDE_A_FORM if beside_a_form else OF_SAMPLES
+    return max(1.0, best.times_noise) * (CHANCE + of_samples * best.fit.count)
 
 
 def asked_of(member: Member, worth: Mapping[Member, float], best: Candidate, explained: float) -> float:
@@ -84,10 +102,10 @@ def asked_of(member: Member, worth: Mapping[Member, float], best: Candidate, exp
 
     It rises with what the set leaves unexplained: a law of another form always leaves something for others.
     """
-    others = [other for other in worth if other != member]
-    forms = [worth[other] for other in others if other.effect.approximate]
-    of_samples = OF_SAMPLES_BESIDE_A_FORM if forms else OF_SAMPLES
-    chance = max(1.0, best.times_noise) * (CHANCE + of_samples * best.fit.count)
+    forms = [gain for other, gain in worth.items() if other != member and other.effect.approximate]
     left = max(best.fit.data - best.fit.count, 0.0)
     their_forms = OF_ITS_FORM * min(sum(max(gain, 0.0) for gain in forms), max(explained, 0.0))
-    return max(chance + their_forms, CONVINCING / (1.0 - CONVINCING) * left)
+    ratio = CONVINCING / (1.0 - CONVINCING)
+    # what makes up for a form leaves some of it over, too, beyond what may pass for noise
+    their_forms = min(their_forms, ratio * (left + NOISE_KNOWN * best.fit.count))
+    return max(by_chance(member, worth, best) + their_forms, ratio * left)
