@@ -12,18 +12,23 @@ from pathlib import Path
 
 from benchmarks.row import as_markdown
 
-BENCHMARKS = ("plant_step", "lockstep", "integrators", "windows", "reading", "layer", "node")
+BENCHMARKS = ("plant_step", "lockstep", "integrators", "windows", "reading", "diagnosis", "layer", "node")
+ON_REQUEST = ("hour",)
+"""Those that take many minutes: they are measured where they are named."""
 
 
 def parser() -> argparse.ArgumentParser:
     """The command's arguments."""
     made = argparse.ArgumentParser(
         prog="python -m benchmarks",
-        description="Measures the plant's step, the integrator, a fit's normal equations, the reading of recordings, "
-        "the nodes' rclpy and the simulator node against their peers, in one run.",
+        description="Measures the plant's step, the integrator, a fit's normal equations, the reading of recordings, a "
+        "diagnosis, the nodes' rclpy and the simulator node against their peers, in one run.",
     )
     made.add_argument(
-        "names", nargs="*", metavar="BENCHMARK", help=f"which of {', '.join(BENCHMARKS)} (default: all of them)"
+        "names",
+        nargs="*",
+        metavar="BENCHMARK",
+        help=f"which of {', '.join(BENCHMARKS)} (default: all of these), {', '.join(ON_REQUEST)}",
     )
     made.add_argument(
         "--seconds",
@@ -38,11 +43,12 @@ def parser() -> argparse.ArgumentParser:
 def main(words: Sequence[str] | None = None) -> int:
     """Run the benchmarks and print their table."""
     arguments = parser().parse_args(words)
-    unknown = [name for name in arguments.names if name not in BENCHMARKS]
+    known = (*BENCHMARKS, *ON_REQUEST)
+    unknown = [name for name in arguments.names if name not in known]
     if arguments.seconds and arguments.seconds < 30.0:
         return _refuse(f"--seconds {arguments.seconds:g} is too short for reports of 10 s each; give 30 or more, or 0")
     if unknown:
-        return _refuse(f"there is no benchmark {unknown[0]!r}; give some of {', '.join(BENCHMARKS)}, or none for all")
+        return _refuse(f"there is no benchmark {unknown[0]!r}; give some of {', '.join(known)}, or none for all")
     machine = f"{_processor()}, {os.cpu_count()} CPUs, load {os.getloadavg()[0]:.1f}"
     print(f"{machine}, Python {platform.python_version()}", flush=True)
     rows = []

@@ -16,7 +16,7 @@ from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.nominal import NominalModel, load_nominal, nominal_of
 from eha_core.parameters import NOMINAL
-from eha_core.plant import require_sliding
+from eha_core.plant import PAPER, require_sliding
 from eha_core.recording import Recording, read_recording
 from eha_core.recording.simulated import Experiment
 from eha_core.recording.simulated import simulate as run
@@ -97,7 +97,8 @@ def diagnose(
     """Say where a model departs from a recording, which physics it leaves out, and how much better it does with it.
 
     Args:
-        recording: a recording or its path; several are one rig, fitted with one set of parameters and effects.
+        recording: a recording or its path; several are one rig, fitted with one set of parameters and effects. Of
+            one longer than two minutes stretches are fitted, and the whole judges the result.
         nominal: the model: parameter values that differ from the catalogue's ("unknown" where nobody knows one), a
             parameters file, or a `NominalModel`. By default the values that the recording carries, effects left out,
             or else the catalogue's nominal actuator.
@@ -110,16 +111,25 @@ def diagnose(
         ParameterError: the model does not fit.
     """
     from eha_core.diagnosis import diagnose_together
+    from eha_core.long_record.admission import admitted
+    from eha_core.long_record.judging import judged
     from eha_core.report.provenance import with_provenance
     from eha_core.report.results import Results
 
     given = [recording] if isinstance(recording, (Recording, str, Path)) else list(recording)
-    recordings, unseen = (
-        [one if isinstance(one, Recording) else read_recording(one) for one in several] for several in (given, tests)
+    told = given_model(nominal)
+    composition = told.composition if told else PAPER
+    records, unseen = (
+        [admitted(one, None, composition, progress) for one in several] for several in (given, tests)
     )
-    found = diagnose_together(recordings, known_model(nominal, recordings[0]), progress, jobs, unseen)
+    recordings = [one for record in records for one in record.recordings]
+    model = known_model(nominal, recordings[0])
+    found = diagnose_together(
+        recordings, model, progress, jobs, [one for record in unseen for one in record.recordings]
+    )
+    found = judged(found, records, model, progress)
     origin = "values given by name" if isinstance(nominal, (Mapping, NominalModel)) else nominal
-    return Results(with_provenance(found, recordings, origin, "eha_core.diagnose"))
+    return Results(with_provenance(found, records, origin, "eha_core.diagnose"))
 
 
 def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]:
@@ -129,15 +139,21 @@ def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]
 
 def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     """The model that a recording is held against, and which of its parameters are unknown or differ by recording."""
+    told = given_model(nominal)
+    if told is not None:
+        return told
+    names = {row.name for row in NOMINAL}
+    return nominal_of({name: value for name, value in recording.parameters.items() if name in names})
+
+
+def given_model(nominal: Nominal) -> NominalModel | None:
+    """The model that was given; None where it is left to the recording."""
     if isinstance(nominal, (str, Path)):
         nominal = load_nominal(nominal)
     if isinstance(nominal, NominalModel):
         require_sliding(nominal.composition)
         return nominal
-    if nominal is not None:
-        return nominal_of(nominal)
-    names = {row.name for row in NOMINAL}
-    return nominal_of({name: value for name, value in recording.parameters.items() if name in names})
+    return None if nominal is None else nominal_of(nominal)
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,14 @@ def test_an_unusable_recording_stops_none_of_the_others(
     assert verdicts == {"as_modelled": "consistent", "rig_cut_short": "missing_physics"}
 
 
+@pytest.mark.parametrize("words", [[], ["--each"]])
+def test_the_report_can_be_left_out(as_modelled: Path, tmp_path: Path, words: list[str]) -> None:
+    folder = tmp_path / "out"
+    assert main(["diagnose", *words, "--no-report", str(as_modelled), "--out", str(folder)]) == 0
+    written = [one for one in folder.rglob("*") if one.is_file()]
+    assert written == [(folder / "as_modelled" if words else folder) / "diagnosis.json"]
+
+
 def test_the_workers_of_a_dask_scheduler_do_the_same(
     as_modelled: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

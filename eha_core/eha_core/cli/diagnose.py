@@ -4,14 +4,22 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from eha_core.api import known_model
+from eha_core.api import given_model, known_model
+from eha_core.cli._paths import require_file, require_folder, require_recordings
+from eha_core.cli._progress import Progress
 from eha_core.errors import EhaError
-from eha_core.recording import Recording, read_recording
+from eha_core.long_record.admission import admitted
+from eha_core.plant import PAPER
+from eha_core.recording import Recording, load_topics_file, read_recording
 from eha_core.workers import Workers
+
+if TYPE_CHECKING:
+    from eha_core.diagnosis import Diagnosis
 
 UNUSABLE = 2
 DAMAGED = 3
@@ -39,6 +47,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("--as-recorded", action="store_true", help="go on where a recording cannot be right, and warn of it")
     add("--out", type=Path, metavar="DIR", help="folder for the report (default out/diagnosis/<recording>)")
     add("--json", metavar="FILE|-", help="write diagnosis.json there (- is standard output) and no report")
+    add("--no-report", action="store_true", help="write diagnosis.json alone in place of the whole report")
+    add("--log", type=Path, metavar="FILE", help="what is tried and what is left, with times, into a file")
     add("--jobs", type=int, default=2, metavar="N", help="threads, with --each processes, side by side (default 2)")
     add("--each", action="store_true", help="diagnose every recording on its own, and print a line for each")
     add("--dask", metavar="ADDRESS", help="with --each: a Dask scheduler whose workers see the same folders")
@@ -49,49 +59,97 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the verb."""
     if arguments.jobs < 1:
         raise EhaError(f"--jobs {arguments.jobs} is no number of threads; give 1 or more")
+    _check_paths(arguments)
     if arguments.each:
         return _run_each(arguments)
     if arguments.dask is not None:
         raise EhaError("--dask spreads recordings that are diagnosed on their own; give --each too")
+    progress = Progress(log=arguments.log)
+    try:
+        return _run_together(arguments, progress)
+    finally:
+        progress.end()
+
+
+def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
+    """All recordings are one rig."""
     from eha_core.motion_given.motion import is_motion_given
     from eha_core.plausibility import admit
 
-    recordings = [read_recording(path, arguments.topics) for path in arguments.recordings]
-    modelled = arguments.nominal is not None or any(recording.parameters for recording in recordings)
-    if arguments.motion_given or (not modelled and all(map(is_motion_given, recordings))):
-        return _run_motion_given(arguments, recordings)
-    model = known_model(arguments.nominal, recordings[0])
-    recordings = [admit(one, model.values, arguments.as_recorded) for one in recordings]
-    tests = [
-        admit(read_recording(path, arguments.topics), model.values, arguments.as_recorded) for path in arguments.test
-    ]
+    if arguments.motion_given:
+        return _run_motion_given(arguments, _read(arguments.recordings, arguments), progress)
+    given = given_model(arguments.nominal)
+    composition = given.composition if given else PAPER
+    records, unseen = (
+        [admitted(path, arguments.topics, composition, progress) for path in paths]
+        for paths in (arguments.recordings, arguments.test)
+    )
+    recordings, tests = ([one for record in several for one in record.recordings] for several in (records, unseen))
+    modelled = given is not None or any(recording.parameters for recording in recordings)
+    if not modelled and all(map(is_motion_given, recordings)):
+        is_long = any(record.blocks for record in records)
+        whole = _read(arguments.recordings, arguments) if is_long else recordings
+        return _run_motion_given(arguments, whole, progress)
+    model = known_model(given, recordings[0])
+    recordings, tests = (
+        [admit(one, model.values, arguments.as_recorded) for one in several] for several in (recordings, tests)
+    )
     for warning in (
         remark for recording in (*recordings, *tests) for remark in recording.remarks if remark.startswith("warning")
     ):
         print(f"eha diagnose: {warning}", file=sys.stderr)
     # compilers and plotting load slowly; bad input should be told at once
     from eha_core.diagnosis import diagnose_together
-    from eha_core.diagnosis.document import as_json
-    from eha_core.report.account import account
-    from eha_core.report.files import write_report
+    from eha_core.long_record.judging import judged
     from eha_core.report.provenance import with_provenance
 
-    diagnosis = diagnose_together(recordings, model, progress=_progress(), jobs=arguments.jobs, tests=tests)
-    diagnosis = with_provenance(diagnosis, recordings, arguments.nominal)
+    progress.long = any(record.blocks for record in records)
+    diagnosis = diagnose_together(recordings, model, progress=progress, jobs=arguments.jobs, tests=tests)
+    diagnosis = judged(diagnosis, records, model, progress)
+    diagnosis = with_provenance(diagnosis, records, arguments.nominal)
+    _present(arguments, diagnosis, progress)
+    return DAMAGED if any(record.damaged for record in (*records, *unseen)) else 0
+
+
+def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Progress) -> None:
+    """Write what was asked for, and say on the terminal what was found."""
+    from eha_core.diagnosis.document import as_json
+    from eha_core.report.account import account
+    from eha_core.report.files import write_document, write_report
+
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:
+        progress("writing the report")
         folder = arguments.out or Path("out") / "diagnosis" / arguments.recordings[0].stem
-        written = write_report(diagnosis, folder)
+        written = write_document(diagnosis, folder) if arguments.no_report else write_report(diagnosis, folder)
+    progress.end()
     if arguments.json == "-":
         print(as_json(diagnosis))
     else:
         if arguments.json is not None:
             written = (*written, _write(Path(arguments.json), as_json(diagnosis)))
         print(account(diagnosis, written))
-    return DAMAGED if any(recording.damaged for recording in (*recordings, *tests)) else 0
 
 
-def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Recording]) -> int:
+def _check_paths(arguments: argparse.Namespace) -> None:
+    """Raise EhaError for a path that could not be read or written, before any work is done."""
+    if not arguments.each:  # there, what is missing stops none of the others
+        require_recordings((*arguments.recordings, *arguments.test))
+    if arguments.json is None or arguments.out is not None:
+        require_folder(arguments.out or Path("out"), "--out")
+    if arguments.json not in (None, "-"):
+        require_file(Path(arguments.json), "--json")
+    if arguments.topics is not None:
+        load_topics_file(arguments.topics)
+
+
+def _read(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recording]:
+    return [read_recording(path, arguments.topics) for path in paths]
+
+
+def _run_motion_given(
+    arguments: argparse.Namespace, recordings: Sequence[Recording], progress: Progress
+) -> int:
     """A test bench or a damper: nothing drives the plant, so the law of its force is found from the motion."""
     from eha_core.diagnosis.document import as_json
     from eha_core.motion_given import diagnose_motion
@@ -99,14 +157,15 @@ def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Record
     from eha_core.report.motion_given import write_motion_given
     from eha_core.report.provenance import with_provenance
 
-    tests = [read_recording(path, arguments.topics) for path in arguments.test]
+    tests = _read(arguments.test, arguments)
     values = known_model(arguments.nominal, recordings[0]).values
     areas = (values["piston_area"], values["piston_area_b"])
-    found = diagnose_motion(recordings, _progress(), tests, areas)
+    found = diagnose_motion(recordings, progress, tests, areas)
     found = replace(found, diagnosis=with_provenance(found.diagnosis, recordings, "none: the motion is given"))
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:
         written = write_motion_given(found, arguments.out or Path("out") / "diagnosis" / arguments.recordings[0].stem)
+    progress.end()
     if arguments.json == "-":
         print(as_json(found.diagnosis))
     else:
@@ -126,8 +185,9 @@ def _run_each(arguments: argparse.Namespace) -> int:
     doubled = next((folder for folder in folders if folders.count(folder) > 1), None)
     if doubled is not None:
         raise EhaError(f"two recordings would both write to {doubled}; rename one, or diagnose them apart")
+    options = (arguments.nominal, arguments.topics)
     calls = [
-        (path.absolute(), arguments.nominal, arguments.topics, folder.absolute(), arguments.as_recorded)
+        (path.absolute(), *options, folder.absolute(), arguments.as_recorded, not arguments.no_report)
         for path, folder in zip(arguments.recordings, folders, strict=True)
     ]
     statuses = set()
@@ -138,23 +198,32 @@ def _run_each(arguments: argparse.Namespace) -> int:
 
 
 def diagnose_alone(
-    path: Path, nominal: Path | None, topics: Path | None, folder: Path, as_recorded: bool = False
+    path: Path,
+    nominal: Path | None,
+    topics: Path | None,
+    folder: Path,
+    as_recorded: bool = False,
+    with_report: bool = True,
 ) -> tuple[Path, int, str]:
     """Diagnose one recording into `folder`: its path, its exit status, and the verdict or what is wrong, in a line."""
     from eha_core.diagnosis import diagnose_together
+    from eha_core.long_record.judging import judged
     from eha_core.plausibility import admit
-    from eha_core.report.files import write_report
+    from eha_core.report.files import write_document, write_report
     from eha_core.report.provenance import with_provenance
 
     try:
-        recording = read_recording(path, topics)
-        model = known_model(nominal, recording)
-        recording = admit(recording, model.values, as_recorded)
-        diagnosis = with_provenance(diagnose_together([recording], model, jobs=1), [recording], nominal)
-        write_report(diagnosis, folder)
+        given = given_model(nominal)
+        record = admitted(path, topics, given.composition if given else PAPER)
+        model = known_model(given, record.recordings[0])
+        recordings = [admit(one, model.values, as_recorded) for one in record.recordings]
+        diagnosis = judged(diagnose_together(recordings, model, jobs=1), [record], model)
+        diagnosis = with_provenance(diagnosis, [record], nominal)
+        (write_report if with_report else write_document)(diagnosis, folder)
     except EhaError as error:
         return path, UNUSABLE, str(error)
-    return path, DAMAGED if recording.damaged else 0, diagnosis.summary
+    told = " ".join([diagnosis.summary, *(one.statement for one in diagnosis.long_records)])
+    return path, DAMAGED if record.damaged else 0, told
 
 
 def _write(path: Path, text: str) -> Path:
@@ -163,14 +232,3 @@ def _write(path: Path, text: str) -> Path:
     except OSError as error:
         raise EhaError(f"{path}: cannot be written ({error.strerror}); choose another --json") from error
     return path
-
-
-def _progress() -> Callable[[str], None]:
-    """Tell each stage on standard error: over one line on a terminal, not at all elsewhere."""
-    if not sys.stderr.isatty():
-        return lambda _: None
-
-    def show(message: str) -> None:
-        print(f"\r\x1b[K  {message} ...", end="", file=sys.stderr, flush=True)
-
-    return show

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
-from eha_core.diagnosis.result import ChannelFit, Diagnosis, NamedEffect, Prediction, Residual
+from eha_core.diagnosis.result import ChannelFit, Diagnosis, LongRecord, NamedEffect, Prediction, Residual
 
 SCHEMA = "eha.diagnosis/1"
 
@@ -63,6 +63,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             "steps": [{"added": one.added, **_residual(one.residual)} for one in diagnosis.steps],
             "without": {name: _residual(one) for name, one in diagnosis.without.items()},
             "correlation": _row(diagnosis.correlation, ("names", "matrix")),
+            **_long_records(diagnosis.long_records),
         }
     )
     return plain
@@ -100,6 +101,16 @@ def _predictions(channels: Mapping[str, Prediction]) -> dict[str, Any]:
 def _fits(fits: Mapping[str, ChannelFit]) -> dict[str, Any]:
     names = ("rmse_before", "rmse_calibrated", "rmse_after", "noise")
     return {channel: _row(one, names) for channel, one in fits.items()}
+
+
+def _long_records(records: Sequence[LongRecord]) -> dict[str, Any]:
+    """The records of which stretches were fitted; no such word where there is none."""
+    found = []
+    for one in records:
+        row = _rows([one], ("path", "stretches", "window", "passed_over", "departs", "statement"))[0]
+        blocks = _rows(one.blocks, ("start", "end", "fitted", "before", "after"))
+        found.append({**row, "duration_s": one.duration, "blocks": blocks})
+    return {"long_records": found} if found else {}
 
 
 def _residual(one: Residual) -> dict[str, Any]:

@@ -193,12 +193,50 @@ class Experiment:
 
 
 @dataclass(frozen=True)
+class JudgedBlock:
+    """A block of a long record, from `start` to `end` [s]: whether the fit saw it, and what the nominal model
+    (`before`) and the one that was found (`after`) err by in each channel with their parameters held [its unit]."""
+
+    start: float
+    end: float
+    fitted: bool
+    before: Mapping[str, float]
+    after: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class LongRecord:
+    """A record of which stretches were fitted, and what the whole of it says of the model that was found.
+
+    Attributes:
+        path: where it was read from.
+        duration: [s].
+        stretches: when those that were fitted begin and end [s].
+        window: s after which the piston's state is fitted anew where the models are judged; their parameters are not.
+        blocks: the blocks that could be compared, in their order.
+        passed_over: s that could not, as those of a rig at rest.
+        departs: spans [s] in which the model errs by far more than on any stretch that was fitted.
+        statement: all this in words.
+    """
+
+    path: str
+    duration: float
+    stretches: tuple[tuple[float, float], ...]
+    window: float
+    blocks: tuple[JudgedBlock, ...]
+    passed_over: float
+    departs: tuple[tuple[float, float], ...]
+    statement: str
+
+
+@dataclass(frozen=True)
 class Pictures:
     """The series that the report draws, by name; channels in SI, each over its own `time` [s].
 
     `measured` has every channel that was used, the driving ones too; the three models have those that are compared.
     `variables` (states of the calibrated model, by column name) stand over their own `time`. `equations` has each
     equation's residual in units of its noise, as (time, residual). `held_out`: the spans of time used for judging [s].
+    `span`: when the stretch of a long record that is drawn begins and ends [s].
     """
 
     time: Mapping[str, Array]
@@ -209,6 +247,7 @@ class Pictures:
     variables: Mapping[str, Array] = field(default_factory=dict)
     equations: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
     held_out: tuple[tuple[float, float], ...] = ()
+    span: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -223,6 +262,7 @@ class Diagnosis:
     the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
     what, when, as text. `steps` lead from the nominal model to the whole set, which adds `effects` in their order;
     `without` has what the set leaves when one of several effects is taken out and the rest fitted again.
+    `long_records` has those of which stretches were fitted; what is drawn of them is in the record's time.
     """
 
     path: str
@@ -255,6 +295,12 @@ class Diagnosis:
     without: Mapping[str, Residual] = field(default_factory=dict)
     correlation: Correlation = Correlation()
     composition: Composition = PAPER
+    long_records: tuple[LongRecord, ...] = ()
+
+    @property
+    def drawn(self) -> tuple[float, float]:
+        """When what is drawn begins and ends [s]."""
+        return self.pictures.span or (0.0, self.duration)
 
     @property
     def bent(self) -> bool:

@@ -1,7 +1,7 @@
 """Recordings: written crash-safe as MCAP, read from MCAP, rosbag2 folders and tables into channels in SI units."""
 
 from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
-from eha_core.recording.mcap_file import is_finished
+from eha_core.recording.mcap_summary import is_finished
 from eha_core.recording.message_types import definition_of, encode
 from eha_core.recording.reader import read_recording
 from eha_core.recording.recording import CHANNEL_KINDS, Channel, ChannelKind, Recording

@@ -13,6 +13,7 @@ from rosbags.rosbag2.errors import ReaderError
 
 from eha_core.errors import RecordingError
 from eha_core.recording.mcap_file import mcap_topics, read_mcap
+from eha_core.recording.mcap_summary import mcap_extent, mcap_metadata
 from eha_core.recording.raw import RawRecording, RawTopic, Sinks
 from eha_core.recording.unpacking import Ceiling
 from eha_core.yaml_file import load_yaml
@@ -50,6 +51,34 @@ def read_bag(path: Path, sinks: Sinks) -> RawRecording:
     if path.is_dir():
         return _read_files(path, _files_of(path), sinks)
     return _read_file(path, sinks)
+
+
+def bag_extent(path: Path) -> float | None:
+    """s from the first to the last message, where the files say so without being read."""
+    extents = []
+    for file in _files_of(path) if path.is_dir() else [path]:
+        if file.suffix == ".db3" or not file.is_file():
+            return None
+        extents.append(mcap_extent(file))
+    known = [one for one in extents if one is not None]
+    if len(known) < len(extents) or not known:
+        return None
+    return (max(last for _, last in known) - min(first for first, _ in known)) / 1e9
+
+
+def bag_size(path: Path) -> int:
+    """Bytes of a file, or of all files of a folder."""
+    return sum(one.stat().st_size for one in (_files_of(path) if path.is_dir() else [path]) if one.is_file())
+
+
+def bag_metadata(path: Path) -> dict[str, dict[str, str]]:
+    """The metadata records of a file or a folder that can be had without reading the messages."""
+    found: dict[str, dict[str, str]] = {}
+    for file in _files_of(path) if path.is_dir() else [path]:
+        if file.suffix != ".db3" and file.is_file():
+            for name, values in mcap_metadata(file).items():
+                found.setdefault(name, {}).update(values)
+    return found
 
 
 def _topics_of_file(path: Path) -> dict[str, RawTopic]:

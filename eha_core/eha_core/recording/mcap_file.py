@@ -5,7 +5,6 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -13,30 +12,20 @@ from typing import IO, Any
 
 import numpy as np
 from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.reader import make_reader
 from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader
-from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
-from zstandard import ZstdError
 
-from eha_core.errors import RecordingError
+from eha_core.recording.mcap_summary import RECORD_HEAD, UNREADABLE, opened, summary_of
 from eha_core.recording.raw import RawRecording, RawTopic, Sink, Sinks
 from eha_core.recording.unpacking import LARGEST_CHUNK, Ceiling, unpacked, unpacked_start
 
-# What parsing of arbitrary bytes raises: ends too early, bad lengths and text, checksums, broken compression.
-_UNREADABLE = (McapError, ZstdError, struct.error, ValueError, RuntimeError, MemoryError, OverflowError, LookupError)
-_RECORD_HEAD = struct.Struct("<BQ")  # kind, length
 _MESSAGE_HEAD = struct.Struct("<BQHIQQ")  # kind, length, channel, sequence, log time, publish time
-_CHECKSUM_SIZE = 4
 _KINDS: dict[int, Any] = {
     Opcode.FOOTER: Footer, Opcode.SCHEMA: Schema, Opcode.CHANNEL: Channel, Opcode.MESSAGE: Message,
     Opcode.CHUNK: Chunk, Opcode.METADATA: Metadata,
 }  # fmt: skip
 """The records that matter here; others are passed over."""
-_FOOTER_SIZE = _RECORD_HEAD.size + 8 + 8 + _CHECKSUM_SIZE + len(MCAP0_MAGIC)
 
 
 class _Collector:
@@ -66,7 +55,7 @@ class _Collector:
     def add_content(self, content: bytes, is_cut: bool = False) -> None:
         """Take the records of a chunk, all or none; of one whose end is missing those that are whole.
 
-        Raises one of _UNREADABLE where they are damaged.
+        Raises one of UNREADABLE where they are damaged.
         """
         found = _walk(content, is_cut)
         for record in found.others:
@@ -112,7 +101,7 @@ def _walk(content: bytes, is_cut: bool) -> _Found:
     while position < size:
         if content[position] == Opcode.MESSAGE and position + head <= size:
             _, length, channel, _, log_time, _ = unpack(content, position)
-            start, position = position + head, position + _RECORD_HEAD.size + length
+            start, position = position + head, position + RECORD_HEAD.size + length
             if not start <= position <= size:
                 break
             rows = found.messages.get(channel)
@@ -136,8 +125,8 @@ def mcap_topics(path: Path) -> dict[str, RawTopic]:
     Raises:
         RecordingError: as `read_mcap`.
     """
-    with _opened(path) as (stream, size):
-        summary = _summary(stream, size)
+    with opened(path) as (stream, size):
+        summary = summary_of(stream, size)
         collector = _Collector({}, Ceiling(str(path), size))
         if summary is None:
             return _read_records(stream, size, collector).topics
@@ -155,32 +144,12 @@ def read_mcap(path: Path, sinks: Sinks) -> RawRecording:
     Raises:
         RecordingError: the file cannot be opened, is no MCAP, or unpacks to more than a file of its size may.
     """
-    with _opened(path) as (stream, size):
+    with opened(path) as (stream, size):
         return _read_records(stream, size, _Collector(sinks, Ceiling(str(path), size)))
 
 
-@contextmanager
-def _opened(path: Path) -> Iterator[tuple[IO[bytes], int]]:
-    try:
-        with path.open("rb") as stream:
-            magic = stream.read(len(MCAP0_MAGIC))
-            if not magic:
-                raise RecordingError(f"{path}: the file is empty; record again")
-            if magic != MCAP0_MAGIC:
-                raise RecordingError(f"{path}: not an MCAP file (it starts with other bytes)")
-            yield stream, path.stat().st_size
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror})") from error
-
-
-def is_finished(path: Path) -> bool:
-    """Whether an MCAP has the end that its recorder writes when it stops. Raises OSError where it cannot be read."""
-    with path.open("rb") as stream:
-        return _summary(stream, path.stat().st_size) is not None
-
-
 def _read_records(stream: IO[bytes], size: int, collector: _Collector) -> RawRecording:
-    summary = _summary(stream, size)
+    summary = summary_of(stream, size)
     chunk_starts = sorted(index.chunk_start_offset for index in summary.chunk_indexes) if summary else []
     for record in (*summary.schemas.values(), *summary.channels.values()) if summary else ():
         collector.add(record)
@@ -232,16 +201,16 @@ def _records(stream: IO[bytes], start: int, end: int) -> Iterator[tuple[McapReco
     position = start
     while True:
         stream.seek(position)
-        head = stream.read(_RECORD_HEAD.size)
-        if len(head) < _RECORD_HEAD.size:
+        head = stream.read(RECORD_HEAD.size)
+        if len(head) < RECORD_HEAD.size:
             return
-        kind, length = _RECORD_HEAD.unpack(head)
-        position += _RECORD_HEAD.size + length
+        kind, length = RECORD_HEAD.unpack(head)
+        position += RECORD_HEAD.size + length
         if kind == 0 or position > end:  # no record is of kind 0, but zeroed bytes look so
             return
         try:
             yield (_parse(kind, stream.read(length)) if kind in _KINDS else None), position
-        except _UNREADABLE:
+        except UNREADABLE:
             return
 
 
@@ -258,7 +227,7 @@ def _add_chunk(chunk: Chunk, collector: _Collector) -> None:
         if chunk.uncompressed_crc not in (0, zlib.crc32(content)):
             raise ValueError("the chunk has another checksum")
         collector.add_content(content)
-    except _UNREADABLE:
+    except UNREADABLE:
         collector.bad_chunks += 1
 
 
@@ -269,28 +238,11 @@ def _add_cut_chunk(stream: IO[bytes], start: int, collector: _Collector) -> None
     try:
         if data[0] != Opcode.CHUNK:
             return
-        chunk = Chunk.read(ReadDataStream(BytesIO(data[_RECORD_HEAD.size :])))
+        chunk = Chunk.read(ReadDataStream(BytesIO(data[RECORD_HEAD.size :])))
         content = unpacked_start(chunk, LARGEST_CHUNK)
-    except _UNREADABLE:
+    except UNREADABLE:
         return
     if len(content) >= chunk.uncompressed_size:
         return
     collector.ceiling.take(len(content))
     collector.add_content(content, is_cut=True)
-
-
-def _summary(stream: IO[bytes], size: int) -> Summary | None:
-    """The summary; None where the file has none or its checksum is wrong."""
-    try:
-        stream.seek(size - _FOOTER_SIZE)
-        footer = next(iter(StreamReader(stream, skip_magic=True).records))
-        if not isinstance(footer, Footer) or not 0 < footer.summary_start < size:
-            return None
-        stream.seek(footer.summary_start)
-        checked = stream.read(size - len(MCAP0_MAGIC) - _CHECKSUM_SIZE - footer.summary_start)
-        if footer.summary_crc not in (0, zlib.crc32(checked)):
-            return None
-        stream.seek(0)
-        return make_reader(stream).get_summary()
-    except (*_UNREADABLE, OSError):
-        return None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -52,9 +53,38 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
     return _from_messages(path, topics_file)
 
 
-def _from_messages(path: Path, topics_file: TopicsFile | None) -> Recording:
+@dataclass(frozen=True)
+class MessageFile:
+    """A file or folder of messages whose topics are known: which channels it has, and who takes their messages."""
+
+    path: Path
+    rules: Mapping[str, ChannelRule]
+    types: Mapping[str, str]
+    sinks: Mapping[str, TopicColumns]
+    remarks: tuple[str, ...]
+    asked: Collection[str]
+
+    def collect(self) -> tuple[dict[str, Samples], list[str]]:
+        """The samples of each channel since the last call, on one clock, and what was left out."""
+        decoded = [sink.finish() for sink in self.sinks.values()]
+        remarks = [remark for topic in decoded for remark in topic.remarks]
+        decoded, leap_remarks = without_leaps(decoded)
+        decoded, clock_remarks = on_one_clock(decoded)
+        samples = {name: Samples(topic.stamps, values) for topic in decoded for name, values in topic.columns.items()}
+        for name in MAY_BE_EMPTY:
+            if name in samples and name not in self.asked and not np.isfinite(samples[name].values).any():
+                del samples[name]
+        return samples, [*remarks, *leap_remarks, *clock_remarks]
+
+
+def open_messages(path: Path, topics_file: TopicsFile | None) -> MessageFile:
+    """Find the channels of a file or folder of messages.
+
+    Raises:
+        RecordingError: as `read_recording`.
+    """
     topics = bag_topics(path)
-    rules, found_remarks = find_rules(str(path), topics.keys(), topics_file)
+    rules, remarks = find_rules(str(path), topics.keys(), topics_file)
     if leakage := leakage_topic(topics.keys(), rules):
         rules[LEAKAGE_TOPIC] = ChannelRule(leakage, "data")
     sinks = {}
@@ -63,18 +93,16 @@ def _from_messages(path: Path, topics_file: TopicsFile | None) -> Recording:
         given = topics_file.channels.keys() & fields.keys() if topics_file else set()
         optional = fields.keys() - given if given else set()
         sinks[topic] = TopicColumns(topics[topic], fields, value_names(path, topics, topic), optional)
-    raw = read_bag(path, sinks)
-    decoded = [sink.finish() for sink in sinks.values()]
-    remarks = [*found_remarks, *(remark for topic in decoded for remark in topic.remarks)]
-    decoded, leap_remarks = without_leaps(decoded)
-    decoded, clock_remarks = on_one_clock(decoded)
-    samples = {name: Samples(topic.stamps, values) for topic in decoded for name, values in topic.columns.items()}
-    asked = topics_file.channels if topics_file is not None else {}
-    for name in MAY_BE_EMPTY:
-        if name in samples and name not in asked and not np.isfinite(samples[name].values).any():
-            del samples[name]
     types = {name: topics[str(rule.topic)].type_name for name, rule in rules.items()}
-    return assemble(path, samples, rules, types, raw, [*remarks, *leap_remarks, *clock_remarks])
+    asked = topics_file.channels.keys() if topics_file is not None else ()
+    return MessageFile(path, rules, types, sinks, tuple(remarks), asked)
+
+
+def _from_messages(path: Path, topics_file: TopicsFile | None) -> Recording:
+    file = open_messages(path, topics_file)
+    raw = read_bag(path, file.sinks)
+    samples, remarks = file.collect()
+    return assemble(path, samples, file.rules, file.types, raw, [*file.remarks, *remarks])
 
 
 def assemble(

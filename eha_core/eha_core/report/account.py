@@ -14,14 +14,16 @@ from eha_core.report.finding import told_parameters
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
 _INDENT = 13
-_LONGEST = {"Recording": 2, "Verdict": 3, "Located": 2, "Named": 2, "Recovered": 2, "Parameters": 2, "Next test": 3}
+_LONGEST = {
+    "Recording": 2, "Verdict": 3, "Whole": 5, "Located": 2, "Named": 2, "Recovered": 2, "Parameters": 2, "Next test": 3,
+}  # fmt: skip
 _MOST_EFFECTS = 8
 
 
 def account(diagnosis: Diagnosis, written: Sequence[Path] = (), width: int = 100) -> str:
     """Say what was found, how sure it is, what it improves, and where the files are.
 
-    It takes 25 lines at most, and four more for each effect beyond the second.
+    It takes 25 lines at most, four more for each effect beyond the second, and five for a long record.
     """
     lines: list[str] = []
     for label, text in _findings(diagnosis):
@@ -41,6 +43,8 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         f"{Path(diagnosis.path).name}: {diagnosis.duration:.1f} s of {channels_listed(diagnosis.channels)}",
     )
     yield "Verdict", diagnosis.summary
+    for one in diagnosis.long_records:
+        yield "Whole", one.statement
     for location in diagnosis.location[:1]:
         yield "Located", _located(location)
     for place, effect in enumerate(diagnosis.effects[:_MOST_EFFECTS]):

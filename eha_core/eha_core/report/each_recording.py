@@ -6,12 +6,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from eha_core.diagnosis.result import Diagnosis, PredictedRecording
+import numpy as np
+
+from eha_core.diagnosis.result import Diagnosis, LongRecord, PredictedRecording
 from eha_core.parameters import catalogue
 from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.stage import Table
 from eha_core.report.wording import channel_title, words
+
+MOST_ROWS = 40
+"""Parts of a long record in a table."""
 
 MODELS = ("nominal", "recalibrated", "augmented")
 
@@ -50,7 +55,8 @@ def _valued(name: str, value: float) -> str:
 def recording_tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
     """The same for the page: a table of the recordings fitted together, and one for each that was only predicted."""
     tables = [_together(diagnosis)] if diagnosis.together else []
-    return (*tables, *(_prediction(tested) for tested in diagnosis.tests))
+    whole = (_whole(one) for one in diagnosis.long_records)
+    return (*tables, *whole, *(_prediction(tested) for tested in diagnosis.tests))
 
 
 def _together(diagnosis: Diagnosis) -> Table:
@@ -66,6 +72,32 @@ def _together(diagnosis: Diagnosis) -> Table:
     )
     headings = ("recording", *(f"{channel_title(name)} [× noise]" for name in channels), *map(words, own))
     return Table(headings, rows, "Recordings fitted together: held-out errors, and the values that are their own")
+
+
+def _whole(record: LongRecord) -> Table:
+    """Parts of a long record: how much of each was fitted, and what two models err by in it."""
+    names = list(record.blocks[0].after) if record.blocks else []
+    rows = []
+    for part in np.array_split(np.arange(len(record.blocks)), min(MOST_ROWS, max(len(record.blocks), 1))):
+        blocks = [record.blocks[place] for place in part]
+        if not blocks:
+            continue
+        fitted = sum(one.end - one.start for one in blocks if one.fitted)
+        cells = []
+        for name in names:
+            unit = CHANNEL_KINDS[name].unit
+            after = [one.after[name] for one in blocks if name in one.after]
+            before = [one.before[name] for one in blocks if name in one.before]
+            cells += [_median(before, unit), _median(after, unit), quantity(max(after), unit) if after else "-"]
+        rows.append((f"{blocks[0].start:.0f} to {blocks[-1].end:.0f} s", f"{fitted:.0f} s", *cells))
+    kinds = ("nominal, median", "augmented, median", "augmented, largest")
+    headings = ("part", "fitted", *(f"{channel_title(name)}: {kind}" for name in names for kind in kinds))
+    title = f"The whole record: RMSE with parameters held, and the state fitted every {record.window:g} s"
+    return Table(headings, tuple(rows), title)
+
+
+def _median(values: list[float], unit: str) -> str:
+    return quantity(float(np.median(values)), unit) if values else "-"
 
 
 def _prediction(tested: PredictedRecording) -> Table:

@@ -152,8 +152,8 @@ def _draw(axes: Any, panel: Panel, last: bool) -> None:
         axes.set_ylim(len(panel.names) - 0.4, -0.6)
     for mark in panel.marks:
         _mark(axes, mark)
-    if panel.title:
-        axes.set_title(panel.title, loc="left", fontsize=9.5, fontweight="bold", color=COLOURS["measured"])
+    # at a given height: to find one itself, Matplotlib measures every label
+    axes.set_title(panel.title, loc="left", y=1.0, fontsize=9.5, fontweight="bold", color=COLOURS["measured"])
     axes.set_xlabel(panel.x_label if last else "", fontsize=9, color="#5c6b78")
     axes.set_ylabel(panel.y_label, fontsize=9, color="#5c6b78")
     if panel.x_range:

@@ -46,5 +46,18 @@ def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
     return (page, folder / "figures", document, fitted, comparison, *proposed)
 
 
+def write_document(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
+    """Write diagnosis.json alone, and return its path. Raises EhaError where the folder cannot be written to."""
+    document = folder / "diagnosis.json"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        document.write_text(as_json(diagnosis), encoding="utf-8")
+    except OSError as error:
+        raise EhaError(
+            f"{error.filename or folder}: cannot be written ({error.strerror}); choose another --out"
+        ) from error
+    return (document,)
+
+
 def _heading(diagnosis: Diagnosis) -> str:
     return f"Fitted to {Path(diagnosis.path).name}\n{' '.join(diagnosis.summary.split())}"

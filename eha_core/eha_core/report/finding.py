@@ -130,6 +130,7 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
         if changed and not diagnosis.bent
         else "",
         explanation(diagnosis),
+        *(one.statement for one in diagnosis.long_records),
     )
     return tuple(one for one in found if one)
 

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
+from typing import Protocol
 
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.recording import Recording
 from eha_core.version import __version__
 
 FROM_RECORDING = "the parameters that the recording carries, or the catalogue's"
@@ -20,8 +20,16 @@ FROM_RECORDING = "the parameters that the recording carries, or the catalogue's"
 _BLOCK = 1 << 20
 
 
+class Recorded(Protocol):
+    """What was read from a path."""
+
+    @property
+    def path(self) -> Path:
+        """Where it was read from."""
+
+
 def with_provenance(
-    diagnosis: Diagnosis, recordings: Sequence[Recording], nominal: object = None, command: str | None = None
+    diagnosis: Diagnosis, recordings: Sequence[Recorded], nominal: object = None, command: str | None = None
 ) -> Diagnosis:
     """The diagnosis with its origin: version, command, nominal model, SHA-256 of each recording, and now."""
     name = Path(sys.argv[0]).name

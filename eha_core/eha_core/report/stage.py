@@ -53,13 +53,14 @@ def adds_physics(diagnosis: Diagnosis) -> bool:
 
 def judged_spans(diagnosis: Diagnosis) -> tuple[tuple[float, float], ...]:
     """The held-out spans; the whole record where none was held out."""
-    return diagnosis.pictures.held_out or ((0.0, diagnosis.duration),)
+    return diagnosis.pictures.held_out or (diagnosis.drawn,)
 
 
 def violated(diagnosis: Diagnosis) -> tuple[Spans, ...]:
     """The spans in which the first location departs, unless that is nearly all the time."""
     when = diagnosis.location[0].when if diagnosis.location else ()
     covered = sum(end - start for start, end in when)
-    if not when or covered > MOST_OF_IT * diagnosis.duration:
+    begin, end = diagnosis.drawn
+    if not when or covered > MOST_OF_IT * (end - begin):
         return ()
     return (Spans(when, "where the model departs"),)

@@ -48,14 +48,16 @@ class Models:
         pictures = self.diagnosis.pictures
         if not all(name in pictures.after for name in LIQUID):
             return None
-        channels = [Measured(name, 0, pictures.time[name], pictures.measured[name], 0.0) for name in LIQUID]
+        begin, end = self.diagnosis.drawn
+        channels = [Measured(name, 0, pictures.time[name] - begin, pictures.measured[name], 0.0) for name in LIQUID]
         step = max(float(np.median(np.diff(one.time))) for one in channels)
-        return bumps(self.diagnosis.duration, step, channels, POINT_WIDTH)
+        return bumps(end - begin, step, channels, POINT_WIDTH)
 
     def on_grid(self, source: Mapping[str, Array]) -> tuple[Array, ...]:
         """Position and both pressures of `pictures.measured` or of a model, on the grid."""
         assert self.grid is not None
-        return tuple(np.interp(self.grid.time, self.diagnosis.pictures.time[name], source[name]) for name in LIQUID)
+        time = self.grid.time + self.diagnosis.drawn[0]
+        return tuple(np.interp(time, self.diagnosis.pictures.time[name], source[name]) for name in LIQUID)
 
     @cached_property
     def modelled(self) -> tuple[Array, Array, Array, Array]:
@@ -79,7 +81,7 @@ class Models:
         variables = self.diagnosis.pictures.variables
         if self.grid is None or "spool_position" not in variables:
             return None
-        return np.interp(self.grid.time, variables["time"], variables["spool_position"])
+        return np.interp(self.grid.time + self.diagnosis.drawn[0], variables["time"], variables["spool_position"])
 
     def deviation(self, name: str) -> float:
         """Standard deviation of a fitted parameter of the nominal model; 0 where it was not fitted."""

@@ -18,7 +18,8 @@ UPS = (Axis("Leakage coefficient", "m^3/(s Pa)"), Axis("Damping coefficient", "N
 
 def law(models: Models, effect: NamedEffect) -> Law | None:
     """The coefficient that changes most, over time."""
-    x: Array = np.linspace(0.0, models.diagnosis.duration, CURVE, dtype=np.float64)
+    begin, end = models.diagnosis.drawn
+    x: Array = np.linspace(0.0, end - begin, CURVE, dtype=np.float64)
     values = {name: one.value for name, one in effect.parameters.items()}
     changes = [np.ptp(one) / max(float(np.max(one)), 1e-300) for one in _over_time(models, effect, values, x)]
     place = int(np.argmax(changes))

@@ -1,0 +1,80 @@
+"""A diagnosis of stretches told in the time of the record that they are from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from eha_core.diagnosis.locate import stated
+from eha_core.diagnosis.result import Diagnosis, Location, NamedEffect, Pictures
+from eha_core.recording import Recording
+
+WHOLE = 0.9
+"""Share of a stretch from which on a span is all of it (assumed)."""
+
+Stretches = tuple[Path, float, Sequence[Recording], Sequence[tuple[float, float]]]
+"""A record's path and duration [s], the recordings of its stretches, and when these begin and end in it [s]."""
+
+
+def in_time_of_record(diagnosis: Diagnosis, records: Sequence[Stretches]) -> Diagnosis:
+    """Where the stretch that the diagnosis draws is one of a record: its path, its length, its times."""
+    for path, whole, recordings, spans in records:
+        for recording, (start, _) in zip(recordings, spans, strict=True):
+            if str(recording.path) == diagnosis.path:
+                of_record = replace(
+                    diagnosis,
+                    path=str(path),
+                    duration=whole,
+                    start_stamp=recording.start_stamp - round(start * 1e9),
+                )
+                return _moved(of_record, start, recording.duration)
+    return diagnosis
+
+
+def _moved(diagnosis: Diagnosis, by: float, duration: float) -> Diagnosis:
+    effects = tuple(_effect(one, by) for one in diagnosis.effects)
+    summary = diagnosis.summary
+    for old, new in zip(diagnosis.effects, effects, strict=True):
+        summary = summary.replace(old.statement, new.statement)
+    left = diagnosis.explained
+    return replace(
+        diagnosis,
+        summary=summary,
+        effects=effects,
+        location=tuple(_location(one, by, duration) for one in diagnosis.location),
+        explained=replace(left, left_over=tuple(_location(one, by, duration) for one in left.left_over)),
+        pictures=_pictures(diagnosis.pictures, by, duration),
+    )
+
+
+def _effect(one: NamedEffect, by: float) -> NamedEffect:
+    if one.active is None:
+        return one
+    before, after = one.active, (one.active[0] + by, one.active[1] + by)
+    told = f"from {before[0]:.4g} s to {before[1]:.4g} s"
+    return replace(
+        one, active=after, statement=one.statement.replace(told, f"from {after[0]:.6g} s to {after[1]:.6g} s")
+    )
+
+
+def _location(one: Location, by: float, duration: float) -> Location:
+    when = tuple((start + by, end + by) for start, end in one.when)
+    if one.statement != stated(one.site, one.share, one.where, one.when):
+        return replace(one, when=when)
+    if len(one.when) == 1 and one.when[0][1] - one.when[0][0] > WHOLE * duration:
+        said = f"{stated(one.site, one.share, one.where, ())}, through all of the stretch from {when[0][0]:.0f} s on"
+    else:
+        said = stated(one.site, one.share, one.where, when)
+    return replace(one, when=when, statement=said)
+
+
+def _pictures(one: Pictures, by: float, duration: float) -> Pictures:
+    return replace(
+        one,
+        time={name: time + by for name, time in one.time.items()},
+        variables={name: values + by if name == "time" else values for name, values in one.variables.items()},
+        equations={name: (time + by, residual) for name, (time, residual) in one.equations.items()},
+        held_out=tuple((start + by, end + by) for start, end in one.held_out),
+        span=(by, by + duration),
+    )

@@ -1,0 +1,134 @@
+"""A record in blocks: the same samples as read at once, however it is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recordings import START, header
+
+from eha_core.errors import RecordingError
+from eha_core.recording import Recording, RecordingWriter, blocks, read_recording
+from eha_core.recording.blocks import Block, Blocks, BlocksInMemory, BlocksOfFile
+from eha_core.recording.cutting import cut_out, leakage_within
+from eha_core.recording.message_types import encode
+
+FLOAT, JOINTS, PRESSURE = "std_msgs/msg/Float64", "sensor_msgs/msg/JointState", "sensor_msgs/msg/FluidPressure"
+RATE, SECONDS = 50, 23.0
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A rig whose command changes every 7 s and is sent only then, and whose leakage is turned at 12 s."""
+    file = tmp_path_factory.mktemp("blocks") / "run.mcap"
+    with RecordingWriter(file, {"moving_mass": 9.5, "atmospheric_pressure": 1e5}) as writer:
+        for row in range(int(SECONDS * RATE) + 1):
+            if row % RATE == 0:
+                writer.flush()
+            stamp = START + row * 1_000_000_000 // RATE
+            time = row / RATE
+            if row % (7 * RATE) == 0:
+                writer.write("/voltage_command", FLOAT, encode(FLOAT, {"data": 0.01 * (1 + time)}), stamp)
+            if row in (0, 12 * RATE):
+                writer.write("/internal_leakage", FLOAT, encode(FLOAT, {"data": 1e-12 * (1 + time)}), stamp)
+            joint = {"header": header(stamp), "name": ["piston"], "position": [0.01 * np.sin(time)]}
+            writer.write("/joint_states", JOINTS, encode(JOINTS, joint), stamp)
+            pressure = {"header": header(stamp), "fluid_pressure": 1e7 + row}
+            writer.write("/chamber_a/pressure", PRESSURE, encode(PRESSURE, pressure), stamp)
+    return file
+
+
+def taken(source: Blocks, wanted: frozenset[int] | None = None) -> list[Block]:
+    found: list[Block] = []
+    source.each(found.append, wanted)
+    return found
+
+
+def recordings_of(source: Blocks) -> list[Recording]:
+    found = [one.recording for one in taken(source)]
+    assert all(found)
+    return [one for one in found if one]
+
+
+@pytest.mark.parametrize("piece", [0.5, 4.0, 1000.0])
+def test_blocks_of_a_file_are_those_of_the_recording(path: Path, piece: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blocks, "PIECE", piece)
+    whole = read_recording(path)
+    read, cut = recordings_of(BlocksOfFile(path, None, 5.0)), recordings_of(BlocksInMemory(whole, 5.0))
+    assert len(read) == len(cut) == 5
+    for one, other in zip(read, cut, strict=True):
+        assert one.path == other.path
+        assert one.start_stamp == other.start_stamp
+        assert one.duration == pytest.approx(other.duration, abs=1e-9)
+        assert one.parameters == other.parameters == whole.parameters
+        np.testing.assert_allclose(one.leakage_changes, other.leakage_changes, rtol=0, atol=1e-9)
+        assert list(one.channels) == list(other.channels)
+        for name in one.channels:
+            np.testing.assert_allclose(one.channels[name].time, other.channels[name].time, rtol=0, atol=1e-9)
+            np.testing.assert_array_equal(one.channels[name].values, other.channels[name].values)
+    assert sum(len(one.channels["position"].time) for one in read) == len(whole.channels["position"].time)
+
+
+def test_what_held_when_a_block_began_holds_in_it(path: Path) -> None:
+    second = recordings_of(BlocksOfFile(path, None, 5.0))[1]
+    command = second.channels["voltage_command"]
+    np.testing.assert_allclose(command.time, [0.0, 2.0], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(command.values, [0.01, 0.08])
+
+
+def test_the_leakage_counts_from_the_record_and_not_from_the_block() -> None:
+    changes = ((0.0, 1e-12), (12.0, 5e-12), (21.0, 9e-12))
+    assert leakage_within((), 3.0, 8.0) == ()
+    assert leakage_within(changes, 0.0, 10.0) == ((0.0, 1e-12),)
+    assert leakage_within(changes, 10.0, 20.0) == ((0.0, 1e-12), (2.0, 5e-12))
+    (start, first), (soon, second), (later, third) = leakage_within(changes, 20.0, 30.0)
+    assert (start, first, second, later, third) == (0.0, 1e-12, 5e-12, 1.0, 9e-12)
+    assert 0.0 < soon < 1e-6
+
+
+def test_only_what_is_wanted_is_handed_on(path: Path) -> None:
+    for source in (BlocksOfFile(path, None, 5.0), BlocksInMemory(read_recording(path), 5.0)):
+        assert [one.number for one in taken(source, frozenset({1, 4}))] == [1, 4]
+        assert source.duration == pytest.approx(SECONDS)
+
+
+def test_no_more_is_held_than_pieces(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of any length passes in pieces: between two of them never more than two blocks' samples are kept."""
+    monkeypatch.setattr(blocks, "PIECE", 2.0)
+    held: list[int] = []
+    add = blocks._Cutter.add
+
+    def counted(self: blocks._Cutter, *arguments: object) -> None:
+        add(self, *arguments)  # type: ignore[arg-type]
+        held.append(max(len(one.stamps) for one in self._pending.values()))
+
+    monkeypatch.setattr(blocks._Cutter, "add", counted)
+    taken(BlocksOfFile(path, None, 2.0))
+    assert len(held) > 5
+    assert max(held) <= 3 * 2.0 * RATE + RATE + 1
+
+
+def test_a_file_that_was_cut_off_gives_what_is_there(path: Path, tmp_path: Path) -> None:
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
+    source = BlocksOfFile(cut, None, 5.0)
+    read = taken(source)
+    assert 5.0 < source.duration < SECONDS
+    assert source.damaged and f"what was read covers {source.duration:.4g} s" in source.damaged
+    assert read[0].recording and read[0].recording.duration == pytest.approx(4.98)
+
+
+def test_a_file_without_a_channel_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "none.mcap"
+    with RecordingWriter(file) as writer:
+        writer.write("/chatter", FLOAT, encode(FLOAT, {"data": 1.0}), START)
+    with pytest.raises(RecordingError, match="no usable channel"):
+        taken(BlocksOfFile(file, None, 5.0))
+
+
+def test_beyond_the_end_nothing_was_measured(path: Path) -> None:
+    """What held last goes on holding; no sample of another channel is there."""
+    beyond = cut_out(read_recording(path), 500.0, 510.0)
+    assert beyond is not None
+    assert list(beyond.channels) == ["voltage_command"]
