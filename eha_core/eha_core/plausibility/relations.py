@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eha_core.plant import PAPER, Composition
 from eha_core.plausibility.signals import Signals, on_grid
 from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
@@ -38,7 +39,11 @@ class Relation:
     distance: float
 
 
-def relations(recording: Recording, nominal: Values) -> dict[str, Relation]:
+OF_A_VALVE = ("command", "command_scale", "level")
+"""Relations that hold because a valve throttles what a constant supply gives."""
+
+
+def relations(recording: Recording, nominal: Values, composition: Composition = PAPER) -> dict[str, Relation]:
     """Every relation that can be looked at in a recording, by name; none where the piston does not move."""
     signals = on_grid(recording)
     if signals is None or not np.ptp(signals.speed) > 0.0:
@@ -50,7 +55,8 @@ def relations(recording: Recording, nominal: Values) -> dict[str, Relation]:
         *_force(signals, nominal),
         *_levels(signals, nominal),
     ]
-    return {relation.name: relation for relation in found}
+    left_out = () if composition.source.valve else OF_A_VALVE
+    return {relation.name: relation for relation in found if relation.name not in left_out}
 
 
 def _correlation(one: FloatArray, other: FloatArray) -> float:
@@ -66,6 +72,11 @@ def _regression(values: FloatArray, *columns: FloatArray) -> tuple[FloatArray, f
     rest = values - (table / scale) @ solution
     variance = float(np.sum((values - values.mean()) ** 2)) + 1e-300
     return solution / scale, 1.0 - float(rest @ rest) / variance
+
+
+def explained_by(values: FloatArray, signal: FloatArray) -> float:
+    """The share of the variance of `values` that a signal explains; none of it where the signal never changes."""
+    return _regression(values, signal)[1] if np.ptp(signal) > 0.0 else 0.0
 
 
 def _within(ratio: float, bound: float) -> bool:
