@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from inspect import getdoc
 from pathlib import Path
@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.nominal import NominalModel, load_nominal, nominal_of
-from eha_core.parameters import NOMINAL
-from eha_core.plant import require_sliding
+from eha_core.parameters import ACTING
+from eha_core.plant import composition_of
 from eha_core.recording import Recording, read_recording
 from eha_core.recording.simulated import Experiment
 from eha_core.recording.simulated import simulate as run
@@ -26,7 +26,7 @@ from eha_core.signals import from_text, signals
 if TYPE_CHECKING:
     from eha_core.report.results import Results
 
-Nominal = Mapping[str, float | str] | NominalModel | str | Path | None
+Nominal = Mapping[str, object] | NominalModel | str | Path | None
 
 
 def read(path: str | Path, topics: str | Path | None = None) -> Recording:
@@ -98,9 +98,11 @@ def diagnose(
 
     Args:
         recording: a recording or its path; several are one rig, fitted with one set of parameters and effects.
-        nominal: the model: parameter values that differ from the catalogue's ("unknown" where nobody knows one), a
-            parameters file, or a `NominalModel`. By default the values that the recording carries, effects left out,
-            or else the catalogue's nominal actuator.
+        nominal: the model: parameter values that differ from the catalogue's ("unknown" where nobody knows one; parts
+            as {"plant": {"source": "switched_pump"}}), a parameters file, or a `NominalModel`. By default the parts
+            and values that the recording carries, effects left out, or else the catalogue's nominal actuator. Where
+            position and force are all that was recorded and there is no model, the motion is taken as given and the
+            law of the force is found.
         jobs: threads that simulate side by side.
         progress: is told each stage as it begins.
         tests: recordings that nothing is fitted to, only predicted.
@@ -117,9 +119,34 @@ def diagnose(
     recordings, unseen = (
         [one if isinstance(one, Recording) else read_recording(one) for one in several] for several in (given, tests)
     )
+    if takes_motion_as_given(recordings, nominal):
+        return _diagnose_motion(recordings, progress, unseen)
     found = diagnose_together(recordings, known_model(nominal, recordings[0]), progress, jobs, unseen)
     origin = "values given by name" if isinstance(nominal, (Mapping, NominalModel)) else nominal
     return Results(with_provenance(found, recordings, origin, "eha_core.diagnose"))
+
+
+def takes_motion_as_given(recordings: Sequence[Recording], nominal: object) -> bool:
+    """Whether nothing drives a plant: motion and force alone were recorded, and there is no model of an actuator."""
+    from eha_core.motion_given.motion import is_motion_given
+
+    modelled = nominal is not None or any(recording.parameters for recording in recordings)
+    return not modelled and all(map(is_motion_given, recordings))
+
+
+def _diagnose_motion(
+    recordings: Sequence[Recording], progress: Callable[[str], None], tests: Sequence[Recording]
+) -> Results:
+    """The law of the force that goes with the motion, as `eha diagnose` finds it for such recordings."""
+    from eha_core.motion_given import diagnose_motion
+    from eha_core.report.provenance import with_provenance
+    from eha_core.report.results import MotionResults
+
+    values = known_model(None, recordings[0]).values
+    found = diagnose_motion(recordings, progress, tests, (values["piston_area"], values["piston_area_b"]))
+    origin = "none: the motion is given"
+    return MotionResults(replace(found, diagnosis=with_provenance(found.diagnosis, recordings, origin,
+                                                                  "eha_core.diagnose")))  # fmt: skip
 
 
 def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]:
@@ -132,12 +159,18 @@ def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     if isinstance(nominal, (str, Path)):
         nominal = load_nominal(nominal)
     if isinstance(nominal, NominalModel):
-        require_sliding(nominal.composition)
         return nominal
     if nominal is not None:
-        return nominal_of(nominal)
-    names = {row.name for row in NOMINAL}
-    return nominal_of({name: value for name, value in recording.parameters.items() if name in names})
+        given = dict(nominal)
+        parts = given.pop("plant", recording.parts)
+        if not isinstance(parts, Mapping):
+            raise ParameterError(f"plant = {parts!r} names no parts; write for example {{'source': 'switched_pump'}}")
+        return nominal_of(given, composition=composition_of(parts))
+    composition = composition_of(recording.parts)
+    of_effects = {name for effect in effects() for name in effect.parameter_names()} | {row.name for row in ACTING}
+    kept = {name: value for name, value in recording.parameters.items() if name not in of_effects}
+    known = {name: value for name, value in kept.items() if name in composition.rows}
+    return nominal_of(known, composition=composition)
 
 
 @dataclass(frozen=True)

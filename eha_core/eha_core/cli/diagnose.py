@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from eha_core.api import known_model
+from eha_core.api import known_model, takes_motion_as_given
 from eha_core.errors import EhaError
 from eha_core.recording import Recording, read_recording
 from eha_core.workers import Workers
@@ -53,18 +53,16 @@ def run(arguments: argparse.Namespace) -> int:
         return _run_each(arguments)
     if arguments.dask is not None:
         raise EhaError("--dask spreads recordings that are diagnosed on their own; give --each too")
-    from eha_core.motion_given.motion import is_motion_given
     from eha_core.plausibility import admit
 
     recordings = [read_recording(path, arguments.topics) for path in arguments.recordings]
-    modelled = arguments.nominal is not None or any(recording.parameters for recording in recordings)
-    if arguments.motion_given or (not modelled and all(map(is_motion_given, recordings))):
+    if arguments.motion_given or takes_motion_as_given(recordings, arguments.nominal):
         return _run_motion_given(arguments, recordings)
     model = known_model(arguments.nominal, recordings[0])
-    recordings = [admit(one, model.values, arguments.as_recorded) for one in recordings]
-    tests = [
-        admit(read_recording(path, arguments.topics), model.values, arguments.as_recorded) for path in arguments.test
-    ]
+    recordings, tests = (
+        [admit(one, model.values, arguments.as_recorded, model.composition) for one in several]
+        for several in (recordings, [read_recording(path, arguments.topics) for path in arguments.test])
+    )
     for warning in (
         remark for recording in (*recordings, *tests) for remark in recording.remarks if remark.startswith("warning")
     ):
@@ -149,7 +147,7 @@ def diagnose_alone(
     try:
         recording = read_recording(path, topics)
         model = known_model(nominal, recording)
-        recording = admit(recording, model.values, as_recorded)
+        recording = admit(recording, model.values, as_recorded, model.composition)
         diagnosis = with_provenance(diagnose_together([recording], model, jobs=1), [recording], nominal)
         write_report(diagnosis, folder)
     except EhaError as error:
