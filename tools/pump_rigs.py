@@ -17,7 +17,7 @@ import numpy as np
 
 import eha_core as eha
 from eha_core.exam.truth.record import Effect
-from eha_core.exam.truth.simulate import SteppedTruth
+from eha_core.exam.truth.simulate import COLUMNS, SteppedTruth
 from eha_core.identification.numbers import Array
 from eha_core.nominal import nominal_of
 from eha_core.plant import compose
@@ -70,7 +70,7 @@ def _draw_truth(g: np.random.Generator) -> dict[str, float]:
         "saturation_current": AMPERES,
         "valve_natural_frequency": g.uniform(40.0, 200.0),
         "valve_damping_ratio": g.uniform(0.7, 1.0),
-        "valve_gain": flow / np.sqrt(g.uniform(2e5, 1e6)) / AMPERES,
+        "valve_gain": flow / float(np.sqrt(g.uniform(2e5, 1e6))) / AMPERES,
         "piston_area": area,
         "piston_area_b": area * g.uniform(0.5, 0.8),
         "actuator_displacement": g.uniform(0.15, 0.4),
@@ -85,8 +85,8 @@ def _draw_truth(g: np.random.Generator) -> dict[str, float]:
         "pump_displacement": displacement,
         "pump_leakage": g.uniform(0.01, 0.05) * flow / relief,
         "pump_relief_gain": flow / (0.1 * relief),
-        "pump_line_volume": np.exp(g.uniform(np.log(2e-5), np.log(3e-4))),
-        "pump_bypass_gain": flow / np.sqrt(g.uniform(1e5, 3e5)) if tandem else 0.0,
+        "pump_line_volume": float(np.exp(g.uniform(np.log(2e-5), np.log(3e-4)))),
+        "pump_bypass_gain": flow / float(np.sqrt(g.uniform(1e5, 3e5))) if tandem else 0.0,
         "pump_bypass_spool": AMPERES * max(0.05, overlap) * g.uniform(0.7, 1.3),
         "overlap": AMPERES * overlap,
     }
@@ -121,29 +121,27 @@ def _told(truth: dict[str, float], g: np.random.Generator) -> dict[str, float]:
 def _record(truth: dict[str, float], concealed: Effect | None, g: np.random.Generator) -> eha.Recording:
     """The piston sent to and fro for random times, with rests, and back where it comes near an end."""
     plant = {name: value for name, value in truth.items() if name != "overlap"}
-    edges = ("valve_deadband", {"half_width": truth["overlap"]})
-    effects = [edges, *([concealed] if concealed else [])]
+    effects: list[Effect] = [("valve_deadband", {"half_width": truth["overlap"]})]
+    effects += [concealed] if concealed else []
     count = round(RATE * SECONDS) + 1
     stepped, reach = SteppedTruth(plant, effects, RATE, count), 0.6 * truth["actuator_displacement"]
     time = np.arange(count) / RATE
     speed = 100.0 * (1.0 + 0.35 * np.sin(0.9 * time + g.uniform(0, 6)) + 0.15 * np.sin(4.3 * time + g.uniform(0, 6)))
-    signs, rows, until = np.empty(count), [], 0.0
-    sign = 0.0
+    signs, rows = np.empty(count), np.empty((count, len(COLUMNS)))
+    sign = until = 0.0
     for k in range(count):
         position = stepped.sense()[0]
         if abs(position) > reach and sign * position > 0.0:
-            sign, until = -np.sign(position), time[k] + g.uniform(0.3, 0.8)
+            sign, until = -float(np.sign(position)), float(time[k]) + g.uniform(0.3, 0.8)
         elif time[k] >= until:
             sign = 0.0 if sign and g.random() < 0.3 else float(g.choice((-1.0, 1.0)))
-            until = time[k] + (g.uniform(0.2, 0.5) if sign == 0.0 else g.uniform(0.4, 1.4))
+            until = float(time[k]) + (g.uniform(0.2, 0.5) if sign == 0.0 else g.uniform(0.4, 1.4))
         signs[k] = sign
-        rows.append(stepped.hold(VOLTS * sign, float(speed[k])))
-    return _as_recording(time, signs, speed, np.array(rows), g)
+        rows[k] = stepped.hold(VOLTS * sign, float(speed[k]))
+    return _as_recording(time, signs, speed, rows, g)
 
 
 def _as_recording(time: Array, signs: Array, speed: Array, rows: Array, g: np.random.Generator) -> eha.Recording:
-    from eha_core.exam.truth.simulate import COLUMNS
-
     seen = {
         name: rows[:, COLUMNS.index(f"measured_{name}")] + noise * g.standard_normal(len(time))
         for name, noise in NOISE.items()
