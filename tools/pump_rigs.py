@@ -142,13 +142,14 @@ def _record(truth: dict[str, float], concealed: Effect | None, g: np.random.Gene
 
 
 def _as_recording(time: Array, signs: Array, speed: Array, rows: Array, g: np.random.Generator) -> eha.Recording:
-    seen = {
-        name: rows[:, COLUMNS.index(f"measured_{name}")] + noise * g.standard_normal(len(time))
+    position, pressure_a, pressure_b = (
+        rows[:, COLUMNS.index(f"measured_{name}")] + noise * g.standard_normal(len(time))
         for name, noise in NOISE.items()
-    }
-    return eha.Recording.from_arrays(
-        time=time, voltage_command=VOLTS * signs, pump_speed=speed, pressures="gauge", **seen
     )
+    return eha.Recording.from_arrays(
+        time=time, pressures="gauge", voltage_command=VOLTS * signs, pump_speed=speed, position=position,
+        pressure_a=pressure_a, pressure_b=pressure_b,
+    )  # fmt: skip
 
 
 def main() -> None:

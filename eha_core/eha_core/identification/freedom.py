@@ -114,7 +114,7 @@ def nominal_freedom(
     Of `unknown` ones the nominal value is only where the search begins.
     """
     free = []
-    for name, trust in (NOMINAL_TRUST | _trust_of(composition.source)).items():
+    for name, trust in {**NOMINAL_TRUST, **_trust_of(composition.source)}.items():
         known = _not_known(trust) if name in unknown else trust
         if (drive not in WITH_OIL and name not in FORCE_ONLY) or name not in composition.place_rows:
             continue

@@ -81,6 +81,7 @@ PART = Source(
         "switching_frequency": (1.0, 20.0),
         "switching_damping": (0.7, 10.0),
         "valve_overlap": (2.0, 0.0),
+        "bypass_gain": (10.0, 0.0),
         "pump_line_volume": (1.5, 100.0),
     },
 )  # fmt: skip
