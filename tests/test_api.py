@@ -14,6 +14,7 @@ import pytest
 import eha_core as eha
 from eha_core.cli import main
 from eha_core.effects import effects
+from eha_core.errors import EhaError
 from eha_core.recording import read_recording
 
 COMMAND = "multisine:amplitude=0.12,lowest=0.3,highest=8,count=16,period=20,seed=3"
@@ -100,3 +101,22 @@ def test_the_catalogue_lists_every_named_effect_with_its_docstring() -> None:
     assert "coulomb_friction" in repr(listed)
     assert "<td>" in listed._repr_html_()
     assert "frequency [Hz]" in str(eha.signal_shapes()["sine"])
+
+
+def test_given_motion_goes_its_own_way_as_on_the_command_line(tmp_path: Path) -> None:
+    """80 N of dry and 900 N s/m of viscous friction on a bench that nothing but its motion drives."""
+    time = np.arange(4000) / 500.0
+    speed = 0.1 * np.cos(2.0 * np.pi * 0.8 * time) + 0.05 * np.cos(2.0 * np.pi * 1.7 * time)
+    force = 80.0 * np.sign(speed) + 900.0 * speed + np.random.default_rng(1).standard_normal(len(time))
+    bench = eha.Recording.from_arrays(
+        time=time, position=np.cumsum(speed) / 500.0, velocity=speed, force=force, name="bench"
+    )
+    told = eha.diagnose(bench)
+    values = {effect.id: effect.parameters for effect in told.effects}
+    assert set(values) == {"viscous_friction", "coulomb_friction"}
+    assert values["coulomb_friction"]["force"].value == pytest.approx(80.0, rel=0.02)
+    assert told.diagnosis.provenance["nominal"].startswith("none: the motion is given")
+    assert told.plot.law().axes
+    with pytest.raises(EhaError, match="there is no plot 'residuals'"):
+        told.plot.residuals()
+    assert {path.name for path in told.save(tmp_path)} == {"figures", "diagnosis.json"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from inspect import getdoc
 from pathlib import Path
@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.nominal import NominalModel, load_nominal, nominal_of
-from eha_core.parameters import NOMINAL
-from eha_core.plant import PAPER, require_sliding
+from eha_core.parameters import ACTING
+from eha_core.plant import PAPER, composition_of
 from eha_core.recording import Recording, read_recording
 from eha_core.recording.simulated import Experiment
 from eha_core.recording.simulated import simulate as run
@@ -26,7 +26,7 @@ from eha_core.signals import from_text, signals
 if TYPE_CHECKING:
     from eha_core.report.results import Results
 
-Nominal = Mapping[str, float | str] | NominalModel | str | Path | None
+Nominal = Mapping[str, object] | NominalModel | str | Path | None
 
 
 def read(path: str | Path, topics: str | Path | None = None) -> Recording:
@@ -99,9 +99,11 @@ def diagnose(
     Args:
         recording: a recording or its path; several are one rig, fitted with one set of parameters and effects. Of
             one longer than two minutes stretches are fitted, and the whole judges the result.
-        nominal: the model: parameter values that differ from the catalogue's ("unknown" where nobody knows one), a
-            parameters file, or a `NominalModel`. By default the values that the recording carries, effects left out,
-            or else the catalogue's nominal actuator.
+        nominal: the model: parameter values that differ from the catalogue's ("unknown" where nobody knows one; parts
+            as {"plant": {"source": "switched_pump"}}), a parameters file, or a `NominalModel`. By default the parts
+            and values that the recording carries, effects left out, or else the catalogue's nominal actuator. Where
+            position and force are all that was recorded and there is no model, the motion is taken as given and the
+            law of the force is found.
         jobs: threads that simulate side by side.
         progress: is told each stage as it begins.
         tests: recordings that nothing is fitted to, only predicted.
@@ -122,14 +124,36 @@ def diagnose(
     records, unseen = (
         [admitted(one, None, composition, progress) for one in several] for several in (given, tests)
     )
-    recordings = [one for record in records for one in record.recordings]
+    recordings, tested = ([one for record in several for one in record.recordings] for several in (records, unseen))
+    if takes_motion_as_given(recordings, nominal):
+        return _diagnose_motion(recordings, progress, tested)
     model = known_model(nominal, recordings[0])
-    found = diagnose_together(
-        recordings, model, progress, jobs, [one for record in unseen for one in record.recordings]
-    )
-    found = judged(found, records, model, progress)
+    found = judged(diagnose_together(recordings, model, progress, jobs, tested), records, model, progress)
     origin = "values given by name" if isinstance(nominal, (Mapping, NominalModel)) else nominal
     return Results(with_provenance(found, records, origin, "eha_core.diagnose"))
+
+
+def takes_motion_as_given(recordings: Sequence[Recording], nominal: object) -> bool:
+    """Whether nothing drives a plant: motion and force alone were recorded, and there is no model of an actuator."""
+    from eha_core.motion_given.motion import is_motion_given
+
+    modelled = nominal is not None or any(recording.parameters for recording in recordings)
+    return not modelled and all(map(is_motion_given, recordings))
+
+
+def _diagnose_motion(
+    recordings: Sequence[Recording], progress: Callable[[str], None], tests: Sequence[Recording]
+) -> Results:
+    """The law of the force that goes with the motion, as `eha diagnose` finds it for such recordings."""
+    from eha_core.motion_given import diagnose_motion
+    from eha_core.report.provenance import with_provenance
+    from eha_core.report.results import MotionResults
+
+    values = known_model(None, recordings[0]).values
+    found = diagnose_motion(recordings, progress, tests, (values["piston_area"], values["piston_area_b"]))
+    origin = "none: the motion is given"
+    return MotionResults(replace(found, diagnosis=with_provenance(found.diagnosis, recordings, origin,
+                                                                  "eha_core.diagnose")))  # fmt: skip
 
 
 def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]:
@@ -139,21 +163,29 @@ def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]
 
 def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     """The model that a recording is held against, and which of its parameters are unknown or differ by recording."""
-    told = given_model(nominal)
+    told = given_model(nominal, recording.parts)
     if told is not None:
         return told
-    names = {row.name for row in NOMINAL}
-    return nominal_of({name: value for name, value in recording.parameters.items() if name in names})
+    composition = composition_of(recording.parts)
+    of_effects = {name for effect in effects() for name in effect.parameter_names()} | {row.name for row in ACTING}
+    kept = {name: value for name, value in recording.parameters.items() if name not in of_effects}
+    known = {name: value for name, value in kept.items() if name in composition.rows}
+    return nominal_of(known, composition=composition)
 
 
-def given_model(nominal: Nominal) -> NominalModel | None:
-    """The model that was given; None where it is left to the recording."""
+def given_model(nominal: Nominal, parts: Mapping[str, str] | None = None) -> NominalModel | None:
+    """The model that was given, of these parts where it names none; None where it is left to the recording."""
     if isinstance(nominal, (str, Path)):
         nominal = load_nominal(nominal)
     if isinstance(nominal, NominalModel):
-        require_sliding(nominal.composition)
         return nominal
-    return None if nominal is None else nominal_of(nominal)
+    if nominal is None:
+        return None
+    given = dict(nominal)
+    chosen = given.pop("plant", parts or {})
+    if not isinstance(chosen, Mapping):
+        raise ParameterError(f"plant = {chosen!r} names no parts; write for example {{'source': 'switched_pump'}}")
+    return nominal_of(given, composition=composition_of(chosen))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import eha_core as eha
-from eha_core.errors import ParameterError, RecordingError
+from eha_core.errors import RecordingError
 from eha_core.exam.truth import simulate_truth
 from eha_core.identification.observation import observe
 from eha_core.identification.segments import cut
@@ -84,7 +84,23 @@ def test_a_recording_without_the_sources_channel_is_refused(truth: dict[str, np.
         observe(recorded(truth, ("flow_a",)), compose("measured_flow"))
 
 
-def test_an_actuator_that_turns_is_refused() -> None:
-    recording = eha.simulate("sine:amplitude=0.01,frequency=1", 2.0)
-    with pytest.raises(ParameterError, match="plant.cylinder = rotary_vane is not taken here"):
-        eha.diagnose(recording, nominal_of({}, composition=compose(cylinder="rotary_vane")))
+def test_friction_on_a_vane_is_found_within_its_interval() -> None:
+    """The truth's piston of 50 ml per radian is a vane of that displacement; its inertia is told a tenth too large."""
+    time = np.arange(round(1000 * SECONDS) + 1) / 1000.0
+    voltage = sum(size * np.sin(2.0 * np.pi * hertz * time) for size, hertz in ((0.05, 0.7), (0.04, 2.3), (0.02, 7.1)))
+    vane = {"piston_area": 5e-5, "piston_area_b": 5e-5, "actuator_displacement": 1.5, "moving_mass": 0.5,
+            "damping_coefficient": 40.0, "spring_stiffness": 0.0}  # fmt: skip
+    torque = 60.0
+    truth = simulate_truth(vane, [("coulomb_friction", {"force": torque})], voltage, SECONDS)
+    rig = compose(cylinder="rotary_vane")
+    told = {"vane_displacement": 5e-5, "half_travel": 1.5, "moment_of_inertia": 0.55, "rotational_damping": 40.0}
+    found = eha.diagnose(recorded(truth | {"voltage_command": voltage}, ("voltage_command",)),
+                         nominal_of(told, composition=rig), jobs=1)  # fmt: skip
+    assert [effect.id for effect in found.effects] == ["coulomb_friction"]
+    value = found.effects[0].parameters["force"]
+    assert value.unit == "N m" and "N m" in found.effects[0].statement
+    assert abs(value.value - torque) < 2.0 * value.std < 0.05 * torque
+    units = {one.name: one.unit for one in found.parameters}
+    assert units["moving_mass"] == "kg m^2"
+    assert "moment_of_inertia" in dump_plant(found.fitted_values, rig)
+    assert any("the actuator turns" in remark for remark in found.diagnosis.remarks)

@@ -80,6 +80,12 @@ def test_a_contribution_has_the_servo_valves_head_and_then_its_own_parameters(so
     assert list(inspect.signature(contribution.py_func).parameters) == expected
     assert inspect.getdoc(contribution.py_func)
     assert write_source().count(f"return {source.id}(") == 1
+    module = import_module(f"eha_core.plant.parts.sources.{source.id}")
+    assert hasattr(module, "feed") == source.line
+    if source.line:
+        pressures = ["line_pressure", "supply_pressure", "return_pressure"]
+        taken = ["spool_position", "first", "second", *pressures, *(row.name for row in source.own)]
+        assert list(inspect.signature(module.feed.py_func).parameters) == taken
 
 
 def test_the_default_is_the_papers() -> None:
@@ -98,8 +104,8 @@ def test_each_parameter_that_applies_matters_and_no_other_is_taken(composition: 
     assert np.max(np.abs(found[:, COLUMNS.index("position")])) <= stroke
     apply = [name for name in composition.rows if "." not in name and name not in {row.name for row in ACTING}]
     for name in apply:
-        nominal = composition.rows[name].nominal
-        changed = 0.9 * nominal if nominal else 1e-12 if "leakage" in name else 100.0
+        row = composition.rows[name]
+        changed = 0.9 * row.nominal or row.typical or (1e-12 if "leakage" in name else 100.0)
         assert rows(composition, {name: changed}).tobytes() != found.tobytes(), name
     for name in set(catalogue()) - set(composition.rows):
         with pytest.raises(ParameterError, match=f"{name} does not apply to this plant"):
@@ -155,6 +161,11 @@ from eha_core.plant import Plant, compose
 plant = Plant({"pump_flow": 3e-5, "internal_leakage": 0.0}, 1e-3, composition=compose(source="constant_pump"))
 found = plant.run(np.ones(400), 400)
 print(found.velocity[-1], found.flow_a[-1])
+from eha_core.identification.freedom import nominal_freedom
+from eha_core.nominal import nominal_of
+model = nominal_of({"pump_flow": 3e-5}, composition=compose(source="constant_pump"))
+free = nominal_freedom(model.values, "measured", 0.05, model.unknown, model.composition)
+print(next(one.value(one.coordinate(4e-5)) for one in free if one.name == "pump_flow"))
 """
 
 
@@ -168,7 +179,8 @@ def test_a_new_source_is_one_file(tmp_path: Path) -> None:
         timeout=100, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    velocity, flow = map(float, done.stdout.split())
+    velocity, flow, freed = map(float, done.stdout.split())
+    assert freed == pytest.approx(4e-5)
     assert flow == 3e-5
     assert velocity == pytest.approx(3e-5 / 645e-6, rel=1e-6)
 

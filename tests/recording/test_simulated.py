@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
 
+from eha_core.api import known_model
+from eha_core.cli import main
 from eha_core.errors import ParameterError
 from eha_core.plant import COLUMNS, Plant
 from eha_core.recording import encode, read_recording
@@ -113,3 +115,22 @@ def test_noise_has_its_size_and_its_seed() -> None:
 def test_a_rate_that_splits_steps_is_refused() -> None:
     with pytest.raises(ParameterError, match="rate 300 Hz: its period is 33.3333 steps of 0.0001 s"):
         simulate(Experiment(TIMES, VOLTAGES, 0.4, rate=300.0))
+
+
+def test_the_parts_that_were_recorded_are_those_that_are_diagnosed(tmp_path: Path) -> None:
+    """A single rod's recording carries its parts and both areas, and its default model is that cylinder."""
+    parts = tmp_path / "rod.yaml"
+    parts.write_text("/**/eha_sim:\n  ros__parameters:\n    plant: {cylinder: single_rod}\n    piston_area: 1.2e-3\n")
+    out = tmp_path / "rod.mcap"
+    words = ["--command", "sine:amplitude=0.01,frequency=1", "--duration", "1", "--nominal", str(parts)]
+    assert main(["simulate", *words, "--out", str(out)]) == 0
+    recording = read_recording(out)
+    assert recording.parts == {"source": "servo_valve", "cylinder": "single_rod", "load": "sprung_mass"}
+    model = known_model(None, recording)
+    assert model.composition.names == recording.parts
+    assert (model.values["piston_area"], model.values["piston_area_b"]) == (1.2e-3, 430e-6)
+    assert known_model({"moving_mass": 20.0}, recording).composition == model.composition
+    named = known_model({"plant": {"source": "measured_flow"}, "moving_mass": 20.0}, recording)
+    assert named.composition.names["source"] == "measured_flow"
+    with pytest.raises(ParameterError, match="plant = 'pump' names no parts; write for example"):
+        known_model({"plant": "pump"}, recording)

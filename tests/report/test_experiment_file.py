@@ -7,6 +7,7 @@ from pathlib import Path
 
 import yaml
 
+from eha_core.diagnosis.experiment import not_proposed
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.report.experiment_file import experiment_file
 from eha_core.report.files import write_report
@@ -32,3 +33,16 @@ def test_the_report_s_folder_has_it_while_there_is_one(
     assert (tmp_path / "next_experiment.yaml").is_file()
     assert tmp_path / "next_experiment.yaml" not in write_report(friction, tmp_path)
     assert not (tmp_path / "next_experiment.yaml").exists()
+
+
+def test_where_no_voltage_drives_the_rig_the_report_says_why_there_is_none(
+    ambiguous: Diagnosis, tmp_path: Path
+) -> None:
+    told = not_proposed([("coulomb_friction",), ("stribeck_friction",)], ("flow_a", "flow_b"), "measured_flow")
+    assert told.separates == ("coulomb_friction", "stribeck_friction")
+    assert "flow_a and flow_b of measured_flow" in told.statement and "\n" not in told.statement
+    without = replace(ambiguous, next_experiment=told)
+    assert tmp_path / "next_experiment.yaml" not in write_report(without, tmp_path)
+    assert not (tmp_path / "next_experiment.yaml").exists()
+    page = (tmp_path / "report.html").read_text()
+    assert "No test is proposed" in page and "come from the rig and not from the reference generator" in page

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eha_core.api import given_model, known_model
+from eha_core.api import given_model, known_model, takes_motion_as_given
 from eha_core.cli._paths import require_file, require_folder, require_recordings
 from eha_core.cli._progress import Progress
 from eha_core.errors import EhaError
@@ -73,7 +73,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
     """All recordings are one rig."""
-    from eha_core.motion_given.motion import is_motion_given
     from eha_core.plausibility import admit
 
     if arguments.motion_given:
@@ -85,14 +84,14 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
         for paths in (arguments.recordings, arguments.test)
     )
     recordings, tests = ([one for record in several for one in record.recordings] for several in (records, unseen))
-    modelled = given is not None or any(recording.parameters for recording in recordings)
-    if not modelled and all(map(is_motion_given, recordings)):
+    if takes_motion_as_given(recordings, given):
         is_long = any(record.blocks for record in records)
         whole = _read(arguments.recordings, arguments) if is_long else recordings
         return _run_motion_given(arguments, whole, progress)
     model = known_model(given, recordings[0])
     recordings, tests = (
-        [admit(one, model.values, arguments.as_recorded) for one in several] for several in (recordings, tests)
+        [admit(one, model.values, arguments.as_recorded, model.composition) for one in several]
+        for several in (recordings, tests)
     )
     for warning in (
         remark for recording in (*recordings, *tests) for remark in recording.remarks if remark.startswith("warning")
@@ -216,7 +215,7 @@ def diagnose_alone(
         given = given_model(nominal)
         record = admitted(path, topics, given.composition if given else PAPER)
         model = known_model(given, record.recordings[0])
-        recordings = [admit(one, model.values, as_recorded) for one in record.recordings]
+        recordings = [admit(one, model.values, as_recorded, model.composition) for one in record.recordings]
         diagnosis = judged(diagnose_together(recordings, model, jobs=1), [record], model)
         diagnosis = with_provenance(diagnosis, [record], nominal)
         (write_report if with_report else write_document)(diagnosis, folder)

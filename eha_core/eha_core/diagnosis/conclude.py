@@ -11,7 +11,7 @@ from eha_core.diagnosis.calibrate import corrected_noise, has_changed, identifia
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEAST_OF_A_LAW
 from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, predicted_recordings
 from eha_core.diagnosis.evidence import Evidence
-from eha_core.diagnosis.experiment import propose
+from eha_core.diagnosis.experiment import not_proposed, propose
 from eha_core.diagnosis.explained import explained, predictions
 from eha_core.diagnosis.facts import facts_alone
 from eha_core.diagnosis.ladder import correlation, ladder
@@ -67,13 +67,11 @@ def conclude(
     before, calibrated = evidence.calibration.nominal, evidence.tournament.nominal.fit
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
     composition = evidence.observation.composition
-    # a test is proposed as a voltage; a source that takes none is driven by whoever records it
-    proposable = decision.verdict == "ambiguous" and composition.source.valve == "coil"
-    experiment = _experiment(evidence, decision) if proposable else None
+    experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     recording = recordings[evidence.lead - 1]
     steps, without = ladder(replace(evidence, decision=decision), final)
     order = [one.added for one in steps]
-    effects = _named(decision.winner, final)
+    effects = _named(decision.winner, final, composition)
     effects = tuple(sorted(effects, key=lambda one: order.index(one.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
@@ -150,9 +148,11 @@ def _channel_fits(
 
 def _remarks(evidence: Evidence) -> tuple[str, ...]:
     """What was put right in each recording; of several, each with its path."""
+    turns = evidence.observation.composition.cylinder.motion == "rad"
+    what = ("the actuator turns: for m, m/s and N of the channels read rad, rad/s and N m",) if turns else ()
     if len(evidence.observations) == 1:
-        return evidence.observation.remarks
-    return tuple(f"{one.path}: {remark}" for one in evidence.observations for remark in one.remarks)
+        return (*what, *evidence.observation.remarks)
+    return (*what, *(f"{one.path}: {remark}" for one in evidence.observations for remark in one.remarks))
 
 
 def _parameters(final: Fit, nominal: Mapping[str, float], composition: Composition) -> tuple[FittedParameter, ...]:
@@ -181,10 +181,10 @@ def _parameters(final: Fit, nominal: Mapping[str, float], composition: Compositi
     return tuple(found)
 
 
-def _named(winner: Entry, final: Fit) -> tuple[NamedEffect, ...]:
+def _named(winner: Entry, final: Fit, composition: Composition) -> tuple[NamedEffect, ...]:
     found = []
     for member in (one for one in winner.hypothesis.members if one.effect.named):
-        effect = member.effect
+        effect = composition.as_shown(member.effect)
         values = {
             row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
             for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)
@@ -273,6 +273,11 @@ def _changed_values(final: Fit, composition: Composition) -> dict[str, float]:
 
 
 def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
+    """The test that would tell the rivals apart; of a source that no voltage drives, why there is none."""
+    source = evidence.observation.composition.source
+    if source.valve != "coil":
+        names = [entry.ids for entry in contenders(decision.winner, evidence.tournament)]
+        return not_proposed(names, evidence.observation.driving, source.id)
     shooting, values = evidence.shown(evidence.calibration.shooting), decision.winner.fit.values
     noises = {
         name: one.noise * float(np.sqrt(RATE * evidence.observation.duration / len(one.values)))

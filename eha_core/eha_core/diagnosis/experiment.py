@@ -118,6 +118,16 @@ def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, 
     return Experiment(statement, separates, best.trial.reference(), record, best.duration)
 
 
+def not_proposed(names: Sequence[tuple[str, ...]], driving: Sequence[str], source: str) -> Experiment:
+    """What is said of rivals where no voltage drives the rig: why no test is made, and what may tell them apart."""
+    statement = (
+        f"{' or '.join(' and '.join(ids) for ids in names)}: no signal is proposed, as {' and '.join(driving)} of"
+        f" {source} come from the rig and not from the reference generator; record slower and faster reversals than"
+        " these, and diagnose both recordings together"
+    )
+    return Experiment(statement, tuple(dict.fromkeys(name for ids in names for name in ids)), {})
+
+
 def _best_outlook(rivals: Sequence[Fit], noises: Mapping[str, float], level: float, voltage_limit: float) -> Outlook:
     """The shortest trial that separates the rivals, or else the one that separates them most."""
     short = DURATIONS[0]

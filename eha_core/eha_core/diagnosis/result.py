@@ -182,7 +182,8 @@ class Experiment:
     """A test for the rig whose outcome would tell the rivals apart, as parameters of the reference generator.
 
     `record`: channels that have to be recorded beside those of the recording, where no voltage alone would tell.
-    `duration` [s]: how long the test has to last.
+    `duration` [s]: how long the test has to last. `reference` is empty where no such test was made: then `statement`
+    says why, and what to record.
     """
 
     statement: str

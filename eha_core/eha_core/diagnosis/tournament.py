@@ -169,8 +169,10 @@ def freedom_used(result: Fit) -> int:
 
 
 def _is_no_shape(result: Fit, name: str) -> bool:
+    if "." not in name:
+        return False  # the plant's own: of a source's own parameters the catalogue has no row
     row = catalogue()[base_name(name)]
-    may_be_nothing = "." in name and not row.switches and row.lower == row.nominal
+    may_be_nothing = not row.switches and row.lower == row.nominal
     return may_be_nothing and result.values[name] - row.lower < NEXT_TO_NOTHING * abs(row.typical)
 
 

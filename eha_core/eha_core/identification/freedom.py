@@ -8,6 +8,7 @@ from math import exp, log
 
 from eha_core.identification.observation import WITH_OIL
 from eha_core.plant import PAPER, Composition
+from eha_core.plant.parts import Source
 
 
 @dataclass(frozen=True)
@@ -79,17 +80,16 @@ NOMINAL_TRUST: Mapping[str, Trust] = {
     "moving_mass": Trust(0.7, 5.0),
     "damping_coefficient": Trust(1.0, 8.0),
     "internal_leakage": Trust(1.0, 0.0, 3e-11),
-    "pump_displacement": Trust(0.3, 2.0),
-    "pump_leakage": Trust(1.0, 0.0, 1e-12),
-    "tank_gain": Trust(0.7, 4.0),
 }
 """Assumed: how far data sheets and hand-over notes are off.
 
 Held, because a recording sees them only through the ones above: coil_resistance (through the gain), piston_area
 (through gain, mass and damping), line_volume (through stroke and bulk modulus). Held, because a departure from them is
 physics and has its name in the catalogue: external_leakage, and piston_area_b where the nominal cylinder is symmetric.
-Held, because only a relief valve that opens shows it: relief_gain.
 """
+
+USUAL_SPREAD = (0.7, 4.0)
+"""Of a source's own parameter, where its part says nothing else."""
 
 LATE = ("coil_inductance", "valve_damping_ratio", "valve_natural_frequency", "actuator_displacement")
 """Freed last: a fit that is still far off would bend the valve's dynamics or the stroke to imitate a wrong mass or
@@ -114,7 +114,7 @@ def nominal_freedom(
     Of `unknown` ones the nominal value is only where the search begins.
     """
     free = []
-    for name, trust in NOMINAL_TRUST.items():
+    for name, trust in {**NOMINAL_TRUST, **_trust_of(composition.source)}.items():
         known = _not_known(trust) if name in unknown else trust
         if (drive not in WITH_OIL and name not in FORCE_ONLY) or name not in composition.place_rows:
             continue
@@ -138,6 +138,16 @@ def nominal_freedom(
         row = composition.place_rows["piston_area_b"]
         free.append(Free(row.name, nominal[row.name], True, 0.0, 0.3, row.lower, row.upper))
     return tuple(free)
+
+
+def _trust_of(source: Source) -> dict[str, Trust]:
+    """How far the values of a source's own parameters are taken on trust; none of those that it holds."""
+    own = {row.name for row in source.own} - set(source.held)
+    return {
+        row.name: Trust(*source.spread.get(row.name, USUAL_SPREAD), 0.0 if row.logarithmic else row.typical)
+        for row in source.parameters
+        if row.name in own or row.name in source.spread
+    }
 
 
 def _not_known(trust: Trust) -> Trust:

@@ -67,9 +67,10 @@ def given_sources() -> tuple[Source, ...]:
 
 
 def given_names() -> tuple[str, ...]:
-    """What such a plant's vector has after the catalogue: each source's own parameters, then two that `given` reads."""
+    """What such a plant's vector has after the catalogue: each source's own parameters, then three that `given`
+    reads."""
     own = [f"{source.id}.{row.name}" for source in given_sources() for row in source.own]
-    return (*own, "valve", "source")
+    return (*own, "line", "valve", "source")
 
 
 def write_source() -> str:
@@ -78,12 +79,14 @@ def write_source() -> str:
     It is called and not inlined, which keeps the time to compile in bounds.
     """
     last = len(given_sources()) - 1
-    own = [name.replace(".", "_") for name in given_names()[:-2]]
+    own = [name.replace(".", "_") for name in given_names()[:-3]]
     head = "opening, gain, conductance, {}pressure_a, pressure_b, supply_pressure, return_pressure"
     full = head.format("first, second, ")
     lines = ['"""Generated from the sources of oil, and written anew when one changes: do not edit."""', ""]
     lines += ["from eha_core.compiled import called, inlined"]
-    lines += ["from eha_core.plant.given import current_of, given_at, spool_of, voltage_of"]
+    lines += [
+        "from eha_core.plant.given import current_of, given_at, spool_of, supply_in_force, through_line, voltage_of"
+    ]
     lines += [
         f"from eha_core.plant.parts.sources.{one.id} import contribution as {one.id}" for one in given_sources()
     ]
@@ -95,7 +98,29 @@ def write_source() -> str:
     places = [f"parameters[{len(catalogue()) + k}]" for k in range(len(own))]
     lines += ["", "", "@inlined", f"def ports(given, {head.format('')}, parameters):"]
     lines += [f"    return delivered({', '.join(['parameters[-1]', head.format('given[0], given[1], '), *places])})"]
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *_write_feed(own, places)]) + "\n"
+
+
+def _write_feed(own: list[str], places: list[str]) -> list[str]:
+    """The rest of that: what the sources with a line give into it, and `fed`, which takes it through the open port."""
+    head = ["line_pressure", "supply_pressure", "return_pressure"]
+    lined = [(number, source) for number, source in enumerate(given_sources()) if source.line]
+    lines = ["", "", "from eha_core.plant.vector import SUPPLY_PRESSURE"]
+    lines += [f"from eha_core.plant.parts.sources.{one.id} import feed as {one.id}_feed" for _, one in lined]
+    taken = ["number", "spool_position", "first", "second", *head, *own]
+    lines += ["", "", "@called", f"def feed({', '.join(taken)}):"]
+    for number, source in lined:
+        arguments = ["spool_position", "first", "second", *head, *(f"{source.id}_{row.name}" for row in source.own)]
+        lines += [f"    if number == {number}.0:", f"        return {source.id}_feed({', '.join(arguments)})"]
+    lines += ["    return 0.0, 0.0, 0.0", "", "", "@inlined"]
+    lines += ["def fed(tau, given, flows, chambers, spool_position, position, velocity, pressure_a, pressure_b,"]
+    lines += ["        line_pressure, return_pressure, parameters):"]
+    lines += ["    if parameters[-3] > 0.0:", "        return through_line(tau, feed("]
+    passed = ["parameters[-1]", "spool_position", "given[0]", "given[1]", "line_pressure"]
+    lines += [f"            {', '.join([*passed, 'parameters[SUPPLY_PRESSURE]', 'return_pressure', *places])}),"]
+    lines += ["            flows, chambers, spool_position, position, velocity, pressure_a, pressure_b, line_pressure,"]
+    lines += ["            parameters)", "    return flows, line_pressure"]
+    return lines
 
 
 SEEN = ("position", "velocity", "pressure_a", "pressure_b")

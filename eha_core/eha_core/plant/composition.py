@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 from eha_core.effects import Effect, effects
@@ -11,6 +11,12 @@ from eha_core.errors import ParameterError, remedy
 from eha_core.parameter import Parameter
 from eha_core.parameters import ACTING, NOMINAL, PAPER_PARTS, catalogue, changed, check_supply
 from eha_core.plant.parts import FOLDERS, Cylinder, Load, Part, Source, part, parts
+
+TURNING = {
+    "m": "rad", "m/s": "rad/s", "N": "N m", "N/m": "N m/rad", "N s/m": "N m s/rad", "N/m^3": "N m/rad^3",
+    "N s^2/m^2": "N m s^2/rad^2",
+}  # fmt: skip
+"""The units of motion and force, and what they are of an actuator that turns."""
 
 
 @dataclass(frozen=True)
@@ -123,6 +129,13 @@ class Composition:
             for place in self.stands_for(name):
                 found[place] = value
         return found
+
+    def as_shown(self, effect: Effect) -> Effect:
+        """The effect with the units that its parameters have in such a plant: of angles and torques where it turns."""
+        if self.cylinder.motion == "m":
+            return effect
+        rows = (replace(row, unit=TURNING.get(row.unit, row.unit)) for row in effect.parameters)
+        return replace(effect, parameters=tuple(rows))
 
     def named(self, places: Mapping[str, float]) -> dict[str, float]:
         """The values of `places` under the names of its parts' parameters."""

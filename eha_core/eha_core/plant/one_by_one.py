@@ -38,7 +38,8 @@ class OneByOne:
         settled = before if composition.source.valve else 0.0
         for state, values in zip(self._states, sets, strict=True):
             state[[AT.target, AT.current, AT.spool_position]] = settled
-            state[AT.supply_pressure], state[AT.return_pressure] = values["supply_pressure"], values["return_pressure"]
+            rests = "return_pressure" if composition.source.line else "supply_pressure"
+            state[AT.supply_pressure], state[AT.return_pressure] = values[rests], values["return_pressure"]
         self.add_leakage(0.0)
 
     def place(self, states: Array) -> None:

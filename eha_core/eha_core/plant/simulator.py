@@ -97,10 +97,12 @@ def pack(values: Mapping[str, float], step_size: float, composition: Composition
             values["valve_natural_frequency"], step_size,
         )  # fmt: skip
         return tuple(values.values()), active, valve
-    valve = held_propagator(values["valve_damping_ratio"], values["valve_natural_frequency"], step_size)
-    own = [values.get(name.partition(".")[2], 0.0) for name in given_names()[:-2]]
+    spool = source.switched or ("valve_damping_ratio", "valve_natural_frequency")
+    valve = held_propagator(values[spool[0]], values[spool[1]], step_size)
+    own = [values.get(name.partition(".")[2], 0.0) for name in given_names()[:-3]]
     number = [one.id for one in given_sources()].index(source.id)
-    return (*(values[name] for name in catalogue()), *own, VALVES[source.valve], float(number)), active, valve
+    last = (float(source.line), VALVES["sign" if source.switched else source.valve], float(number))
+    return (*(values[name] for name in catalogue()), *own, *last), active, valve
 
 
 def check_step_size(step_size: float) -> None:
@@ -193,20 +195,21 @@ class Plant:
                     f"initial_position = {initial_position:g} {unit} is outside the stroke of +-{stroke:g} {unit}"
                 )
             self._initial_position = initial_position
+        source = self.composition.source
         supply, back = self._places["supply_pressure"], self._places["return_pressure"]
         pressures = starting_pressures(self._places, self._initial_position, self.composition)
         self._state = np.zeros(len(Places._fields))
-        self._state[AT.supply_pressure], self._state[AT.return_pressure] = supply, back
+        self._state[AT.supply_pressure], self._state[AT.return_pressure] = back if source.line else supply, back
         self._state[PISTON] = self._initial_position, 0.0, *pressures
         self._history = np.zeros(int(LONGEST_DELAY / self.step_size) + 3)
         self._memory = np.zeros(max(1, sum(len(effect.memory) for effect in effects())))
         self._start_memory([True] * len(effects()))
         self.step_count = 0
         self._row[0] = Row(*[0.0] * len(COLUMNS))._replace(
-            position=self._initial_position, pressure_a=pressures[0], pressure_b=pressures[1], supply_pressure=supply,
-            return_pressure=back, internal_leakage=self._places["internal_leakage"],
-            measured_position=self._initial_position, measured_pressure_a=pressures[0],
-            measured_pressure_b=pressures[1],
+            position=self._initial_position, pressure_a=pressures[0], pressure_b=pressures[1],
+            supply_pressure=self._state[AT.supply_pressure], return_pressure=back,
+            internal_leakage=self._places["internal_leakage"], measured_position=self._initial_position,
+            measured_pressure_a=pressures[0], measured_pressure_b=pressures[1],
         )  # fmt: skip
         self._row[0, self._hidden] = np.nan
 

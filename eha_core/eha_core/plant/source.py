@@ -43,3 +43,18 @@ def ports(given, opening, gain, conductance, pressure_a, pressure_b, supply_pres
     return contribution(
         opening, gain, conductance, 0.0, 0.0, pressure_a, pressure_b, supply_pressure, return_pressure
     )
+
+
+@inlined
+def fed(
+    tau, given, flows, chambers, spool_position, position, velocity, pressure_a, pressure_b, supply_pressure,
+    return_pressure, parameters,
+):
+    """The ports' flows and the supply's pressure over the time tau: a servo valve's supply holds its pressure."""
+    return flows, supply_pressure
+
+
+@inlined
+def supply_in_force(supply_pressure, stated, parameters):
+    """The supply's pressure for the next step: as the hook `supply` states it."""
+    return stated

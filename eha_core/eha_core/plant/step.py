@@ -29,7 +29,7 @@ from eha_core.plant.vector import (
 )
 
 from .hooks import chamber, command, force, orifice, schedule, sensor, spool, supply
-from .source import current_of, given_at, ports, spool_of, voltage_of
+from .source import current_of, fed, given_at, ports, spool_of, supply_in_force, voltage_of
 
 
 @inlined
@@ -60,8 +60,8 @@ def oil_half_step(
 ):
     """Equations (4) to (9) over the time tau with the piston moving steadily through `position`.
 
-    Returns both pressures, the flows out of the supply and into the return line, area B in force, and the oil's
-    stiffness as the piston feels it.
+    Returns both pressures and the supply's, the flows out of the supply and into the return line, area B in force, and
+    the oil's stiffness as the piston feels it.
     """
     chambers = chambers_of(
         parameters[BULK_MODULUS], internal_leakage, parameters[EXTERNAL_LEAKAGE], pressure_a, pressure_b,
@@ -70,11 +70,15 @@ def oil_half_step(
     flows = ports_of(
         given, spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active
     )
+    flows, supply_pressure = fed(
+        tau, given, flows, chambers, spool_position, position, velocity, pressure_a, pressure_b, supply_pressure,
+        return_pressure, parameters,
+    )
     pressure_a, pressure_b, stiffness = oil_step(
         tau, flows, chambers, position, velocity, pressure_a, pressure_b, parameters[PISTON_AREA],
         parameters[ACTUATOR_DISPLACEMENT], parameters[LINE_VOLUME], parameters[ATMOSPHERIC_PRESSURE],
     )
-    return pressure_a, pressure_b, flows[4], flows[5], chambers[0], stiffness
+    return pressure_a, pressure_b, supply_pressure, flows[4], flows[5], chambers[0], stiffness
 
 
 @inlined
@@ -197,7 +201,7 @@ def advance(state, memory, history, parameters, active, propagator, inputs, step
             voltage, given, target, spool_position, spool_velocity, current, propagator, memory, parameters, active
         )
         moving = effective_velocity(tau, position, velocity, stroke)
-        pressure_a, pressure_b, _, _, area_b, stiffness = oil_half_step(
+        pressure_a, pressure_b, supply_pressure, _, _, area_b, stiffness = oil_half_step(
             tau, given, 0.75 * before + 0.25 * spool_position, position + 0.5 * tau * moving, moving,
             pressure_a, pressure_b, supply_pressure, return_pressure, leakage, parameters, active,
         )
@@ -206,15 +210,16 @@ def advance(state, memory, history, parameters, active, propagator, inputs, step
             step_size, position, velocity, pressure_a, pressure_b, area_b, stiffness, damping,
             memory, parameters, active,
         )
-        pressure_a, pressure_b, supply_flow, return_flow, _, _ = oil_half_step(
+        pressure_a, pressure_b, supply_pressure, supply_flow, return_flow, _, _ = oil_half_step(
             tau, given, 0.25 * before + 0.75 * spool_position, position + 0.5 * tau * velocity, velocity,
             pressure_a, pressure_b, supply_pressure, return_pressure, leakage, parameters, active,
         )
         position, velocity = held_at_the_ends(position + tau * velocity, velocity, stroke)
-        supply_pressure, return_pressure = supply(
+        stated, return_pressure = supply(
             parameters[SUPPLY_PRESSURE], parameters[RETURN_PRESSURE], supply_flow, return_flow,
             memory, step_size, parameters, active,
         )
+        supply_pressure = supply_in_force(supply_pressure, stated, parameters)
         time += step_size
         seen = sensor(position, velocity, pressure_a, pressure_b, memory, step_size, parameters, active)
         if (index + 1) % every == 0:

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from eha_core.errors import RecordingError
+from eha_core.plant import PAPER, Composition
+from eha_core.plausibility.architecture import contradiction
 from eha_core.plausibility.copies import copies
 from eha_core.plausibility.finding import Finding, Suspect
 from eha_core.plausibility.mistakes import suspects, unrelated
@@ -17,7 +19,9 @@ CLOSER = 0.5
 """By so much (as a logarithm: a factor of 1.6 in scale) must a mistake lie closer than another to be told alone."""
 
 
-def check(recording: Recording, nominal: Mapping[str, float]) -> Finding | None:
+def check(
+    recording: Recording, nominal: Mapping[str, float], composition: Composition = PAPER
+) -> Finding | None:
     """Say which mistake was made in a recording; None where it is sound, or no single mistake explains it.
 
     A recording is only suspected where a relation that holds for every actuator of the nominal kind, whatever physics
@@ -26,14 +30,15 @@ def check(recording: Recording, nominal: Mapping[str, float]) -> Finding | None:
     Args:
         recording: as it was read.
         nominal: every parameter's nominal value by name [SI].
+        composition: the actuator's parts.
     """
     if copy := copies(recording, nominal):
         return Finding(copy.mistake, copy.cure)
-    found = relations(recording, nominal)
+    found = relations(recording, nominal, composition)
     if not any(relation.broken for relation in found.values()):
         return None
-    mended = _mended(found, recording, suspects(recording, nominal), nominal)
-    mended = mended or _mended(found, recording, unrelated(recording, nominal), nominal)
+    mended = _mended(found, recording, suspects(recording, nominal), nominal, composition)
+    mended = mended or _mended(found, recording, unrelated(recording, nominal), nominal, composition)
     if not mended:
         return None
     least = min(distance for distance, _ in mended)
@@ -41,13 +46,16 @@ def check(recording: Recording, nominal: Mapping[str, float]) -> Finding | None:
     return Finding(likely.mistake, likely.cure, (others[0].mistake, others[0].cure) if others else None)
 
 
-def admit(recording: Recording, nominal: Mapping[str, float], as_recorded: bool = False) -> Recording:
+def admit(
+    recording: Recording, nominal: Mapping[str, float], as_recorded: bool = False, composition: Composition = PAPER
+) -> Recording:
     """The recording, if it can be right; with `as_recorded` also one that cannot, with a warning as its first remark.
 
     Raises:
-        RecordingError: a mistake was made in the recording; the message says which, and its cure.
+        RecordingError: a mistake was made in the recording, or its channels speak against the plant's source; the
+            message says which, and its cure.
     """
-    finding = check(recording, nominal)
+    finding = contradiction(recording, composition) or check(recording, nominal, composition)
     if finding is None:
         return recording
     if not as_recorded:
@@ -57,7 +65,8 @@ def admit(recording: Recording, nominal: Mapping[str, float], as_recorded: bool 
 
 
 def _mended(
-    found: Mapping[str, Relation], recording: Recording, possible: Iterable[Suspect], nominal: Mapping[str, float]
+    found: Mapping[str, Relation], recording: Recording, possible: Iterable[Suspect], nominal: Mapping[str, float],
+    composition: Composition,
 ) -> list[tuple[float, Suspect]]:
     """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording.
 
@@ -65,7 +74,7 @@ def _mended(
     """
     mended: dict[frozenset[str], tuple[float, Suspect]] = {}
     for suspect in possible:
-        without = relations(suspect.without(recording), nominal)
+        without = relations(suspect.without(recording), nominal, composition)
         if without and _mends(found, without):
             distance = sum(relation.distance for relation in without.values())
             channels = frozenset(suspect.undone)

@@ -23,6 +23,11 @@ def regression(values: FloatArray, *columns: FloatArray) -> tuple[FloatArray, fl
     return solution / scale, 1.0 - float(rest @ rest) / variance
 
 
+def explained_by(values: FloatArray, signal: FloatArray) -> float:
+    """The share of the variance of `values` that a signal explains; none of it where the signal never changes."""
+    return regression(values, signal)[1] if np.ptp(signal) > 0.0 else 0.0
+
+
 def fitted(values: FloatArray, *columns: FloatArray) -> FloatArray:
     """What the columns and a constant explain of the values."""
     coefficients, _ = regression(values, *columns)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eha_core.plant import PAPER, Composition
 from eha_core.plausibility.command import command
 from eha_core.plausibility.regression import correlation, fitted, regression
 from eha_core.plausibility.relation import Relation, Values, off_by, within
@@ -19,7 +20,11 @@ MOVING = 0.1
 """Share of the largest speed above which the valve, and no leak, sets the pressures."""
 
 
-def relations(recording: Recording, nominal: Values) -> dict[str, Relation]:
+OF_A_VALVE = ("command", "command_scale", "level")
+"""Relations that hold because a valve throttles what a constant supply gives."""
+
+
+def relations(recording: Recording, nominal: Values, composition: Composition = PAPER) -> dict[str, Relation]:
     """Every relation that can be looked at in a recording, by name; none where the piston does not move."""
     signals = on_grid(recording)
     if signals is None or not np.ptp(signals.speed) > 0.0:
@@ -31,7 +36,8 @@ def relations(recording: Recording, nominal: Values) -> dict[str, Relation]:
         *_force(signals, nominal),
         *_levels(signals, nominal),
     ]
-    return {relation.name: relation for relation in found}
+    left_out = () if composition.source.valve else OF_A_VALVE
+    return {relation.name: relation for relation in found if relation.name not in left_out}
 
 
 def _reach(signals: Signals, nominal: Values) -> Relation:

@@ -26,6 +26,9 @@ from eha_core.tables import is_table, read_table
 STANDARD_ATMOSPHERE = 101325.0
 """Taken from absolute pressures where the recording does not say `atmospheric_pressure` [Pa]."""
 
+PARTS = "plant."
+"""How the names of stored parameters begin that say which parts the actuator has."""
+
 MAY_BE_EMPTY = ("velocity", "force")
 """Channels that a joint's messages may leave out by their definition: that they do is no remark."""
 
@@ -146,6 +149,7 @@ def assemble(
         start_stamp=start,
         duration=duration,
         parameters=parameters,
+        parts=_parts(raw),
         leakage_changes=_changes(samples.get(LEAKAGE_TOPIC), start),
         damaged=printable(f"{'; '.join(raw.damage)}; what was read covers {duration:.4g} s") if raw.damage else None,
         remarks=tuple(printable(remark) for remark in remarks),
@@ -161,13 +165,19 @@ def _channel(name: str, series: Samples, start: int, rule: ChannelRule, type_nam
 def _parameters(raw: RawRecording, remarks: list[str]) -> dict[str, float]:
     parameters = {}
     for name, text in raw.metadata.get(PARAMETERS_RECORD, {}).items():
-        if name.startswith("plant."):  # which parts the actuator has
+        if name.startswith(PARTS):
             continue
         try:
             parameters[name] = float(text)
         except ValueError:
             remarks.append(f"the stored parameter {name} is no number ({text!r}) and was left out")
     return parameters
+
+
+def _parts(raw: RawRecording) -> dict[str, str]:
+    """Which parts the recorder said that the actuator has, by kind."""
+    stored = raw.metadata.get(PARAMETERS_RECORD, {})
+    return {name.removeprefix(PARTS): part for name, part in stored.items() if name.startswith(PARTS)}
 
 
 def _changes(samples: Samples | None, start: int) -> tuple[tuple[float, float], ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -86,6 +86,7 @@ class Recording:
         leakage_changes: (time [s], coefficient [m^3/(s Pa)]) of each message on `internal_leakage`.
         damaged: which part of a damaged file could be read; None where the file is sound.
         remarks: what was kept out or put right while reading, one line each.
+        parts: the actuator's parts by kind, as a nominal file has them under `plant:`; empty where none were stored.
     """
 
     path: Path
@@ -96,6 +97,7 @@ class Recording:
     leakage_changes: tuple[tuple[float, float], ...]
     damaged: str | None
     remarks: tuple[str, ...]
+    parts: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def from_arrays(

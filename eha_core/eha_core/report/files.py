@@ -35,14 +35,14 @@ def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
         contents = contents_of(diagnosis)
         write_figures(contents.figures, folder / "figures")
         experiment.unlink(missing_ok=True)
-        if diagnosis.next_experiment is not None:
+        if diagnosis.next_experiment is not None and diagnosis.next_experiment.reference:
             experiment.write_text(experiment_file(diagnosis, diagnosis.next_experiment), encoding="utf-8")
         write_page(diagnosis, page, contents)
     except OSError as error:
         raise EhaError(
             f"{error.filename or folder}: cannot be written ({error.strerror}); choose another --out"
         ) from error
-    proposed = (experiment,) if diagnosis.next_experiment is not None else ()
+    proposed = (experiment,) if experiment.exists() else ()
     return (page, folder / "figures", document, fitted, comparison, *proposed)
 
 

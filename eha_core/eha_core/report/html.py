@@ -82,7 +82,8 @@ def _text(words: str) -> str:
 
 def _files(diagnosis: Diagnosis) -> str:
     """Links to what lies beside the page."""
-    proposed = {FILE: "the next experiment, for the reference node"} if diagnosis.next_experiment else {}
+    test = diagnosis.next_experiment
+    proposed = {FILE: "the next experiment, for the reference node"} if test and test.reference else {}
     rows = (f'<li><a href="{name}">{name}</a>: {escape(what)}</li>' for name, what in {**FILES, **proposed}.items())
     return "".join(rows)
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from eha_core.diagnosis.document import as_json, document
 from eha_core.diagnosis.result import Alternative, Diagnosis, FittedParameter, Location, NamedEffect
 from eha_core.errors import EhaError
+from eha_core.motion_given import Found
 from eha_core.report.figures import Drawn, drawn
 from eha_core.report.first_screen import law_picture, residual_picture
+from eha_core.report.motion_given import law_picture as law_of_motion
+from eha_core.report.motion_given import write_motion_given
 from eha_core.report.picture import Picture
 from eha_core.report.stages import story
 from eha_core.report.stages.model import correlations
@@ -79,6 +82,20 @@ class Plots:
         return drawn(pictures[place])
 
 
+class MotionPlots:
+    """The picture of a law of given motion; it returns a matplotlib figure."""
+
+    def __init__(self, found: Found) -> None:
+        self._found = found
+
+    def law(self) -> Drawn:
+        """The force over speed and position, and what the law leaves."""
+        return drawn(law_of_motion(self._found))
+
+    def __getattr__(self, name: str) -> NoReturn:
+        raise EhaError(f"there is no plot {name!r}: the motion is given and nothing was simulated; there is plot.law()")
+
+
 class Results:
     """What `diagnose` found.
 
@@ -120,7 +137,7 @@ class Results:
         return self.diagnosis.fitted_values
 
     @property
-    def plot(self) -> Plots:
+    def plot(self) -> Plots | MotionPlots:
         """The pictures."""
         return Plots(self.diagnosis)
 
@@ -150,3 +167,20 @@ class Results:
 
     def _repr_html_(self) -> str:
         return self.summary()._repr_html_()
+
+
+class MotionResults(Results):
+    """What `diagnose` found where the motion is given and the force is the answer."""
+
+    def __init__(self, found: Found) -> None:
+        super().__init__(found.diagnosis)
+        self._found = found
+
+    @property
+    def plot(self) -> MotionPlots:
+        """The picture of the law."""
+        return MotionPlots(self._found)
+
+    def save(self, folder: str | Path) -> tuple[Path, ...]:
+        """Write diagnosis.json and the figure of the law; returns their paths."""
+        return write_motion_given(self._found, Path(folder))

@@ -51,6 +51,14 @@ class Source(Part):
         ignores: nominal parameters that its equations do not contain.
         hides: columns of `eha_core.plant.state.Row` that it has no value for.
         idle: whether its chambers rest at the return line's pressure, in place of midway to the supply's.
+        switched: rows of its own, damping ratio and natural frequency of a spool that follows the sign of the last
+            input by equation (2), to 1 or -1; () where none does.
+        line: whether the pressure at the valve's supply port is a state; then its file has `feed` beside
+            `contribution`.
+        held: rows of its own that no recording of moderate length tells, and a diagnosis therefore does not move.
+        spread: how far what a data sheet says of its rows is off: the standard deviation of the logarithm (of one that
+            can be zero, in units of `typical` or, if larger, of its nominal value), and the largest factor (or number
+            of such units; 0: any). Others of its own are taken to be as uncertain as a valve's gain.
     """
 
     inputs: tuple[str, ...] = ()
@@ -61,6 +69,10 @@ class Source(Part):
     ignores: tuple[str, ...] = ()
     hides: tuple[str, ...] = ()
     idle: bool = False
+    switched: tuple[str, ...] = ()
+    line: bool = False
+    held: tuple[str, ...] = ()
+    spread: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

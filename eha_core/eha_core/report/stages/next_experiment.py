@@ -26,6 +26,8 @@ def stage(diagnosis: Diagnosis) -> Stage:
         sentences = ("No explanations are left that a further test would have to tell apart.",)
         return Stage("next", "Next experiment", "No further experiment is needed", sentences)
     reference = experiment.reference
+    if not reference:
+        return Stage("next", "Next experiment", "No test is proposed", (sentence(experiment.statement),))
     recorded = listed([channel_title(name) for name in channels_to_record(diagnosis, experiment)])
     return Stage(
         "next",

@@ -1,14 +1,18 @@
 """A pump of fixed displacement with its relief valve; a valve switched by sign connects it to one chamber, the other to
 the tank.
 
-Equation: the pump gives D |n| - C_p (P - P_r) - G_r max(P - P_s, 0) into the chamber at P that the valve connects it
-to; out of the other chamber at P' flows K_t sqrt(P' - P_r) into the tank. In the middle position both ports are shut
-and the pump idles.
+Equation: the line between pump and valve holds the oil V_l: V_l / beta P_l' = D |n| - C_p (P_l - P_r)
+- G_r max(P_l - P_s, 0) - K_b b sqrt(P_l - P_r) - q. The spool y follows the sign s of the signal by (2):
+y'' + 2 xi w y' + w^2 y = w^2 s. With the overlap o the open ports' share is max(|y| - o, 0) / (1 - o), that of the way
+from the pump to the tank b = max(1 - |y| / o, 0). Through the ports flow q = K_t share sqrt(P_l - P) into the chamber
+at P and K_t share sqrt(P' - P_r) out of the other into the tank. In the middle both are shut, and the pump gives its
+oil to the tank, or with K_b = 0 (a closed centre) to the relief valve.
 Sign: a valve signal above zero fills chamber A, one below zero chamber B; where no valve signal is given, the sign of
 the pump's speed decides.
-Validity: a valve that switches fast against the piston's motion and whose open port costs the pump little pressure; no
-check valves that let a chamber suck from the tank.
-Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 4 (pump displacement, leakage and relief valve).
+Validity: a valve with four equal edges; no check valves that let a chamber suck from the tank, or keep oil from flowing
+back to the pump.
+Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapters 4 (pump displacement, leakage and relief valve)
+and 5 (four-way valves).
 """
 
 from eha_core.compiled import inlined
@@ -16,6 +20,7 @@ from eha_core.effects.declaration import ASSUMED
 from eha_core.parameter import Parameter
 from eha_core.plant.equations import orifice_root
 from eha_core.plant.parts.declaration import Source
+from eha_core.plant.scheme import port_flows
 
 PART = Source(
     summary="a pump whose flow a valve switches by sign",
@@ -38,40 +43,72 @@ PART = Source(
             typical=1e-9, logarithmic=True,
         ),
         Parameter(
-            "tank_gain", "K_t", "m^(7/2) kg^(-1/2)", 5e-7, 1e-10, 1e-2, "flow of the open port to the tank", ASSUMED,
+            "tank_gain", "K_t", "m^(7/2) kg^(-1/2)", 5e-7, 1e-10, 1e-2,
+            "flow of an open port of the valve, from the pump and to the tank alike", ASSUMED,
             typical=5e-7, logarithmic=True,
+        ),
+        Parameter(
+            "switching_frequency", "omega", "rad/s", 100.0, 5.0, 6000.0, "natural frequency of the valve's spool",
+            ASSUMED, typical=100.0, logarithmic=True,
+        ),
+        Parameter(
+            "switching_damping", "xi", "-", 1.0, 0.05, 20.0, "damping ratio of the valve's spool", ASSUMED,
+            typical=1.0, logarithmic=True,
+        ),
+        Parameter(
+            "valve_overlap", "o", "-", 0.1, 0.0, 0.9, "share of the spool's way on which the ports are still shut",
+            ASSUMED, typical=0.1,
+        ),
+        Parameter(
+            "bypass_gain", "K_b", "m^(7/2) kg^(-1/2)", 0.0, 0.0, 1e-2,
+            "flow from the pump to the tank in the valve's middle position; 0: a closed centre", ASSUMED, typical=5e-7,
+        ),
+        Parameter(
+            "pump_line_volume", "V_l", "m^3", 5e-5, 1e-7, 1.0, "oil between pump and valve", ASSUMED,
+            typical=5e-5, logarithmic=True,
         ),
     ),
     inputs=("pump_speed",),
     optional=("voltage_command",),
     hides=("voltage", "current", "spool_position", "spool_velocity"),
     idle=True,
+    switched=("switching_damping", "switching_frequency"),
+    line=True,
+    held=("relief_gain",),
+    spread={
+        "pump_displacement": (0.3, 2.0),
+        "pump_leakage": (10.0, 0.0),
+        "switching_frequency": (1.0, 20.0),
+        "switching_damping": (0.7, 10.0),
+        "valve_overlap": (2.0, 0.0),
+        "bypass_gain": (10.0, 0.0),
+        "pump_line_volume": (1.5, 100.0),
+    },
 )  # fmt: skip
 
 
 @inlined
-def delivery(delivered, pressure, relief_pressure, return_pressure, leakage, relief_gain):
-    """What reaches the connected chamber, and how much less it is for each pascal there."""
-    over = pressure - relief_pressure
-    flow = delivered - leakage * (pressure - return_pressure)
-    if over > 0.0:
-        return flow - relief_gain * over, leakage + relief_gain
-    return flow, leakage
+def feed(
+    spool_position, first, second, line_pressure, supply_pressure, return_pressure, pump_displacement, pump_leakage,
+    relief_gain, tank_gain, switching_frequency, switching_damping, valve_overlap, bypass_gain, pump_line_volume,
+):  # fmt: skip
+    """What the pump gives into its line, how much less it is for each pascal there, and the line's volume."""
+    over, above = line_pressure - supply_pressure, line_pressure - return_pressure
+    relief = relief_gain if over > 0.0 else 0.0
+    lost = pump_leakage
+    if bypass_gain > 0.0 and abs(spool_position) < valve_overlap:
+        root, slope = orifice_root(above)
+        lost += bypass_gain * (1.0 - abs(spool_position) / valve_overlap) * (root / above if above > 1.0 else slope)
+    return pump_displacement * abs(first) - lost * above - relief * over, lost + relief, pump_line_volume
 
 
 @inlined
 def contribution(
     opening, gain, conductance, first, second, pressure_a, pressure_b, supply_pressure, return_pressure,
-    pump_displacement, pump_leakage, relief_gain, tank_gain,
+    pump_displacement, pump_leakage, relief_gain, tank_gain, switching_frequency, switching_damping, valve_overlap,
+    bypass_gain, pump_line_volume,
 ):  # fmt: skip
-    """The pump into one chamber, the other into the tank."""
-    delivered = pump_displacement * abs(first)
-    if second > 0.0:
-        flow_a, fall_a = delivery(delivered, pressure_a, supply_pressure, return_pressure, pump_leakage, relief_gain)
-        root, slope = orifice_root(pressure_b - return_pressure)
-        return flow_a, tank_gain * root, fall_a, tank_gain * slope, flow_a, tank_gain * root
-    if second < 0.0:
-        flow_b, fall_b = delivery(delivered, pressure_b, supply_pressure, return_pressure, pump_leakage, relief_gain)
-        root, slope = orifice_root(pressure_a - return_pressure)
-        return -tank_gain * root, -flow_b, tank_gain * slope, fall_b, flow_b, tank_gain * root
-    return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    """The line's pressure at one port, the tank's at the other, through as much of the ports as the spool opens."""
+    share = max(abs(opening) - valve_overlap, 0.0) / (1.0 - valve_overlap)
+    share = share if opening >= 0.0 else -share
+    return port_flows(share, tank_gain, 0.0, pressure_a, pressure_b, supply_pressure, return_pressure)
