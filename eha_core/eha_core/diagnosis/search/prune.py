@@ -23,6 +23,9 @@ from eha_core.identification.per_recording import base_name, is_one_of
 REFITTED = 8
 """Iterations of a fit without a member."""
 
+FURTHER = 30
+"""Iterations for which such a fit goes on where the curvature says that it can."""
+
 LOOKED_AT = 4.0
 """A member is tried to be dropped where the curvature says that it costs no more than this many times what it must be
 worth."""
@@ -64,30 +67,31 @@ def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
 
 
 def prune(search: Search, best: Candidate) -> Candidate:
-    """The set without the members that do not earn their place beside the others.
+    """The set without the members that do not earn their place beside the others, by what a refit without each loses.
 
-    What a refit loses without a member says what it is worth. Where friction sticks a refit can rest above its optimum,
-    and a member that does nothing would seem to be needed; so the curvature must show it beyond chance, too.
+    Where the curvature says that a member is worth less, the refit has not come to its end, or the curvature is that of
+    a long flat valley along which much changes together, such as all pressures' scale; so the refit goes on.
     """
     while len(best.hypothesis.members) > 1:
         simpler = {member: refit_without(search, best, member) for member in best.hypothesis.members}
-        lost = {member: one.fit.objective - best.fit.objective for member, one in simpler.items()}
         told = {member: wald(best.fit, member.effect) for member in simpler}
+        worth = {member: min(_lost(one, best), told[member]) for member, one in simpler.items()}
         explained = search.found[NOTHING].objective - best.fit.objective
-        worth = {member: min(lost[member], told[member]) for member in simpler}
-        share = {
-            member: min(
-                lost[member] / asked_of(member, worth, best, explained),
-                told[member] / by_chance(member, worth, best),
-            )
-            for member in simpler
-        }
-        least = min(share, key=lambda member: share[member])
+        asked = {member: asked_of(member, worth, best, explained) for member in simpler}
+        for member in simpler:
+            if told[member] < asked[member] < _lost(simpler[member], best):
+                simpler[member] = search.go_on(simpler[member], FURTHER)
+        lost = {member: _lost(one, best) for member, one in simpler.items()}
+        least = min(lost, key=lambda member: lost[member] / asked[member])
         search.progress(f"chi^2 lost without: {', '.join(f'{one.id} {loss:.3g}' for one, loss in lost.items())}")
-        if share[least] > 1.0:
+        if lost[least] > asked[least]:
             break
         best = simpler[least]
     return best
+
+
+def _lost(without: Candidate, best: Candidate) -> float:
+    return without.fit.objective - best.fit.objective
 
 
 def by_chance(member: Member, others: Iterable[Member], best: Candidate) -> float:
