@@ -10,7 +10,7 @@ import pytest
 from test_experiment import explanation
 
 from eha_core.diagnosis import verdict
-from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member
 from eha_core.diagnosis.tournament import Entry, Tournament
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import effects
@@ -34,7 +34,9 @@ def entry(score: float, *names: str, of=None) -> Entry:
 
 
 def recovered(score: float, data: float = 1.0 * COUNT, objective: float | None = None) -> Recovery:
-    return Recovery(LAWS["recovered_force"], "velocity", fit(data, objective=objective), score, 1.0, ())
+    law = LAWS["recovered_force"]
+    hypothesis = Hypothesis((Member(law.id, effect=law),), (law.id, "velocity"))
+    return Recovery(law, "velocity", hypothesis, fit(data, objective=objective), score, 1.0, ())
 
 
 @pytest.fixture(autouse=True)
