@@ -9,6 +9,7 @@ import pytest
 from test_experiment import explanation
 
 from eha_core.diagnosis.conclude import _unknown
+from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import effects
 
@@ -22,7 +23,7 @@ def test_a_function_that_leaves_more_than_it_explains_is_no_law(share, told):
     evidence = SimpleNamespace(
         decision=SimpleNamespace(verdict="unknown_physics"),
         balances=(),
-        recovery=Recovery(CURVE, "velocity", explanation({}), 500.0, share, knots),
+        recovery=Recovery(CURVE, "velocity", NOTHING.with_effects([CURVE]), explanation({}), 500.0, share, knots),
     )
     law = _unknown(evidence)
     assert (law is not None) == told

@@ -10,7 +10,7 @@ import pytest
 from test_experiment import explanation
 
 from eha_core.diagnosis import verdict
-from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member
+from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.tournament import Entry, Tournament
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import effects
@@ -33,10 +33,12 @@ def entry(score: float, *names: str, of=None) -> Entry:
     return Entry(NOTHING.with_effects([LAWS[name] for name in names]), of or fit(1.0 * COUNT), score)
 
 
-def recovered(score: float, data: float = 1.0 * COUNT, objective: float | None = None) -> Recovery:
+def recovered(
+    score: float, data: float = 1.0 * COUNT, objective: float | None = None, beside: tuple[str, ...] = (), share=1.0
+) -> Recovery:
     law = LAWS["recovered_force"]
-    hypothesis = Hypothesis((Member(law.id, effect=law),), (law.id, "velocity"))
-    return Recovery(law, "velocity", hypothesis, fit(data, objective=objective), score, 1.0, ())
+    hypothesis = replace(NOTHING.with_effects([LAWS[name] for name in (*beside, law.id)]), law=(law.id, "velocity"))
+    return Recovery(law, "velocity", hypothesis, fit(data, objective=objective), score, share, ())
 
 
 @pytest.fixture(autouse=True)
@@ -205,3 +207,11 @@ def test_unexplained_is_what_exceeds_noise():
     assert verdict.unexplained(fit(3.0 * COUNT)) == pytest.approx(2.0)
     assert verdict.unexplained(fit(0.5 * COUNT)) == 0.0
     assert verdict.unexplained(replace(fit(3.0), count=0)) == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.49, "missing_physics"), (0.51, "unknown_physics")])
+def test_a_curve_beside_a_named_effect_must_be_a_law_of_what_that_leaves(share, found):
+    named = entry(500.0, "constant_load", of=fit(2.0 * COUNT, objective=1e6))
+    decision = decide(named, recovery=recovered(600.0, objective=0.0, beside=("constant_load",), share=share))
+    assert decision.verdict == found
+    assert "constant_load" in decision.winner.ids

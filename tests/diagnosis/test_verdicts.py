@@ -9,6 +9,7 @@ from made import recorded
 
 from eha_core.cli import main
 from eha_core.diagnosis import diagnose
+from eha_core.diagnosis.tournament import TIE
 from eha_core.exam.cases import draw_case
 from eha_core.exam.measuring import measure, simulate_case
 from eha_core.identification.observation import observe, reaching
@@ -50,13 +51,15 @@ def test_friction_behind_wrong_parameters_is_named_located_and_measured():
         assert fit.rmse_calibrated > 1.5 * fit.rmse_after
 
 
-def test_without_pressures_overlap_is_not_told_from_dry_friction_over_leakage():
+def test_without_pressures_dry_friction_over_leakage_comes_near_an_overlap():
     """Friction F holds a piston until the pressures differ by 2 F / A, and leakage takes up the flow of a small
-    opening meanwhile: a dead zone like the overlap's."""
+    opening meanwhile: a dead zone like the overlap's, but for a supply pressure that hardly anybody would believe."""
     result = diagnosed({"valve_deadband.half_width": 2e-4}, channels=("voltage_command", "position"))
-    assert result.verdict == "ambiguous"
-    possible = {tuple(one.id for one in result.effects), *(one.effects for one in result.alternatives)}
-    assert possible == {("valve_deadband",), ("coulomb_friction",)}
+    (first, score), (second, near) = result.rivals[:2]
+    assert (first, second) == (("valve_deadband",), ("coulomb_friction",))
+    assert score - near < 1e-5 * score
+    stated = {tuple(one.id for one in result.effects), *(one.effects for one in result.alternatives)}
+    assert stated == ({first, second} if score - near < TIE else {first})
 
 
 def test_overlap_of_worn_lands_is_named_with_their_rounding():

@@ -4,7 +4,7 @@ effects."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -12,7 +12,7 @@ from scipy.linalg import LinAlgError
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.criteria import CONVINCING, chance_gain
 from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.hypothesis import Hypothesis, Member
+from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.search.candidates import without_effect
 from eha_core.diagnosis.search.prune import REFITTED
 from eha_core.diagnosis.tournament import Entry, Tournament, parameter_cost
@@ -79,7 +79,7 @@ def _beside(
     """The best curve beside the effects of an entry, of which those go that the curve makes idle."""
     fits = []
     for effect, variable, result in _fitted_curves(problem, base, facts, progress):
-        law = Hypothesis((*base.hypothesis.members, Member(effect.id, effect=effect)), (effect.id, variable))
+        law = replace(base.hypothesis.with_effects([effect]), law=(effect.id, variable))
         fits.append((law, effect, variable, result))
     if not fits:
         return None

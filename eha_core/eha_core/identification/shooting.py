@@ -146,19 +146,19 @@ class Shooting:
             state[PISTON] = states[window]
             memory[sensor_slots] = self.initial_states[window, 0]
             inputs, out = self.inputs[:, begin:end], rows[begin // self.every : end // self.every]
-            for spell in intervals(begin - start, end - begin, self.every, acting):
-                if spell.acting and begin - start + spell.steps.start == acting[0] > 0:
+            for interval in intervals(begin - start, end - begin, self.every, acting):
+                if interval.acting and begin - start + interval.steps.start == acting[0] > 0:
                     memory, _ = starting_memory(state[AT.current], state[PISTON])
-                effects_on, piece = active if spell.acting else none, inputs[:, spell.steps]
+                effects_on, piece = active if interval.acting else none, inputs[:, interval.steps]
                 if self.drive == "voltage":
                     step.advance(
-                        state, memory, history, vector, effects_on, valve, piece[0], self.step_size, spell.every,
-                        out[spell.rows],
+                        state, memory, history, vector, effects_on, valve, piece[0], self.step_size, interval.every,
+                        out[interval.rows],
                     )  # fmt: skip
                 else:
                     step.advance_driven(
-                        state, memory, vector, effects_on, piece[0], piece[1], self.step_size, spell.every,
-                        out[spell.rows],
+                        state, memory, vector, effects_on, piece[0], piece[1], self.step_size, interval.every,
+                        out[interval.rows],
                     )  # fmt: skip
             ends[window] = state[PISTON]
 
