@@ -1,7 +1,7 @@
 """Whether a recording can be right at all: signs, scales and ranges of its channels, before any fit."""
 
-from eha_core.plausibility.architecture import Contradiction, contradiction
 from eha_core.plausibility.check import admit, check
 from eha_core.plausibility.finding import Finding
+from eha_core.plausibility.other_source import Contradiction, contradiction
 
 __all__ = ["Contradiction", "Finding", "admit", "check", "contradiction"]

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from eha_core.errors import RecordingError
 from eha_core.plant import PAPER, Composition
-from eha_core.plausibility.architecture import contradiction
 from eha_core.plausibility.copies import copies
 from eha_core.plausibility.finding import Finding, Suspect
 from eha_core.plausibility.mistakes import suspects, unrelated
+from eha_core.plausibility.other_source import contradiction
 from eha_core.plausibility.relation import Relation
 from eha_core.plausibility.relations import relations
 from eha_core.recording import Recording
