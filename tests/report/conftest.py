@@ -170,6 +170,12 @@ def unknown(friction: Diagnosis) -> Diagnosis:
 
 
 @pytest.fixture(scope="session")
+def law_beside_names(several: Diagnosis, unknown: Diagnosis) -> Diagnosis:
+    """Effects of the catalogue, and beside them a law that is in none."""
+    return replace(several, verdict="unknown_physics", unknown=unknown.unknown)
+
+
+@pytest.fixture(scope="session")
 def consistent(friction: Diagnosis, simulated: SimpleNamespace) -> Diagnosis:
     """The same rig against a model that has its friction."""
     after = simulated.models[2]
@@ -200,7 +206,9 @@ def position_alone(friction: Diagnosis) -> Diagnosis:
     )  # fmt: skip
 
 
-@pytest.fixture(params=["friction", "several", "ambiguous", "unknown", "consistent", "position_alone"])
+@pytest.fixture(
+    params=["friction", "several", "ambiguous", "unknown", "law_beside_names", "consistent", "position_alone"]
+)
 def any_diagnosis(request: pytest.FixtureRequest) -> Diagnosis:
     """Each kind of diagnosis in turn."""
     return request.getfixturevalue(request.param)

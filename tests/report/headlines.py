@@ -83,6 +83,9 @@ def _named(document: Document, told: re.Match[str]) -> None:
     assert ("most likely" in text) == (document["verdict"] == "ambiguous")
     complete = document["explained"] is None or document["explained"]["complete"]
     assert ("more that is not named" in text) == (not complete)
+    law = document["unknown"]
+    assert ("a law over" in text) == (law is not None)
+    assert law is None or f"a law over {law['function_of']} that the catalogue does not name" in text
     _values(document, told)
 
 
@@ -156,7 +159,8 @@ def _no_location(document: Document, told: re.Match[str]) -> None:
 
 def _best(document: Document, told: re.Match[str]) -> None:
     """What the evidence points to has the highest score of all, and by how much the verdict says."""
-    _named_alone(document)
+    assert document["effects"]
+    assert ("a law that the catalogue does not name" in told[0]) == (document["unknown"] is not None)
     assert all(title in told[0].lower() for title in titles(document))
     chosen = {one["id"] for one in document["effects"]}
     scores = {frozenset(one["effects"]): one["score"] for one in document["rivals"]}

@@ -76,8 +76,10 @@ def headline(diagnosis: Diagnosis) -> str:
     """The first sentence of the page."""
     if not diagnosis.effects:
         return sentence(diagnosis.summary.removeprefix(f"{VERDICT_TITLES[diagnosis.verdict]}: "))
-    certain = "The model leaves out" if diagnosis.verdict == "missing_physics" else "The model most likely leaves out"
-    more = "" if is_complete(diagnosis) else ", and more that is not named"
+    certain = "The model most likely leaves out" if diagnosis.verdict == "ambiguous" else "The model leaves out"
+    law = diagnosis.unknown
+    beside = f", and a law over {law.function_of} that the catalogue does not name" if law else ""
+    more = beside + ("" if is_complete(diagnosis) else ", and more that is not named")
     if len(diagnosis.effects) > IN_A_SENTENCE:
         return f"{certain} {counted(len(diagnosis.effects))} effects{more}: {names_listed(diagnosis)}."
     return f"{certain} {effects_listed(diagnosis)}{more}; 95 % intervals."

@@ -72,6 +72,9 @@ def _sure(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
         rivals = listed([named(one.effects) for one in diagnosis.alternatives])
         yield KeyFigure("How sure?", "Not the only explanation", f"The recording does not tell it from {rivals}.")
         return
+    if diagnosis.effects and diagnosis.unknown:  # its score is not among those of the catalogue's sets
+        yield from _each_is_needed(diagnosis)
+        return
     chosen = {one.id for one in diagnosis.effects}
     scores = [(set(effects), float(score)) for effects, score in diagnosis.rivals]
     own = max((score for effects, score in scores if effects == chosen), default=float("nan"))

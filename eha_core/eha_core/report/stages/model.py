@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from eha_core.diagnosis.result import Diagnosis, NamedEffect
+from eha_core.diagnosis.result import Diagnosis, NamedEffect, UnknownLaw
 from eha_core.effects import SITES
 from eha_core.quantities import interval, scale_for, with_deviation
 from eha_core.report.finding import IN_A_SENTENCE, effects_listed, missing, names_listed, told_parameters
@@ -45,29 +45,40 @@ MOST_PAIRS = 4
 
 def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
     """The named physics effect by effect in words, equations, numbers and laws, or the recovered law as a curve."""
-    if diagnosis.unknown:
-        law = diagnosis.unknown
-        told = (
-            f"The law was recovered from the data; it explains {law.r_squared:.1%} of the mismatch.",
-            WITHOUT if diagnosis.bent else "",
-            "As a formula, it reads:" if law.expression else "No simple formula follows its curve.",
-        )
-        headline = f"A law over {law.function_of} is missing"
-        return Stage("model", "Model", headline, told, code=law.expression)
     if not diagnosis.effects:
-        ending = "with the fitted parameters" if diagnosis.verdict == "parameters" else "as it was given"
-        return Stage("model", "Model", f"The model stands {ending}", ("No physics was added.",))
+        return _without_names(diagnosis)
     pictures = tuple(one for one in (_collapse(diagnosis), _intervals(diagnosis), correlations(diagnosis)) if one)
-    headline = effects_listed(diagnosis) if len(diagnosis.effects) <= IN_A_SENTENCE else names_listed(diagnosis)
+    named = effects_listed(diagnosis) if len(diagnosis.effects) <= IN_A_SENTENCE else names_listed(diagnosis)
+    headline, told, formula = _recovered(diagnosis.unknown, diagnosis.bent) if diagnosis.unknown else (named, (), "")
     return Stage(
         "model",
         "Model",
         capital(headline),
-        ("Started with fitted.yaml, the simulator has this physics.", *_told_together(diagnosis)),
+        (*told, "Started with fitted.yaml, the simulator has this physics.", *_told_together(diagnosis)),
         pictures,
         (_table(diagnosis), *step_table(diagnosis)),
         parts=tuple(_part(diagnosis, place, effect, found) for place, effect in enumerate(diagnosis.effects, start=1)),
+        code=formula,
     )
+
+
+def _without_names(diagnosis: Diagnosis) -> Stage:
+    """The recovered law alone, or the model as it stands."""
+    if diagnosis.unknown:
+        headline, told, formula = _recovered(diagnosis.unknown, diagnosis.bent)
+        return Stage("model", "Model", headline, told, code=formula)
+    ending = "with the fitted parameters" if diagnosis.verdict == "parameters" else "as it was given"
+    return Stage("model", "Model", f"The model stands {ending}", ("No physics was added.",))
+
+
+def _recovered(law: UnknownLaw, bent: bool) -> tuple[str, tuple[str, ...], str]:
+    """The headline, the sentences and the formula of a recovered law."""
+    told = (
+        f"The law was recovered from the data; it explains {law.r_squared:.1%} of the mismatch.",
+        WITHOUT if bent else "",
+        "As a formula, it reads:" if law.expression else "No simple formula follows its curve.",
+    )
+    return f"A law over {law.function_of} is missing", told, law.expression
 
 
 def _part(diagnosis: Diagnosis, place: int, effect: NamedEffect, found: Mapping[str, Law]) -> Part:

@@ -46,5 +46,7 @@ def _headline(diagnosis: Diagnosis) -> str:
         "parameters": "Other parameter values suffice; no physics has to be added",
         "missing_physics": f"The evidence points to {winner}",
         "ambiguous": f"The best explanation is {winner}, but it is not the only one",
-        "unknown_physics": "Nothing in the catalogue explains it",
+        "unknown_physics": f"The evidence points to {winner} and a law that the catalogue does not name"
+        if count
+        else "Nothing in the catalogue explains it",
     }[diagnosis.verdict]
