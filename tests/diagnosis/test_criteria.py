@@ -21,6 +21,7 @@ def test_no_threshold_moved():
         "NEXT_TO_NOTHING": 0.15,
         "WORTH_ADDING": 0.1,
         "LEFT_IN_A_CHANNEL": 1.2,
+        "UNFITTED": 1.3,
         "LEAST_OF_A_LAW": 0.5,
         "COHERENT": 1.5,
     }

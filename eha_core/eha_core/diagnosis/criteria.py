@@ -49,6 +49,10 @@ LEFT_IN_A_CHANNEL = 1.2
 """RMS of what is left in a channel, over its noise, from which an explanation is not complete. Estimates of the noise
 are good to a few per cent; at 1.5 half of what is left would be no noise (assumed)."""
 
+UNFITTED = 1.3
+"""Chi^2 a sample above which a model is held to leave physics over, if its residual is coherent; and above which a
+curve is not the law that stands beside named effects (assumed)."""
+
 LEAST_OF_A_LAW = 0.5
 """R^2 below which a recovered function of the states is no law: it leaves more than it explains, and what does that is
 found in any residual (assumed)."""

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eha_core.curve import KNOTS
-from eha_core.diagnosis.criteria import CONVINCING, chance_gain
+from eha_core.diagnosis.criteria import CONVINCING, UNFITTED, chance_gain
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.search.candidates import without_effect
@@ -70,7 +70,9 @@ def recover(
     progress("recovering an unknown law as a curve")
     bases = [tournament.nominal, *([best] if best.effects and best.span is None else [])]
     found = [_beside(problem, base, tournament, facts, progress) for base in bases]
-    return max((one for one in found if one is not None), key=lambda one: one.score, default=None)
+    # beside a curve that is not the law either, a name only makes up for what the curve leaves
+    stands = [one for one in found if one is not None and not (one.named and one.fit.data > UNFITTED * one.fit.count)]
+    return max(stands, key=lambda one: one.score, default=None)
 
 
 def _beside(

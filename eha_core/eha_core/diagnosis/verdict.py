@@ -10,7 +10,7 @@ import numpy as np
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import Calibration, has_changed
-from eha_core.diagnosis.criteria import COHERENT, LEAST_OF_A_LAW
+from eha_core.diagnosis.criteria import COHERENT, LEAST_OF_A_LAW, UNFITTED
 from eha_core.diagnosis.refine import FAR_OFF
 from eha_core.diagnosis.tournament import ENOUGH, TIE, Entry, Tournament, bounded, parameter_cost
 from eha_core.diagnosis.unknown import Recovery
@@ -39,11 +39,9 @@ class Decision:
     judged_winner: Judged | None
 
 
-UNFITTED = 1.3
-"""Chi^2 a sample above which a model is held to leave physics over, if its residual is coherent ..."""
-
 PARTLY = 0.2
-"""... and more than this share of what the nominal equations leave over: a name must explain most of what is there."""
+"""Share of what the nominal equations leave over above which a coherent rest is more physics: a name must explain most
+of what is there."""
 
 NEARLY_ALL = 0.1
 """Share of what the nominal equations leave over below which a name has explained nearly all of it."""
