@@ -116,6 +116,6 @@ def test_a_long_record_is_fitted_in_stretches_and_told_in_its_own_time(
     assert "Of 21 s, 2 stretches of 3 s were fitted." in said
     assert len(json.loads(json.dumps(document(diagnosis)))["long_records"][0]["blocks"]) == 7
     found.save(tmp_path / "report")
-    page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
     assert "Of 21 s, 2 stretches of 3 s were fitted." in page
     assert "The whole record: RMSE with parameters held" in page

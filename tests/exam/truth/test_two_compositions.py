@@ -19,7 +19,13 @@ LANDS = {
     "valve_gain": 2.5e-5, "valve_natural_frequency": 5e3, "valve_damping_ratio": 0.7, "coil_inductance": 0.02,
     "pump_relief_gain": 1e-9, "pump_bypass_gain": 5e-7, "pump_bypass_spool": 1e-3,
 }  # fmt: skip
-"""What the plant has not got: a valve that takes a millisecond to switch and bypasses the pump in its middle."""
+"""A valve that takes a millisecond to switch, and bypasses the pump over a twentieth of its way in the middle."""
+SWITCHED = {
+    "tank_gain": LANDS["valve_gain"] * 0.02, "switching_frequency": LANDS["valve_natural_frequency"],
+    "switching_damping": LANDS["valve_damping_ratio"], "bypass_gain": LANDS["pump_bypass_gain"],
+    "valve_overlap": LANDS["pump_bypass_spool"] / 0.02,
+}  # fmt: skip
+"""The same in the plant's terms, whose valve has its ports shut where it bypasses the pump; 0.02 A is the full way."""
 SWITCHING = 1e-3
 """s. Each switching may leave the two apart by what the pump moves the piston by in that time."""
 
@@ -53,14 +59,13 @@ def driven() -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("friction", [False, True])
 def test_a_switched_pump_on_a_single_rod(friction: bool) -> None:
-    """The truth has the pump's line and four lands in its valve; the plant has a flow that is switched."""
+    """The truth has four lands in its valve; the plant has one share of open ports."""
     speed, valve = driven()
     truth = simulate_truth(
         ROD | PUMP | LANDS, effects(friction), 2.0 * valve, 3.0, pump_speed=speed, initial_position=-0.02
     )
-    tank = {"tank_gain": LANDS["valve_gain"] * 2.0 / 100.0}
     rig = compose(source="switched_pump", cylinder="single_rod")
-    model = Plant(ROD | PUMP | tank | named(friction), 1e-3 / STEPS, -0.02, rig)
+    model = Plant(ROD | PUMP | SWITCHED | named(friction), 1e-3 / STEPS, -0.02, rig)
     rows = model.run(np.repeat(np.stack([speed, valve], axis=1)[:-1], STEPS, axis=0), every=STEPS)
     fastest = PUMP["pump_displacement"] * speed.max() / ROD["piston_area_b"]
     assert np.ptp(rows.position) > 0.05

@@ -17,8 +17,9 @@ Array = NDArray[np.float64]
 ROUNDS = 5
 """Gauss-Newton steps of the windows' starts: the position is nearly linear in them."""
 
-SLOPE_STEP = 1e-2
-"""Relative step of the derivatives: where friction sticks, the error is rough below it."""
+SLOPE_STEPS = (0.1, 0.03, 0.01)
+"""Relative steps of the derivatives, one fit after the other: where friction sticks, the error is rough, and a fit with
+the last alone ends where it began."""
 
 NUDGE = 1e-4
 """m/s by which a start's speed is moved to see what it does."""
@@ -129,7 +130,10 @@ def fit_axis(start: Axis, windows: list[Windows], with_load: bool) -> Axis:
         made = axis(values)
         return 1e3 * np.concatenate([from_fitted_starts(made, one).ravel() for one in windows])
 
-    return axis(least_squares(residual, np.array(first) / scale, diff_step=SLOPE_STEP, xtol=1e-6, ftol=1e-7).x)
+    values = np.array(first) / scale
+    for step in SLOPE_STEPS:
+        values = least_squares(residual, values, diff_step=step, xtol=1e-6, ftol=1e-7).x
+    return axis(values)
 
 
 def rms(error: Array) -> float:
