@@ -15,6 +15,7 @@ from eha_core.identification.observation import RESOLVED, SHORTEST, Observation,
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
+from eha_core.identification.short_windows import SHORT
 from eha_core.identification.together import cut_together, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
 
@@ -41,12 +42,14 @@ could a law for it be judged on anything that it was not fitted to."""
 
 @dataclass(frozen=True)
 class Calibration:
-    """The windows, the nominal model as given (only starts fitted), and the nominal equations at their best."""
+    """The windows, the nominal model as given (only starts fitted), and the nominal equations at their best; `shorter`
+    windows of the same recordings, as `short_windows.SHORT` has them."""
 
     shooting: Shooting
     problem: Problem
     nominal: Fit
     fitted: Fit
+    shorter: tuple[Shooting, ...] = ()
 
 
 def calibrate(observations: Sequence[Observation], model: NominalModel, step_size: float) -> Calibration:
@@ -61,7 +64,8 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     as_given = fit(problem, nominal, (), fitted.states, iterations=5)
-    return Calibration(shooting, problem, as_given, fitted)
+    shorter = tuple(cut_together(observations, nominal, step_size, one, model.per_recording) for one in SHORT)
+    return Calibration(shooting, problem, as_given, fitted, shorter)
 
 
 def calibrate_finely_enough(observations: Sequence[Observation], model: NominalModel) -> Calibration:

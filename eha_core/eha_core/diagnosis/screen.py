@@ -17,7 +17,7 @@ from eha_core.identification.normal_matrix import Eliminated
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.parallel import each, threads
 from eha_core.identification.per_recording import named
-from eha_core.identification.problem import LINK, Linearised, Problem, changes, linearise, normal_equations
+from eha_core.identification.problem import Linearised, Problem, changes, linearise, normal_equations
 from eha_core.identification.shooting import STATE_SIZE
 from eha_core.plant.lane_rows import LANES
 
@@ -152,14 +152,15 @@ def _by_span(
         along[span] += linear.residual[piece] @ part
         by_parameter[span] += linear.by_parameter[piece].T @ part
         by_state[window, :size] = linear.by_state[piece].T @ part
+    link = problem.link[:size]
     for window in problem.links():
         span = span_of[window]
-        moved = shifts[window, :size] / LINK[:size, None]
+        moved = shifts[window, :size] / link[:, None]
         energy[span] += np.einsum("ij,ij->j", moved, moved)
-        along[span] -= ((linear.ends[window] - calibrated.states[window + 1])[:size] / LINK[:size]) @ moved
-        by_parameter[span] += (linear.ends_by_parameter[window, :size] / LINK[:size, None]).T @ moved
-        by_state[window, :size] += (linear.ends_by_state[window, :size] / LINK[:size, None]).T @ moved
-        by_next[window, :size] = -moved / LINK[:size, None]
+        along[span] -= ((linear.ends[window] - calibrated.states[window + 1])[:size] / link) @ moved
+        by_parameter[span] += (linear.ends_by_parameter[window, :size] / link[:, None]).T @ moved
+        by_state[window, :size] += (linear.ends_by_state[window, :size] / link[:, None]).T @ moved
+        by_next[window, :size] = -moved / link[:, None]
     return _Overlaps(energy, along, by_parameter, by_state, by_next, span_of)
 
 

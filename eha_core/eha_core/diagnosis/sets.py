@@ -34,10 +34,11 @@ def with_sets(
 ) -> tuple[Calibration, Tournament]:
     """The comparison with the best set in it and whatever comes near that, and the calibration in the noise found."""
     singles = {entry.hypothesis: entry.fit for entry in tournament.entries}
-    search = Search(calibration.problem, able, facts, progress, {**singles, NOTHING: tournament.nominal.fit})
+    found: Found = {**singles, NOTHING: tournament.nominal.fit}
+    search = Search(calibration.problem, able, facts, progress, found, calibration.shorter)
     best = search_sets(search, search.again(Candidate(NOTHING, tournament.nominal.fit)))
     calibration = _in_noise_of(search, calibration)
-    found: Found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
+    found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
     if len(best.hypothesis.members) > 1:
         # a set that stopped short would make any other form of a law look better
         settled = settle(search.problem, {best.hypothesis: best.fit}, progress)

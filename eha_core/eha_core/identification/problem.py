@@ -35,16 +35,23 @@ Point = tuple[Mapping[str, float], Array]
 
 @dataclass(frozen=True)
 class Problem:
-    """What a fit explains: the windows in use, and the step at which it takes derivatives."""
+    """What a fit explains: the windows in use, the step at which it takes derivatives, and how many times looser than
+    LINK the windows hang together."""
 
     shooting: Shooting
     windows: Integers
     slope_step: float = SLOPE_STEP
+    slack: float = 1.0
 
     @cached_property
     def slopes(self) -> Shooting:
         """The same windows at the step at which derivatives are taken."""
         return coarser(self.shooting, self.slope_step)
+
+    @property
+    def link(self) -> Array:
+        """How well a window's end meets the next one's start: m, m/s, Pa, Pa."""
+        return LINK * self.slack
 
     def used(self) -> Flags:
         """Which windows count."""
@@ -134,7 +141,7 @@ def objective_of(problem: Problem, free: Sequence[Free], q: Array, states: Array
     for one, residual in zip(shooting.samplings, residuals(shooting, rows), strict=True):
         total += float(np.sum(residual[used[one.window]] ** 2))
     links, size = problem.links(), shooting.free_states
-    gaps = ((ends[links] - states[links + 1]) / LINK)[:, :size]
+    gaps = ((ends[links] - states[links + 1]) / problem.link)[:, :size]
     total += float(np.sum(gaps**2))
     total += float(np.sum((((states - shooting.initial_states) / STATE_TRUST)[used, :size]) ** 2))
     total += sum((float(at) / one.trust) ** 2 for one, at in zip(free, q, strict=True))
@@ -242,7 +249,7 @@ def normal_equations(
         own[window, :size, :size] = by_state.T @ by_state
         shared[window, :size] = by_state.T @ linear.by_parameter[piece]
         towards[window, :size] = by_state.T @ linear.residual[piece]
-    links, weight = problem.links(), 1.0 / LINK[:size]
+    links, weight = problem.links(), 1.0 / problem.link[:size]
     by_parameter = linear.ends_by_parameter[links, :size] * weight[:, None]
     by_start = np.swapaxes(linear.ends_by_state[links, :size] * weight[:, None], 1, 2)
     gap = (linear.ends[links] - states[links + 1])[:, :size] * weight

@@ -55,13 +55,14 @@ class Candidate:
 
 @dataclass
 class Search:
-    """What is searched, and all that was fitted on the way, by hypothesis."""
+    """What is searched, and all that was fitted on the way, by hypothesis. `shorter`: see `from_short_windows`."""
 
     problem: Problem
     able: Sequence[Effect]
     facts: Facts
     progress: Progress = lambda _: None
     found: dict[Hypothesis, Fit] = field(default_factory=dict)
+    shorter: Sequence[Shooting] = ()
 
     def keep(self, hypothesis: Hypothesis, result: Fit) -> Candidate:
         """Keep a fit if it is the best of its hypothesis; the hypothesis with its best fit."""

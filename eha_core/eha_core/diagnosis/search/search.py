@@ -8,6 +8,7 @@ from eha_core.diagnosis.search.exchange import exchange
 from eha_core.diagnosis.search.grow import grow
 from eha_core.diagnosis.search.joint_start import joint_start
 from eha_core.diagnosis.search.prune import prune
+from eha_core.diagnosis.search.short_windows import forms_of_friction, set_with_friction
 
 ROUNDS = 8
 """Exchanges at most; each has to make the fit better by more than chance would."""
@@ -22,8 +23,12 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
     if best.hypothesis.limited:
         return best
     if best.times_noise > FAR_FROM_NOISE:
+        best = forms_of_friction(search, nominal)
+    if best.times_noise > FAR_FROM_NOISE:
         best = min(best, joint_start(search, nominal), key=lambda one: one.fit.objective)
     best = grow(search, best)
+    if best.times_noise > FAR_FROM_NOISE:
+        best = grow(search, set_with_friction(search, best))
     for _ in range(ROUNDS):
         if best.times_noise < NEAR_NOISE or len(best.hypothesis.members) < 2:
             break
