@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from eha_core.identification.fit import Fit, fit, fit_in_stages, with_noise
+from eha_core.identification.fit import Fit, fit, fit_in_stages
 from eha_core.identification.freedom import Free
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
@@ -30,10 +30,13 @@ ITERATIONS = 30
 def from_short_windows(
     problem: Problem, shorter: Sequence[Shooting], values: Mapping[str, float], free: Sequence[Free]
 ) -> Fit:
-    """Fit `free` from `values` over `shorter`, the same recordings cut as SHORT says, and then over `problem`."""
-    noise = [one.noise for one in problem.shooting.samplings]
+    """Fit `free` from `values` over `shorter`, the same recordings cut as SHORT says, and then over `problem`.
+
+    `shorter` has the noise that the channels show by themselves: what a model far off leaves seems to be noisier, and
+    beside that the links would weigh too much.
+    """
     for place, (shooting, slack) in enumerate(zip(shorter, SLACK, strict=True)):
-        part = replace(whole(with_noise(shooting, noise)), slack=slack)
+        part = replace(whole(shooting), slack=slack)
         run = fit if place else fit_in_stages
         values = run(part, values, free, iterations=ITERATIONS).values
     return fit(problem, values, free, iterations=ITERATIONS)

@@ -1,0 +1,54 @@
+"""From short windows to long ones, on a rig that sticks, made by the exam's own truth with another form of the law."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eha_core.diagnosis.calibrate import Calibration, calibrate
+from eha_core.diagnosis.search.candidates import with_effects
+from eha_core.effects import effects
+from eha_core.exam.drawing import draw_case
+from eha_core.exam.measuring import measure, simulate_case
+from eha_core.identification.fit import fit_in_stages
+from eha_core.identification.observation import observe
+from eha_core.identification.short_windows import SHORT, SLACK, from_short_windows
+from eha_core.nominal import NominalModel
+from eha_core.parameters import nominal_values
+from eha_core.recording import Channel, Recording
+
+LAW = next(effect for effect in effects() if effect.id == "stribeck_friction")
+UNITS = {"voltage_command": "V", "position": "m", "pressure_a": "Pa", "pressure_b": "Pa"}
+
+
+@pytest.fixture(scope="module")
+def rig() -> tuple[Calibration, dict[str, float]]:
+    case = draw_case("other_law", 0, 2026)
+    assert case.effect_ids == ("stribeck_friction",)
+    arrays = measure(case, simulate_case(case))
+    channels = {name: Channel(name, *arrays[name], unit, name, "made") for name, unit in UNITS.items()}
+    recording = Recording(Path("made.mcap"), channels, 0, case.duration, {}, (), None, ())
+    nominal = {**nominal_values(), **case.nominal}
+    return calibrate([observe(recording)], NominalModel(nominal), 2e-4), nominal
+
+
+@pytest.mark.parametrize("sizes", [(200.0, 400.0), (800.0, 1200.0)])
+def test_short_windows_lead_nearer_than_long_ones_from_afar(rig, sizes):
+    calibration, nominal = rig
+    names = ("force", "static_force", "stribeck_velocity")
+    values = {**nominal, **{f"{LAW.id}.{name}": at for name, at in zip(names, (*sizes, 5e-3), strict=True)}}
+    free = with_effects(calibration.fitted.free, [LAW], values)
+    long = fit_in_stages(calibration.problem, values, free, iterations=30)
+    found = from_short_windows(calibration.problem, calibration.shorter, values, free)
+    assert found.data < 0.5 * long.data
+    assert found.values[f"{LAW.id}.force"] == pytest.approx(800.0, rel=0.1)
+    assert found.values[f"{LAW.id}.static_force"] == pytest.approx(1210.0, rel=0.05)
+
+
+def test_the_recordings_are_the_same_in_windows_of_the_lengths_stated(rig):
+    calibration, _ = rig
+    assert len(calibration.shorter) == len(SHORT) == len(SLACK)
+    for shooting, length in zip(calibration.shorter, SHORT, strict=True):
+        spans = np.diff(shooting.edges) * shooting.step_size
+        assert np.median(spans) == pytest.approx(length, rel=0.21)
+        assert sum(len(one.values) for one in shooting.samplings) >= 0.99 * calibration.problem.count()
