@@ -7,9 +7,9 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates, starts
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.refine import attempts, settle, try_effect
+from eha_core.diagnosis.model_comparison import ENOUGH, REFINED
+from eha_core.diagnosis.refine import attempts, refit_with, settle
 from eha_core.diagnosis.screen import screen
-from eha_core.diagnosis.tournament import ENOUGH, REFINED
 from eha_core.effects import effects
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
@@ -55,11 +55,11 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     calibration = calibrate([observation], NominalModel(nominal), STEPS.get(effect.id, 2e-4))
     facts = gather([observation], calibration.shooting, calibration.fitted)
     tried = [start for one in candidates([observation]) for start in starts(one, facts)]
-    promises = screen(calibration.problem, calibration.fitted, tried)
-    leading = attempts(calibration.problem, calibration.fitted, tried, promises, REFINED, ENOUGH)
-    attempt = next((one for one in leading if one.promise.start.effect.id == effect.id), None)
-    assert attempt is not None, [one.promise.start.effect.id for one in leading]
-    first = try_effect(calibration.problem, attempt, float("inf"))
+    score_tests = screen(calibration.problem, calibration.fitted, tried)
+    leading = attempts(calibration.problem, calibration.fitted, tried, score_tests, REFINED, ENOUGH)
+    attempt = next((one for one in leading if one.score_test.start.effect.id == effect.id), None)
+    assert attempt is not None, [one.score_test.start.effect.id for one in leading]
+    first = refit_with(calibration.problem, attempt, float("inf"))
     (result,) = settle(calibration.problem, {NOTHING.with_effects([effect]): first}).values()
     assert result.data / result.count < 1.1
     assert calibration.fitted.objective - result.objective > 50.0

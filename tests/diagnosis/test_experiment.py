@@ -18,7 +18,7 @@ SAMPLE = 1e-3
 
 
 def explanation(changes, free=()):
-    """A fit as the tournament hands it over, of a plant with these parameters."""
+    """A fit as the comparison hands it over, of a plant with these parameters."""
     values = {**nominal_values(), **changes}
     n = len(free)
     q = np.array([one.coordinate(values[one.name]) for one in free])
@@ -43,7 +43,7 @@ def deviations(experiment):
 LOAD, ASYMMETRY = {"constant_load.force": 200.0}, {"flow_gain_asymmetry.ratio": -0.015}
 
 
-def test_the_outcome_differs_by_what_is_promised():
+def test_the_outcome_differs_by_what_is_predicted():
     rivals = [(("constant_load",), explanation(LOAD)), (("flow_gain_asymmetry",), explanation(ASYMMETRY))]
     experiment = propose(rivals, NOISE, 0.1, LIMIT)
     assert experiment.separates == ("constant_load", "flow_gain_asymmetry")

@@ -34,7 +34,7 @@ def evidence():
         observations=(observation,),
         nominal=nominal_values(),
         calibration=calibration,
-        tournament=SimpleNamespace(nominal=Candidate(NOTHING, calibration.fitted), entries=()),
+        comparison=SimpleNamespace(nominal=Candidate(NOTHING, calibration.fitted), entries=()),
         decision=SimpleNamespace(winner=Candidate(NOTHING.with_effects(chosen), found)),
     )
 
@@ -74,7 +74,7 @@ def test_parameters_that_a_recording_tells_only_together_are_correlated(evidence
 
 
 def test_without_effects_the_way_ends_at_the_recalibrated_model(evidence):
-    alone = SimpleNamespace(**{**vars(evidence), "decision": SimpleNamespace(winner=evidence.tournament.nominal)})
+    alone = SimpleNamespace(**{**vars(evidence), "decision": SimpleNamespace(winner=evidence.comparison.nominal)})
     steps, without = ladder(alone, evidence.calibration.fitted)
     assert [one.added for one in steps] == ["nominal", "recalibrated"]
     assert without == {}

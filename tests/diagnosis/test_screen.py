@@ -15,17 +15,17 @@ from eha_core.identification.segments import cut
 from eha_core.parameters import nominal_values
 
 
-def test_windows_taken_together_promise_the_same_and_tell_since_when(monkeypatch):
+def test_windows_taken_together_predict_the_same_and_tell_since_when(monkeypatch):
     friction = {"coulomb_friction.force": 200.0, "effects_from": 3.0, "effects_until": 6.0}
     observation, values = observe(recorded(friction, duration=12.0)), nominal_values()
     problem = whole(cut(observation, values))
     calibrated = fit(problem, values, nominal_freedom(values, "voltage", 0.0), iterations=3)
     facts = gather([observation], problem.shooting, calibrated)
     begin = [one for effect in candidates([observation]) if effect.site == "force" for one in starts(effect, facts)]
-    alone = screen.screen_spells(problem, calibrated, begin)
+    alone = screen.screen_in_time(problem, calibrated, begin)
     monkeypatch.setattr(screen, "MOST_SPANS", 4)
     monkeypatch.setattr(screen, "LANES", 3)  # so that the starts are simulated in several turns
-    together = screen.screen_spells(problem, calibrated, begin)
+    together = screen.screen_in_time(problem, calibrated, begin)
     always = [{repr(one.start): one.gain for one in found if one.windows is None} for found in (alone, together)]
     assert len(always[0]) == len(begin)
     assert [always[1][start] for start in always[0]] == pytest.approx(list(always[0].values()), rel=1e-8)

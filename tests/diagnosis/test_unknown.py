@@ -8,8 +8,8 @@ from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.model_comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.search.candidates import with_effects
-from eha_core.diagnosis.tournament import Entry, Tournament, rank, scatter
 from eha_core.diagnosis.unknown import recover
 from eha_core.effects import effects
 from eha_core.identification.fit import fit
@@ -42,7 +42,8 @@ def found():
     fits = {NOTHING.with_effects(chosen): fit(calibration.problem, begun, free, iterations=15)}
     entries = rank(calibration.problem, calibration.fitted, fits)
     nominal = Entry(NOTHING, calibration.fitted, 0.0)
-    return recover(calibration.problem, Tournament(nominal, entries, (), scatter(calibration.fitted, entries)), facts)
+    comparison = ModelComparison(nominal, entries, (), residual_variance(calibration.fitted, entries))
+    return recover(calibration.problem, comparison, facts)
 
 
 def test_the_law_stands_beside_the_effect_that_is_there_and_takes_the_place_of_the_one_that_is_not(found):

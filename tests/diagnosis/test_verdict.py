@@ -11,7 +11,7 @@ from test_experiment import explanation
 
 from eha_core.diagnosis import verdict
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.tournament import Entry, Tournament
+from eha_core.diagnosis.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import effects
 
@@ -50,9 +50,12 @@ def _held_out(monkeypatch):
     monkeypatch.setattr(verdict, "has_changed", lambda result, nominal, name: name in nominal)
 
 
-def decide(*entries: Entry, nominal: Entry = NOMINAL, recovery=None, before: float = 0.0, named=(), scatter=1.0):
+def decide(
+    *entries: Entry, nominal: Entry = NOMINAL, recovery=None, before: float = 0.0, named=(), residual_variance=1.0
+):
     calibration = SimpleNamespace(shooting=None, nominal=SimpleNamespace(objective=nominal.fit.objective + before))
-    return verdict.decide(calibration, dict.fromkeys(named, 1.0), Tournament(nominal, entries, (), scatter), recovery)
+    comparison = ModelComparison(nominal, entries, (), residual_variance)
+    return verdict.decide(calibration, dict.fromkeys(named, 1.0), comparison, recovery)
 
 
 def test_the_best_is_named_alone_where_the_next_lies_a_tie_behind():
@@ -75,7 +78,7 @@ def test_what_only_adds_to_the_winner_is_no_rival():
 def test_contenders_lie_within_two_ties_and_at_no_bound():
     best, near, far = entry(500.0, "coulomb_friction"), entry(480.5, "constant_load"), entry(480.0, "end_stop")
     held = replace(entry(499.0, "hardening_spring"), cost=-1.0)
-    found = verdict.contenders(best, Tournament(NOMINAL, (best, held, near, far), (), 1.0))
+    found = verdict.contenders(best, ModelComparison(NOMINAL, (best, held, near, far), (), 1.0))
     assert [one.ids for one in found] == [("coulomb_friction",), ("constant_load",)]
 
 
@@ -94,7 +97,7 @@ def test_an_effect_at_its_bound_is_passed_over():
 @pytest.mark.parametrize(("gain", "found"), [(4.9, "consistent"), (5.0, "missing_physics"), (5.1, "missing_physics")])
 def test_a_name_must_predict_what_was_held_out(gain, found):
     nominal = replace(NOMINAL, fit=fit(COUNT + 3.0 * gain))
-    assert decide(entry(500.0, "coulomb_friction"), nominal=nominal, scatter=3.0).verdict == found
+    assert decide(entry(500.0, "coulomb_friction"), nominal=nominal, residual_variance=3.0).verdict == found
 
 
 def test_what_is_left_coherent_large_and_unexplained_has_no_name():
@@ -175,7 +178,7 @@ def test_a_curve_that_draws_the_named_law_in_its_other_form_leaves_it_its_name(n
 def test_parameters_differ_where_the_data_say_so_together(gain, found):
     calm = replace(NOMINAL, fit=replace(fit(1.2 * COUNT), free=(SimpleNamespace(name="moving_mass"),)))
     threshold = 2.0 * (verdict.ENOUGH + np.log(COUNT))
-    how = {"nominal": calm, "before": threshold + gain, "scatter": 2.0}
+    how = {"nominal": calm, "before": threshold + gain, "residual_variance": 2.0}
     decision = decide(named=("moving_mass",), **how)
     assert decision.verdict == found and decision.winner is calm and decision.judged_winner is None
     assert decide(named=(), **how).verdict == "consistent"

@@ -63,8 +63,8 @@ def run(arguments: argparse.Namespace) -> int:
         return _run_real(arguments)
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
     from eha_core.exam.page import as_html
+    from eha_core.exam.run_exam import Exam, report_lost, sit
     from eha_core.exam.shipped import show_bags
-    from eha_core.exam.sitting import Exam, report_lost, sit
     from eha_core.exam.summary import summarise
     from eha_core.exam.tables import as_json, as_markdown
 

@@ -12,8 +12,8 @@ import numpy as np
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.locate import stated, whereabouts
+from eha_core.diagnosis.model_comparison import ModelComparison
 from eha_core.diagnosis.result import Location
-from eha_core.diagnosis.tournament import Tournament
 from eha_core.identification.fit import Fit
 from eha_core.weak_form.balance import Balance
 
@@ -22,7 +22,7 @@ def attribute(
     calibration: Calibration,
     nominal: Fit,
     facts: Facts,
-    tournament: Tournament,
+    comparison: ModelComparison,
     equations: Sequence[Balance],
     recording: int = 1,
 ) -> tuple[Location, ...]:
@@ -32,7 +32,7 @@ def attribute(
     """
     shooting = calibration.shooting
     unexplained = max(nominal.objective - nominal.count, 1.0)
-    gains = _site_gains(tournament, equations)
+    gains = _site_gains(comparison, equations)
     where, when = whereabouts(shooting, nominal, facts, recording)
     found: list[Location] = []
     for site, gain in sorted(gains.items(), key=lambda item: -item[1])[:4]:
@@ -43,19 +43,19 @@ def attribute(
     return tuple(found)
 
 
-def _site_gains(tournament: Tournament, equations: Sequence[Balance]) -> dict[str, float]:
-    """The refitted gain of each site's best hypothesis, or else the promised one, which never counts as much."""
+def _site_gains(comparison: ModelComparison, equations: Sequence[Balance]) -> dict[str, float]:
+    """The refitted gain of each site's best hypothesis, or else the predicted one, which never counts as much."""
     gains: dict[str, float] = {}
-    nominal = tournament.nominal.fit
+    nominal = comparison.nominal.fit
     refitted: dict[str, float] = {}
-    for entry in tournament.entries:  # an effect may be among them twice: acting always, and for a while
+    for entry in comparison.entries:  # an effect may be among them twice: acting always, and for a while
         if len(entry.ids) == 1:
             gain = nominal.objective - entry.fit.objective
             refitted[entry.ids[0]] = max(gain, refitted.get(entry.ids[0], gain))
     most = max([0.0, *refitted.values()])
-    for promise in tournament.promises:
-        effect = promise.start.effect
-        gain = refitted.get(effect.id, min(promise.gain, 0.5 * most))
+    for score_test in comparison.score_tests:
+        effect = score_test.start.effect
+        gain = refitted.get(effect.id, min(score_test.gain, 0.5 * most))
         if gain > gains.get(effect.site, 0.0):
             gains[effect.site] = gain
     return gains

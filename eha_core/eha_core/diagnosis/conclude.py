@@ -9,6 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise, has_changed, identifiable
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEAST_OF_A_LAW
+from eha_core.diagnosis.discrimination import RATE
 from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, predicted_recordings
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import not_proposed, propose
@@ -18,7 +19,7 @@ from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.locate import stated
-from eha_core.diagnosis.outlook import RATE
+from eha_core.diagnosis.model_comparison import Entry
 from eha_core.diagnosis.result import (
     Alternative,
     ChannelFit,
@@ -33,7 +34,6 @@ from eha_core.diagnosis.result import (
 )
 from eha_core.diagnosis.search.prune import wald
 from eha_core.diagnosis.summary import summary
-from eha_core.diagnosis.tournament import Entry
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import SITES, Effect
 from eha_core.identification.fit import Fit, fit, with_noise
@@ -64,7 +64,7 @@ def conclude(
     decision = _without_another_curve(evidence, unknown)
     final = polish(evidence, decision.winner)
     left = explained(replace(evidence, decision=decision), final)
-    before, calibrated = evidence.calibration.nominal, evidence.tournament.nominal.fit
+    before, calibrated = evidence.calibration.nominal, evidence.comparison.nominal.fit
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
     composition = evidence.observation.composition
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
@@ -91,7 +91,7 @@ def conclude(
         training=of_recording(training, evidence.lead),
         held_out=of_recording(held_out, evidence.lead),
         next_experiment=experiment,
-        rivals=tuple((entry.ids, entry.score) for entry in evidence.tournament.entries),
+        rivals=tuple((entry.ids, entry.score) for entry in evidence.comparison.entries),
         whiteness=dict(zip(evidence.calibration.shooting.names, whiteness(decision.winner.fit.residuals), strict=True)),
         fitted_values=_changed_values(final, composition),
         pictures=_pictures(evidence, before, calibrated, decision.winner.fit),
@@ -255,7 +255,7 @@ def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> De
         return decision
     if unknown is not None and (unknown.site, unknown.function_of) == (curve.effect.site, curve.variable):
         return decision
-    return replace(decision, winner=evidence.tournament.nominal, judged_winner=decision.judged_nominal)
+    return replace(decision, winner=evidence.comparison.nominal, judged_winner=decision.judged_nominal)
 
 
 def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
@@ -276,7 +276,7 @@ def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
     """The test that would tell the rivals apart; of a source that no voltage drives, why there is none."""
     source = evidence.observation.composition.source
     if source.valve != "coil":
-        names = [entry.ids for entry in contenders(decision.winner, evidence.tournament)]
+        names = [entry.ids for entry in contenders(decision.winner, evidence.comparison)]
         return not_proposed(names, evidence.observation.driving, source.id)
     shooting, values = evidence.shown(evidence.calibration.shooting), decision.winner.fit.values
     noises = {
@@ -285,7 +285,7 @@ def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
     }
     limit = values["saturation_current"] * values["coil_resistance"]
     used = float(np.std(shooting.inputs[0])) if evidence.observation.drive == "voltage" else 0.0
-    rivals = [(entry.ids, entry.fit) for entry in contenders(decision.winner, evidence.tournament)]
+    rivals = [(entry.ids, entry.fit) for entry in contenders(decision.winner, evidence.comparison)]
     return propose(rivals, noises, used or 0.1 * limit, limit)
 
 

@@ -47,7 +47,7 @@ def predicted_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recordi
     """
     models = {
         "nominal": evidence.nominal,
-        "recalibrated": _of_another(evidence, evidence.tournament.nominal.fit),
+        "recalibrated": _of_another(evidence, evidence.comparison.nominal.fit),
         "augmented": _of_another(evidence, final),
     }
     found = []

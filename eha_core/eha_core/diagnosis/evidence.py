@@ -9,8 +9,8 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.model_comparison import ModelComparison
 from eha_core.diagnosis.result import Location
-from eha_core.diagnosis.tournament import Tournament
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
 from eha_core.identification.fit import Fit
@@ -37,7 +37,7 @@ class Evidence:
     facts: Facts
     equations: tuple[Balance, ...]
     balances: tuple[tuple[Balance, ...], ...]
-    tournament: Tournament
+    comparison: ModelComparison
     recovery: Recovery | None
     decision: Decision
     location: tuple[Location, ...]

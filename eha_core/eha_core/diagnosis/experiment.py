@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.outlook import STEP, separation
+from eha_core.diagnosis.discrimination import STEP, separation
 from eha_core.diagnosis.result import Experiment
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
@@ -67,7 +67,7 @@ class Trial:
 
 
 @dataclass(frozen=True)
-class Outlook:
+class Discrimination:
     """A trial of some duration [s], and the chi^2 by which it separates the two rivals that are hardest to tell."""
 
     trial: Trial
@@ -101,10 +101,10 @@ def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, 
     names = [ids for ids, _ in rivals[: MOST_RIVALS + 1]]
     fits = [one for _, one in rivals[: MOST_RIVALS + 1]]
     record: tuple[str, ...] = ()
-    best = _best_outlook(fits, noises, level, voltage_limit)
+    best = _best_discrimination(fits, noises, level, voltage_limit)
     if best.separation < TELLING and not set(PRESSURES) <= set(noises):
         record = tuple(name for name in PRESSURES if name not in noises)
-        best = _best_outlook(fits, {**PRESSURES, **noises}, level, voltage_limit)
+        best = _best_discrimination(fits, {**PRESSURES, **noises}, level, voltage_limit)
     how = ", ".join(f"{name} {value:.3g}" if isinstance(value, float) else f"{name} {value}"
                     for name, value in best.trial.parameters.items())  # fmt: skip
     beside = ", with the chambers' pressures recorded too," if record else ""
@@ -128,20 +128,22 @@ def not_proposed(names: Sequence[tuple[str, ...]], driving: Sequence[str], sourc
     return Experiment(statement, tuple(dict.fromkeys(name for ids in names for name in ids)), {})
 
 
-def _best_outlook(rivals: Sequence[Fit], noises: Mapping[str, float], level: float, voltage_limit: float) -> Outlook:
+def _best_discrimination(
+    rivals: Sequence[Fit], noises: Mapping[str, float], level: float, voltage_limit: float
+) -> Discrimination:
     """The shortest trial that separates the rivals, or else the one that separates them most."""
     short = DURATIONS[0]
-    outlooks: list[Outlook] = []
-    while not outlooks and voltage_limit > FAINTEST:
+    discriminations: list[Discrimination] = []
+    while not discriminations and voltage_limit > FAINTEST:
         for trial in trials(level, voltage_limit):
             told = separation(trial.voltage(short), rivals, noises)
             if told is not None:
-                outlooks.append(Outlook(trial, short, told))
+                discriminations.append(Discrimination(trial, short, told))
         voltage_limit = min(GENTLEST * level, voltage_limit)  # where the rig bears none of them, fainter ones
         level = GENTLEST * voltage_limit
-    if not outlooks:
-        return Outlook(Trial("sine", {"amplitude": 0.0, "frequency": 1.0}), short, 0.0)
-    leading = sorted(outlooks, key=lambda one: -one.separation)[:LASTING]
+    if not discriminations:
+        return Discrimination(Trial("sine", {"amplitude": 0.0, "frequency": 1.0}), short, 0.0)
+    leading = sorted(discriminations, key=lambda one: -one.separation)[:LASTING]
     best = leading[0]
     if best.separation < TELLING:
         lasting = [_lasting(one, rivals, noises) for one in leading]
@@ -149,9 +151,9 @@ def _best_outlook(rivals: Sequence[Fit], noises: Mapping[str, float], level: flo
     return best
 
 
-def _lasting(outlook: Outlook, rivals: Sequence[Fit], noises: Mapping[str, float]) -> Outlook:
+def _lasting(discrimination: Discrimination, rivals: Sequence[Fit], noises: Mapping[str, float]) -> Discrimination:
     """The same trial for as long as it takes, if the rig bears that."""
-    per_second = outlook.separation / outlook.duration
+    per_second = discrimination.separation / discrimination.duration
     duration = next((one for one in DURATIONS if one * per_second > TELLING), DURATIONS[-1])
-    told = separation(outlook.trial.voltage(duration), rivals, noises)
-    return outlook if told is None else Outlook(outlook.trial, duration, told)
+    told = separation(discrimination.trial.voltage(duration), rivals, noises)
+    return discrimination if told is None else Discrimination(discrimination.trial, duration, told)

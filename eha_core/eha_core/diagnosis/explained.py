@@ -25,7 +25,7 @@ def explained(evidence: Evidence, final: Fit) -> Explained:
     left = {name: float(np.sqrt(np.mean(one**2))) for name, one in zip(names, final.residuals, strict=True)}
     white = all(coherence(residual) < COHERENT for residual in final.residuals)
     complete = max(left.values()) < LEFT_IN_A_CHANNEL and white
-    before = evidence.tournament.nominal.fit
+    before = evidence.comparison.nominal.fit
     missing = max(before.data - before.count, 0.0)
     # the same model in the final fit's noise: both are compared as shares of what was there
     rest = max(evidence.decision.winner.fit.data - before.count, 0.0)
@@ -38,7 +38,7 @@ def _left_over(evidence: Evidence) -> tuple[Location, ...]:
     test tells."""
     winner = evidence.decision.winner
     where, when = whereabouts(evidence.calibration.shooting, winner.fit, evidence.facts, evidence.lead)
-    sites = evidence.tournament.left_over
+    sites = evidence.comparison.left_over
     total = sum(sites.values())
     ranked = sorted(sites.items(), key=lambda item: -item[1])[:3]
     return tuple(Location(site, gain / total, where, when, "") for site, gain in ranked if gain > 0.05 * total)

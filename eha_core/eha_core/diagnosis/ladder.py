@@ -26,7 +26,7 @@ def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, 
     models, without = _taken_apart(evidence, whole)
     ends = (
         (NOMINAL, evidence.calibration.nominal),
-        (RECALIBRATED, evidence.tournament.nominal.fit),
+        (RECALIBRATED, evidence.comparison.nominal.fit),
         *((member.id, one.fit) for member, one in models),
     )
     scales = _scales(evidence)
@@ -44,7 +44,7 @@ def _taken_apart(
     Every member is taken out of every set on the way: where the parameters can make up for much of a member, the
     curvature at the fit does not tell what it is worth.
     """
-    known = {entry.hypothesis: entry.fit for entry in evidence.tournament.entries}
+    known = {entry.hypothesis: entry.fit for entry in evidence.comparison.entries}
     found: list[tuple[Member, Candidate]] = []
     without: dict[Member, Candidate] = {}
     rest = whole

@@ -28,7 +28,7 @@ PERIODIC = (0.5, 10.0)
 TOLD = 0.9
 """R^2 from which a law of the balances is written out: noise in the states it is over lowers it."""
 
-PROMISING = 0.5
+WORTH_A_FORMULA = 0.5
 """An expression is looked for where a curve explains this share of what the best law before it does."""
 
 FEWEST_WAVES = 1.5
@@ -154,7 +154,7 @@ def weak_law(alternatives: Sequence[Sequence[Balance]]) -> UnknownLaw | None:
         if lacking < VIOLATED:
             continue
         for chosen, energy in zip(sides, energies, strict=True):
-            law = _law(form, chosen, PROMISING * most / energy)
+            law = _law(form, chosen, WORTH_A_FORMULA * most / energy)
             explained = lacking - 1.0 - (energy - 1.0) * (1.0 - law.r_squared) if law else 0.0
             if explained > most + MORE * lacking:
                 best, most = law, explained

@@ -1,8 +1,8 @@
 """Effects that act for a while: what a model with its effects always on, or never, cannot explain.
 
-Windows in a row in which an effect promises far more than it does over the whole record tell where to look. The nominal
-equations are then fitted to the rest of the record alone, which has not bent their parameters, and the catalogue is
-screened once more from there.
+Windows in a row in which an effect is predicted to gain far more than over the whole record tell where to look. The
+nominal equations are then fitted to the rest of the record alone, which has not bent their parameters, and the
+catalogue is screened once more from there.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from eha_core.diagnosis.effect_freedom import effect_freedom, span_freedom
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.refine import OUT_OF_REACH, Found, Progress, cross, settle
-from eha_core.diagnosis.screen import Promise, scaled, screen_spells
+from eha_core.diagnosis.screen import ScoreTest, scaled, screen_in_time
 from eha_core.identification.fit import Fit, fit, fit_in_stages, refit_states
 from eha_core.identification.numbers import Array
 from eha_core.identification.parallel import each
@@ -26,8 +26,8 @@ from eha_core.identification.problem import Problem
 from eha_core.parameters import ACTING
 
 OUTSTANDING = 1.5
-"""An effect is taken to act for a while where that promises this many times what any effect promises that always
-acts. Of effects that do always act, the best windows in a row promise no more than the whole record."""
+"""An effect is taken to act for a while where its predicted gain is this many times that of any effect that always
+acts. Of effects that do always act, the best windows in a row are predicted to gain no more than the whole record."""
 
 SPACINGS = (0.25, 0.0625, 0.015, 0.004)
 ABREAST = 4
@@ -47,27 +47,27 @@ TRIED = 4
 def passing_effects(
     problem: Problem,
     calibrated: Fit,
-    beginnings: Sequence[Start],
-    promises: Sequence[Promise],
+    initial_guesses: Sequence[Start],
+    score_tests: Sequence[ScoreTest],
     least: float,
     progress: Progress = lambda _: None,
 ) -> Found:
-    """Effects with the span in which they act, fitted; none where the promises of the record's windows show no such
-    thing, or less than `least`."""
-    always = max([0.0, *(one.gain for one in promises if one.windows is None)])
-    best = max((one for one in promises if one.windows is not None), key=lambda one: one.gain, default=None)
+    """Effects with the span in which they act, fitted; none where the predicted gains of the record's windows show no
+    such thing, or less than `least`."""
+    always = max([0.0, *(one.gain for one in score_tests if one.windows is None)])
+    best = max((one for one in score_tests if one.windows is not None), key=lambda one: one.gain, default=None)
     if best is None or best.gain < least + 2.0 * log(problem.count()) or best.gain < OUTSTANDING * always:
         return {}
     assert best.windows is not None
     outside = _fitted_outside(problem, calibrated, best.windows)
     progress("looking when an effect acts")
-    chosen = _one_each(screen_spells(problem, outside, beginnings))
-    begun = [_of_fixed_span(problem, outside, promise) for promise in chosen]
+    chosen = _one_each(screen_in_time(problem, outside, initial_guesses))
+    begun = [_of_fixed_span(problem, outside, score_test) for score_test in chosen]
     instants = _located(problem, min(begun, key=lambda one: one.objective))
     found: Found = {}
     reached = calibrated.objective
-    for promise, beginning in zip(chosen, begun, strict=True):
-        effect = promise.start.effect
+    for score_test, beginning in zip(chosen, begun, strict=True):
+        effect = score_test.start.effect
         progress(f"refitting with {effect.id} for a while")
         values = {**beginning.values, **instants.values}
         free = (*outside.free, *effect_freedom(effect, values), *span_freedom(instants.values, instants.bounds))
@@ -99,20 +99,20 @@ def _span_of(problem: Problem, windows: tuple[int, int]) -> tuple[float, float]:
     return float(local[windows[0], 0]), float(local[windows[1] - 1, 1])
 
 
-def _one_each(promises: Sequence[Promise]) -> list[Promise]:
-    best: dict[str, Promise] = {}
-    for one in promises:
+def _one_each(score_tests: Sequence[ScoreTest]) -> list[ScoreTest]:
+    best: dict[str, ScoreTest] = {}
+    for one in score_tests:
         if one.windows is not None:
             best.setdefault(one.start.effect.id, one)
     return list(best.values())[:TRIED]
 
 
-def _of_fixed_span(problem: Problem, base: Fit, promise: Promise) -> Fit:
-    """The promised effect's own parameters fitted, in the span that the windows tell, and nothing else."""
-    assert promise.windows is not None
-    begin, end = _span_of(problem, promise.windows)
-    values = {**base.values, **scaled(promise), "effects_from": begin, "effects_until": end}
-    return fit(problem, values, effect_freedom(promise.start.effect, values), base.states, iterations=8)
+def _of_fixed_span(problem: Problem, base: Fit, score_test: ScoreTest) -> Fit:
+    """The effect's own parameters fitted, in the span that the windows tell, and nothing else."""
+    assert score_test.windows is not None
+    begin, end = _span_of(problem, score_test.windows)
+    values = {**base.values, **scaled(score_test), "effects_from": begin, "effects_until": end}
+    return fit(problem, values, effect_freedom(score_test.start.effect, values), base.states, iterations=8)
 
 
 @dataclass(frozen=True)

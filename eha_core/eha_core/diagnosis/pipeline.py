@@ -14,9 +14,9 @@ from eha_core.diagnosis.criteria import chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
+from eha_core.diagnosis.model_comparison import compete, from_every_start
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.sets import with_sets
-from eha_core.diagnosis.tournament import compete, from_every_start
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
 from eha_core.identification.observation import observe, reaching
@@ -42,7 +42,8 @@ def examine(recordings: Sequence[Recording], model: NominalModel, progress: Prog
     progress(f"once more: {', '.join(sorted(bounds))} went as far as believed of it")
     again = _examine(recordings, replace(model, unknown=model.unknown | bounds), progress)
     gain = evidence.decision.winner.fit.objective - again.decision.winner.fit.objective
-    return again if gain > chance_gain(again.calibration.problem.count(), again.tournament.scatter) else evidence
+    needed = chance_gain(again.calibration.problem.count(), again.comparison.residual_variance)
+    return again if gain > needed else evidence
 
 
 def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:
@@ -61,17 +62,17 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
         for model in (fitted, calibration.nominal)
     )
     able = candidates(observations)
-    tournament = compete(calibration.problem, fitted, able, facts, progress)
-    calibration, tournament = with_sets(calibration, tournament, able, facts, progress)
-    restarted = from_every_start(calibration.problem, tournament, progress)
-    if restarted is not tournament:
-        calibration, tournament = with_sets(calibration, restarted, able, facts, progress)
-    recovery = recover(calibration.problem, tournament, facts, progress)
-    decision = decide(calibration, model.values, tournament, recovery)
+    comparison = compete(calibration.problem, fitted, able, facts, progress)
+    calibration, comparison = with_sets(calibration, comparison, able, facts, progress)
+    restarted = from_every_start(calibration.problem, comparison, progress)
+    if restarted is not comparison:
+        calibration, comparison = with_sets(calibration, restarted, able, facts, progress)
+    recovery = recover(calibration.problem, comparison, facts, progress)
+    decision = decide(calibration, model.values, comparison, recovery)
     equations = least(alternatives)
-    location = attribute(calibration, tournament.nominal.fit, facts, tournament, equations, lead)
+    location = attribute(calibration, comparison.nominal.fit, facts, comparison, equations, lead)
     return Evidence(
-        observations, lead, model.values, calibration, facts, equations, alternatives, tournament, recovery, decision,
+        observations, lead, model.values, calibration, facts, equations, alternatives, comparison, recovery, decision,
         location,
     )  # fmt: skip
 

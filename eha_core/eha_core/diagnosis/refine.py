@@ -1,7 +1,7 @@
-"""How a hypothesis is fitted: from the calibration or afresh, to its end, and from where its rivals stand.
+"""How a hypothesis is fitted: from the calibration or the nominal values, to its end, and from where its rivals stand.
 
-Each of these beginnings is there because a search without it stopped short of its optimum, and what stopped short makes
-a rival look like a discovery.
+Each of these initial guesses is there because a search without it stopped short of its optimum, and what stopped short
+makes a rival look like a discovery.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from eha_core.diagnosis.effect_freedom import effect_freedom
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.hypothesis import Hypothesis
-from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
+from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages
 from eha_core.identification.freedom import LATE, Free
@@ -47,10 +47,10 @@ OUT_OF_REACH = 200.0
 """A hypothesis that cannot come within this of the best objective so far is not fitted to its end."""
 
 WITH_DYNAMICS_AS_GIVEN = 2
-UNBENT_SHARE = 0.25
+DYNAMICS_HELD_SHARE = 0.25
 BENT = 0.02
 """Where the calibration moved the valve's dynamics by this share, a delay or a lag may be what it imitated: so many
-hypotheses are tried from the dynamics as given, too, where they promise this share of what others must."""
+hypotheses are tried from the dynamics as given, too, where their predicted gain is this share of what others need."""
 
 NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 SHARED_NAMES = NOMINAL_NAMES | {row.name for row in ACTING}
@@ -94,53 +94,60 @@ def best_first(found: Found) -> list[Hypothesis]:
 
 @dataclass(frozen=True)
 class Attempt:
-    """A promising effect, the fit that it is to be added to, and whether the search begins at the nominal values."""
+    """An effect that is worth a refit, the fit that it is to be added to, and whether the search begins at the nominal
+    values."""
 
     base: Fit
-    promise: Promise
-    afresh: bool
+    score_test: ScoreTest
+    from_nominal: bool
 
 
-def attempt_on(base: Fit, promise: Promise) -> Attempt:
-    """An attempt from where a fit stands; afresh where that is far off, which has bent its parameters to imitate what
-    is missing."""
-    return Attempt(base, promise, base.data > FAR_OFF * base.count)
+def attempt_on(base: Fit, score_test: ScoreTest) -> Attempt:
+    """An attempt from where a fit stands; from the nominal values where that is far off, which has bent its parameters
+    to imitate what is missing."""
+    return Attempt(base, score_test, base.data > FAR_OFF * base.count)
 
 
 def attempts(
-    problem: Problem, base: Fit, beginnings: Sequence[Start], promises: Sequence[Promise], most: int, least: float
+    problem: Problem,
+    base: Fit,
+    initial_guesses: Sequence[Start],
+    score_tests: Sequence[ScoreTest],
+    most: int,
+    least: float,
 ) -> tuple[Attempt, ...]:
-    """What to try on top of a fit: its own most promising effects, then those of the fit with the dynamics as given.
+    """What to try on top of a fit: the effects of its own largest predicted gains, then those of the fit with the
+    dynamics as given.
 
-    What promises too little is left out; where the dynamics would have to bend back first, a promise says less. A fit
-    that is far off has bent its parameters, and what is missing shows against the nominal ones first.
+    What is predicted to gain too little is left out; where the dynamics would have to bend back first, that says less.
+    A fit that is far off has bent its parameters, and what is missing shows against the nominal ones first.
     """
-    leading = one_each(promises, most)
+    leading = one_each(score_tests, most)
     if base.data > FAR_OFF * base.count:
-        straight = one_each(screen(problem, as_given(problem, base), beginnings), most)
+        straight = one_each(screen(problem, as_given(problem, base), initial_guesses), most)
         leading = one_each((*straight, *leading), 2 * most)
-    chosen = [attempt_on(base, promise) for promise in leading if promise.gain > least]
-    unbent = with_dynamics_as_given(problem, base)
-    if unbent is None:
+    chosen = [attempt_on(base, score_test) for score_test in leading if score_test.gain > least]
+    dynamics_held = with_dynamics_as_given(problem, base)
+    if dynamics_held is None:
         return tuple(chosen)
     # what the dynamics could imitate shows only while they are held
-    held = _set_free(unbent, tuple(one for one in base.free if not is_one_of(one.name, LATE)))
-    again = one_each(screen(problem, held, beginnings), WITH_DYNAMICS_AS_GIVEN)
-    known = {one.promise.start.effect.id for one in chosen if one.afresh}
-    afresh = [Attempt(unbent, one, True) for one in again if one.start.effect.id not in known]
-    return (*chosen, *(one for one in afresh if one.promise.gain > UNBENT_SHARE * least))
+    held = _set_free(dynamics_held, tuple(one for one in base.free if not is_one_of(one.name, LATE)))
+    again = one_each(screen(problem, held, initial_guesses), WITH_DYNAMICS_AS_GIVEN)
+    known = {one.score_test.start.effect.id for one in chosen if one.from_nominal}
+    from_nominal = [Attempt(dynamics_held, one, True) for one in again if one.start.effect.id not in known]
+    return (*chosen, *(one for one in from_nominal if one.score_test.gain > DYNAMICS_HELD_SHARE * least))
 
 
-def try_effect(problem: Problem, attempt: Attempt, best: float) -> Fit:
-    """Fit the promised effect, giving up when it cannot come near the `best` objective so far."""
-    base, promise = attempt.base, attempt.promise
-    effect = promise.start.effect
-    if attempt.afresh:
+def refit_with(problem: Problem, attempt: Attempt, best: float) -> Fit:
+    """Fit the effect, giving up when it cannot come near the `best` objective so far."""
+    base, score_test = attempt.base, attempt.score_test
+    effect = score_test.start.effect
+    if attempt.from_nominal:
         untouched = {one.name: one.reference for one in base.free if is_one_of(one.name, NOMINAL_NAMES)}
-        values = {**base.values, **untouched, **promise.start.values}
+        values = {**base.values, **untouched, **score_test.start.values}
         free = _with_effect(base.free, effect, values)
         return fit_in_stages(problem, values, free, give_up_above=best + OUT_OF_REACH)
-    values = {**base.values, **scaled(promise)}
+    values = {**base.values, **scaled(score_test)}
     free = _with_effect(base.free, effect, values)
     return fit(problem, values, free, base.states, iterations=25, give_up_above=best + OUT_OF_REACH)
 
@@ -170,9 +177,9 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
             again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
-        unbent = with_dynamics_as_given(problem, result)
-        if unbent is not None:
-            again = fit(problem, unbent.values, result.free, unbent.states, iterations=10)
+        dynamics_held = with_dynamics_as_given(problem, result)
+        if dynamics_held is not None:
+            again = fit(problem, dynamics_held.values, result.free, dynamics_held.states, iterations=10)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
         result = _other_instants(problem, exact, result)
@@ -263,7 +270,7 @@ def _far_instant(problem: Problem, exact: Problem, result: Fit, one: Free) -> Fi
     return found if found.objective < result.objective else result
 
 
-def back_fit(problem: Problem, calibrated: Fit, others: Sequence[Fit]) -> Fit:
+def refit_nominal(problem: Problem, calibrated: Fit, others: Sequence[Fit]) -> Fit:
     """The nominal model fitted once more from the best hypothesis' nominal values.
 
     A nominal fit that stopped in a flat valley would make any hypothesis that left it look like a discovery.

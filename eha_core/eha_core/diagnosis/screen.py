@@ -1,7 +1,7 @@
 """Stage 4a, screen: how much of what the calibrated model leaves unexplained could each hypothesis explain?
 
 An effect switched on at a start changes the simulated channels by d. Whatever of d the windows' states and the nominal
-parameters could imitate is projected out; the rest, d', promises a gain in chi^2 of (d'.r)^2 / (d'.d').
+parameters could imitate is projected out; the rest, d', predicts a gain in chi^2 of (d'.r)^2 / (d'.d').
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ answer has a number for each pair. A fit of the instants follows, so nothing han
 
 
 @dataclass(frozen=True)
-class Promise:
-    """A start, the gain in chi^2 that it promises, and the factor on its size at which it promises that; `windows`, the
+class ScoreTest:
+    """A start, the gain in chi^2 predicted of it, and the factor on its size at which that is predicted; `windows`, the
     first and the one after the last, where it acts in these alone. `others`: the factors in further recordings, where
     its size differs between recordings."""
 
@@ -39,36 +39,37 @@ class Promise:
     others: tuple[float, ...] = ()
 
 
-def screen(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[Promise, ...]:
-    """The promise of every start that acts all the time, the largest first."""
-    return tuple(one for one in screen_spells(problem, calibrated, starts) if one.windows is None)
+def screen(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[ScoreTest, ...]:
+    """The score test of every start that acts all the time, the largest first."""
+    return tuple(one for one in screen_in_time(problem, calibrated, starts) if one.windows is None)
 
 
-def screen_spells(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[Promise, ...]:
-    """The promise of every start, the largest first: acting all the time, and in the windows where it promises most."""
+def screen_in_time(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[ScoreTest, ...]:
+    """The score test of every start, the largest gain first: acting all the time, and in the windows where it gains
+    most."""
     linear = linearise(problem, calibrated.values, calibrated.free, calibrated.q, calibrated.states)
     normal, gradient = normal_equations(problem, calibrated.free, calibrated.q, calibrated.states, linear)
     system = normal.eliminate(1e-9)
     towards = system.solve(gradient)
     spans = _spans(problem.shooting.recordings)
-    found: list[Promise] = []
+    found: list[ScoreTest] = []
     turns = -(-len(starts) // (threads() * (LANES - 1)))  # so that a long record's changes need not all be kept
     room = -(-len(starts) // max(1, turns)) or 1
     for first in range(0, len(starts), room):
         some = starts[first : first + room]
-        found += _promises(problem, calibrated, linear, some, spans, (system, towards))
+        found += _score_tests(problem, calibrated, linear, some, spans, (system, towards))
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
-def _promises(
+def _score_tests(
     problem: Problem,
     calibrated: Fit,
     linear: Linearised,
     starts: Sequence[Start],
     spans: Integers,
     solution: tuple[Eliminated, Array],
-) -> list[Promise]:
-    """The promises of a few starts. `solution`: the calibrated model's equations, and what they are solved by."""
+) -> list[ScoreTest]:
+    """The score tests of a few starts. `solution`: the calibrated model's equations, and what they are solved by."""
     (system, towards), shooting = solution, problem.shooting
     at = calibrated.values, calibrated.states
     columns, shifts = changes(problem, at, [({**at[0], **start.values}, at[1]) for start in starts])
@@ -77,17 +78,17 @@ def _promises(
     found = _by_span(problem, calibrated, linear, columns, shifts, spans)
     recordings = [range(*np.searchsorted(spans, (one.start, one.stop))) for one in shooting.recordings]
 
-    def promises(place: int) -> list[Promise]:
+    def score_tests(place: int) -> list[ScoreTest]:
         start = starts[place]
         if ran_away[place]:
-            return [Promise(start, 0.0, 0.0)]
+            return [ScoreTest(start, 0.0, 0.0)]
         energy, overlap = found.energy[:, place], found.overlap(place)
         along, imitated = found.along[:, place] - towards @ overlap, overlap.T @ system.solve(overlap)
         if len(recordings) > 1 and any(name in shooting.per_recording for name in start.values):
             return [_in_each_recording(start, energy, along, imitated, recordings)]
-        return _best_spells(start, spans, energy, along, imitated, recordings)
+        return _best_intervals(start, spans, energy, along, imitated, recordings)
 
-    return [one for several in each(promises, range(len(starts))) for one in several]
+    return [one for several in each(score_tests, range(len(starts))) for one in several]
 
 
 def _spans(recordings: Sequence[range]) -> Integers:
@@ -166,8 +167,8 @@ def _by_span(
 
 def _in_each_recording(
     start: Start, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
-) -> Promise:
-    """The promise of a size of its own in each recording: what each promises alone, added up."""
+) -> ScoreTest:
+    """The score test with a size of its own in each recording: the gains of each alone, added up."""
     gains, factors = [], []
     for windows in recordings:
         own = slice(windows.start, windows.stop)
@@ -175,13 +176,13 @@ def _in_each_recording(
         usable = left > 1e-9 * float(energy[own].sum()) > 0.0
         factors.append(float(along[own].sum()) / left if usable else 0.0)
         gains.append(factors[-1] ** 2 * left if usable else 0.0)
-    return Promise(start, sum(gains), factors[0], None, tuple(factors[1:]))
+    return ScoreTest(start, sum(gains), factors[0], None, tuple(factors[1:]))
 
 
-def _best_spells(
+def _best_intervals(
     start: Start, spans: Integers, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
-) -> list[Promise]:
-    """The promise over all spans, and the best over some of them in a row, of one recording.
+) -> list[ScoreTest]:
+    """The score test over all spans, and the best over some of them in a row, of one recording.
 
     `along` is free of what can be imitated; `imitated` (spans, spans) is what can be of each pair's energy.
     """
@@ -201,21 +202,21 @@ def _best_spells(
     gain = np.where(usable, product * product / divisor, 0.0)
     factor = np.where(usable, product / divisor, 0.0)
     always = count - 1  # of the ranges that begin at the first span, the one that ends with the last
-    promises = [Promise(start, float(gain[always]), float(factor[always]))]
+    score_tests = [ScoreTest(start, float(gain[always]), float(factor[always]))]
     if count > 1:
         gain = np.where(factor < 0.0, gain if _reversible(start) else 0.0, gain)
         gain[always] = -1.0
         gain[begins[first] != begins[last]] = -1.0
         best = int(np.argmax(gain))
-        spell = (int(spans[first[best]]), int(spans[stop[best]]))
-        promises.append(Promise(start, float(gain[best]), float(factor[best]), spell))
-    return promises
+        interval = (int(spans[first[best]]), int(spans[stop[best]]))
+        score_tests.append(ScoreTest(start, float(gain[best]), float(factor[best]), interval))
+    return score_tests
 
 
-def one_each(promises: Sequence[Promise], most: int) -> tuple[Promise, ...]:
-    """The best promise of each effect, `most` of them at most. A size cannot be negative where its bounds say so."""
-    best: dict[str, Promise] = {}
-    for one in promises:
+def one_each(score_tests: Sequence[ScoreTest], most: int) -> tuple[ScoreTest, ...]:
+    """The best score test of each effect, `most` of them at most. A size cannot be negative where its bounds say so."""
+    best: dict[str, ScoreTest] = {}
+    for one in score_tests:
         if one.factor < 0.0 and not _reversible(one.start):
             continue
         best.setdefault(one.start.effect.id, one)
@@ -227,12 +228,13 @@ def _reversible(start: Start) -> bool:
     return all(row.lower < row.nominal for row in switches)
 
 
-def scaled(promise: Promise) -> dict[str, float]:
-    """The start's values with the sizes that switch the effect scaled as promised, within a decade and the bounds."""
-    values = sized(promise.start, _within_a_decade(promise.factor))
-    for number, factor in enumerate(promise.others, 2):
-        own = sized(promise.start, _within_a_decade(factor))
-        values |= {named(name, number): value for name, value in own.items() if value != promise.start.values[name]}
+def scaled(score_test: ScoreTest) -> dict[str, float]:
+    """The start's values with the sizes that switch the effect scaled by the predicted factor, within a decade and the
+    bounds."""
+    values = sized(score_test.start, _within_a_decade(score_test.factor))
+    for number, factor in enumerate(score_test.others, 2):
+        own = sized(score_test.start, _within_a_decade(factor))
+        values |= {named(name, number): value for name, value in own.items() if value != score_test.start.values[name]}
     return values
 
 

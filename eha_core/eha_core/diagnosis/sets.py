@@ -13,12 +13,19 @@ from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.refine import Found, Progress, back_fit, cross, settle
+from eha_core.diagnosis.model_comparison import (
+    Entry,
+    ModelComparison,
+    freedom_used,
+    parameter_cost,
+    rank,
+    residual_variance,
+)
+from eha_core.diagnosis.refine import Found, Progress, cross, refit_nominal, settle
 from eha_core.diagnosis.search.candidates import Candidate, Search, in_noise_of
 from eha_core.diagnosis.search.exchange import rivals_for
 from eha_core.diagnosis.search.proposals import at_the_fit, in_another_form
 from eha_core.diagnosis.search.search import search_sets
-from eha_core.diagnosis.tournament import Entry, Tournament, freedom_used, parameter_cost, rank, scatter
 from eha_core.effects import Effect
 
 CLOSE = 100.0
@@ -27,16 +34,16 @@ CLOSE = 100.0
 
 def with_sets(
     calibration: Calibration,
-    tournament: Tournament,
+    comparison: ModelComparison,
     able: Sequence[Effect],
     facts: Facts,
     progress: Progress = lambda _: None,
-) -> tuple[Calibration, Tournament]:
+) -> tuple[Calibration, ModelComparison]:
     """The comparison with the best set in it and whatever comes near that, and the calibration in the noise found."""
-    singles = {entry.hypothesis: entry.fit for entry in tournament.entries}
-    found: Found = {**singles, NOTHING: tournament.nominal.fit}
+    singles = {entry.hypothesis: entry.fit for entry in comparison.entries}
+    found: Found = {**singles, NOTHING: comparison.nominal.fit}
     search = Search(calibration.problem, able, facts, progress, found, calibration.shorter)
-    best = search_sets(search, search.again(Candidate(NOTHING, tournament.nominal.fit)))
+    best = search_sets(search, search.again(Candidate(NOTHING, comparison.nominal.fit)))
     calibration = _in_noise_of(search, calibration)
     found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
     if len(best.hypothesis.members) > 1:
@@ -56,11 +63,11 @@ def with_sets(
     elif best.times_noise > FAR_FROM_NOISE and not best.hypothesis.limited:
         # no set came near either: the single effects are worth their last digits after all
         found = cross(search.problem, settle(search.problem, found, progress))
-    nominal = back_fit(search.problem, search.found[NOTHING], list(found.values()))
+    nominal = refit_nominal(search.problem, search.found[NOTHING], list(found.values()))
     entries = rank(search.problem, nominal, found)
     left_over = {} if best.hypothesis.limited else _left_over(search, best)
-    nothing, spread = Entry(NOTHING, nominal, 0.0), scatter(nominal, entries)
-    return calibration, Tournament(nothing, entries, tournament.promises, spread, left_over)
+    nothing, spread = Entry(NOTHING, nominal, 0.0), residual_variance(nominal, entries)
+    return calibration, ModelComparison(nothing, entries, comparison.score_tests, spread, left_over)
 
 
 def _left_over(search: Search, best: Candidate) -> dict[str, float]:
@@ -73,7 +80,7 @@ def _left_over(search: Search, best: Candidate) -> dict[str, float]:
 
 
 def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
-    """The best set when everything that promises most in a member's place was fitted to where it can be told."""
+    """The best set when what has the largest predicted gain in a member's place was fitted to where it can be told."""
     for member in best.hypothesis.members:
         for guess in rivals_for(search, best, member):
             if guess.hypothesis not in search.found:

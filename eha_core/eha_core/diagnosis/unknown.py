@@ -13,9 +13,9 @@ from eha_core.curve import KNOTS
 from eha_core.diagnosis.criteria import CONVINCING, UNFITTED, chance_gain
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypothesis import Hypothesis
+from eha_core.diagnosis.model_comparison import Entry, ModelComparison, parameter_cost
 from eha_core.diagnosis.search.candidates import without_effect
 from eha_core.diagnosis.search.prune import REFITTED
-from eha_core.diagnosis.tournament import Entry, Tournament, parameter_cost
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.freedom import Free
@@ -27,7 +27,7 @@ LEFT_OVER = 0.05
 """A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""
 
 FULLY_FITTED = 2
-"""How many of the curves that promise most are fitted in full."""
+"""How many of the curves with the largest predicted gain are fitted in full."""
 
 VARIABLES = {
     "recovered_force": ("position", "velocity", "pressure difference", "time"),
@@ -57,26 +57,26 @@ class Recovery:
 
 
 def recover(
-    problem: Problem, tournament: Tournament, facts: Facts, progress: Callable[[str], None] = lambda _: None
+    problem: Problem, comparison: ModelComparison, facts: Facts, progress: Callable[[str], None] = lambda _: None
 ) -> Recovery | None:
     """Fit curves where the catalogue's best leaves something over: alone, and beside the effects that are named.
 
     None where nothing is left over, or no curve helps.
     """
-    nominal = tournament.nominal.fit
-    best = tournament.entries[0] if tournament.entries else tournament.nominal
+    nominal = comparison.nominal.fit
+    best = comparison.entries[0] if comparison.entries else comparison.nominal
     if best.fit.data / best.fit.count < 1.0 + LEFT_OVER or nominal.data / nominal.count < 1.0 + LEFT_OVER:
         return None
     progress("recovering an unknown law as a curve")
-    bases = [tournament.nominal, *([best] if best.effects and best.span is None else [])]
-    found = [_beside(problem, base, tournament, facts, progress) for base in bases]
+    bases = [comparison.nominal, *([best] if best.effects and best.span is None else [])]
+    found = [_beside(problem, base, comparison, facts, progress) for base in bases]
     # beside a curve that is not the law either, a name only makes up for what the curve leaves
     stands = [one for one in found if one is not None and not (one.named and one.fit.data > UNFITTED * one.fit.count)]
     return max(stands, key=lambda one: one.score, default=None)
 
 
 def _beside(
-    problem: Problem, base: Entry, tournament: Tournament, facts: Facts, progress: Callable[[str], None]
+    problem: Problem, base: Entry, comparison: ModelComparison, facts: Facts, progress: Callable[[str], None]
 ) -> Recovery | None:
     """The best curve beside the effects of an entry, of which those go that the curve makes idle."""
     fits = []
@@ -87,8 +87,8 @@ def _beside(
         return None
     hypothesis, effect, variable, result = min(fits, key=lambda one: one[3].objective)
     hypothesis, result = _without_idle(problem, hypothesis, result)
-    nominal = tournament.nominal.fit
-    variance = max(1.0, min(result.data / result.count, tournament.scatter))
+    nominal = comparison.nominal.fit
+    variance = max(1.0, min(result.data / result.count, comparison.residual_variance))
     cost = (len(result.free) - len(nominal.free)) * parameter_cost(problem.count(), variance)
     share = (base.fit.data - result.data) / max(base.fit.data - base.fit.count, 1.0)
     return Recovery(
@@ -100,14 +100,14 @@ def _beside(
 def _fitted_curves(
     problem: Problem, base: Entry, facts: Facts, progress: Callable[[str], None]
 ) -> Iterator[tuple[Effect, str, Fit]]:
-    """The curves that promise most beside the effects of an entry, fitted."""
-    promises = []
+    """The curves with the largest predicted gain beside the effects of an entry, fitted."""
+    score_tests = []
     for effect, variable, values in _curves(base.fit.values, facts, problem.shooting):
         free = (*base.fit.free, *_knots_free(effect, values, facts))
-        promises.append((_promised(problem, base.fit, values, free), effect, variable, values, free))
-    promises.sort(key=lambda one: -one[0])
+        score_tests.append((_predicted_gain(problem, base.fit, values, free), effect, variable, values, free))
+    score_tests.sort(key=lambda one: -one[0])
     beside = f" beside {' and '.join(base.ids)}" if base.ids else ""
-    for gain, effect, variable, values, free in promises[:FULLY_FITTED]:
+    for gain, effect, variable, values, free in score_tests[:FULLY_FITTED]:
         if gain > 0.0:
             progress(f"fitting {effect.id} over {variable}{beside}")
             yield effect, variable, fit(problem, values, free, base.fit.states, iterations=10)
@@ -173,8 +173,8 @@ def _knots_free(effect: Effect, values: Mapping[str, float], facts: Facts) -> tu
     )
 
 
-def _promised(problem: Problem, nominal: Fit, values: Mapping[str, float], free: tuple[Free, ...]) -> float:
-    """The gain in chi^2 that the linearised problem with the curve promises."""
+def _predicted_gain(problem: Problem, nominal: Fit, values: Mapping[str, float], free: tuple[Free, ...]) -> float:
+    """The gain in chi^2 that the linearised problem predicts of the curve."""
     q = np.array([one.coordinate(values[one.name]) for one in free])
     linear = linearise(problem, values, free, q, nominal.states)
     normal, gradient = normal_equations(problem, free, q, nominal.states, linear)

@@ -11,8 +11,8 @@ import numpy as np
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import Calibration, has_changed
 from eha_core.diagnosis.criteria import COHERENT, LEAST_OF_A_LAW, UNFITTED
+from eha_core.diagnosis.model_comparison import ENOUGH, TIE, Entry, ModelComparison, bounded, parameter_cost
 from eha_core.diagnosis.refine import FAR_OFF
-from eha_core.diagnosis.tournament import ENOUGH, TIE, Entry, Tournament, bounded, parameter_cost
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
@@ -60,34 +60,34 @@ refused."""
 
 
 def decide(
-    calibration: Calibration, nominal: Mapping[str, float], tournament: Tournament, recovery: Recovery | None
+    calibration: Calibration, nominal: Mapping[str, float], comparison: ModelComparison, recovery: Recovery | None
 ) -> Decision:
-    """Weigh the tournament's entries, the best first, and the recovered curve against them."""
-    if recovery is not None and _beats_the_catalogue(recovery, tournament):
-        return _unnamed(calibration, tournament, recovery)
-    standing = [entry for entry in tournament.entries if entry.score > ENOUGH and not bounded(entry)]
-    winner = standing[0] if standing else tournament.nominal
-    if _leaves_physics_over(winner.fit, tournament.nominal.fit):
-        return _unnamed(calibration, tournament, recovery)
+    """Weigh the comparison's entries, the best first, and the recovered curve against them."""
+    if recovery is not None and _beats_the_catalogue(recovery, comparison):
+        return _unnamed(calibration, comparison, recovery)
+    standing = [entry for entry in comparison.entries if entry.score > ENOUGH and not bounded(entry)]
+    winner = standing[0] if standing else comparison.nominal
+    if _leaves_physics_over(winner.fit, comparison.nominal.fit):
+        return _unnamed(calibration, comparison, recovery)
     if not standing:
-        return _without_physics(calibration, nominal, tournament)
+        return _without_physics(calibration, nominal, comparison)
     instants = instants_of(winner.fit)
-    judged_nominal = judge(calibration.shooting, tournament.nominal.fit, instants)
+    judged_nominal = judge(calibration.shooting, comparison.nominal.fit, instants)
     judged_winner = judge(calibration.shooting, winner.fit, instants)
-    gain = (judged_nominal.chi_square - judged_winner.chi_square) / tournament.scatter
+    gain = (judged_nominal.chi_square - judged_winner.chi_square) / comparison.residual_variance
     if gain < HELD_OUT:
-        return _without_physics(calibration, nominal, tournament)
+        return _without_physics(calibration, nominal, comparison)
     rivals = tuple((entry, winner.score - entry.score) for entry in standing[1:] if _is_rival(winner, entry))
     verdict = "ambiguous" if rivals else "missing_physics"
     return Decision(verdict, winner, rivals, judged_nominal, judged_winner)
 
 
-def _unnamed(calibration: Calibration, tournament: Tournament, recovery: Recovery | None) -> Decision:
+def _unnamed(calibration: Calibration, comparison: ModelComparison, recovery: Recovery | None) -> Decision:
     """Something is missing that no name fits: with the recovered curve, if one explains anything."""
-    entry = tournament.nominal
+    entry = comparison.nominal
     if recovery is not None and recovery.score > ENOUGH:
         entry = Entry(recovery.hypothesis, recovery.fit, recovery.score)
-    judged = judge(calibration.shooting, tournament.nominal.fit)
+    judged = judge(calibration.shooting, comparison.nominal.fit)
     after = judge(calibration.shooting, entry.fit) if entry.effects else judged
     return Decision("unknown_physics", entry, (), judged, after)
 
@@ -109,16 +109,16 @@ def coherence(residual: Array) -> float:
     return float(np.median(np.abs(means)) / NORMAL_MEDIAN * np.sqrt(SMOOTHED))
 
 
-def _beats_the_catalogue(recovery: Recovery, tournament: Tournament) -> bool:
+def _beats_the_catalogue(recovery: Recovery, comparison: ModelComparison) -> bool:
     """Whether the curve, with what is named beside it, explains so much more than the best named effects alone that its
     many knots are paid for.
 
     A curve that stays far above the noise is not the law either, but bends to whatever is there; then names that
     explain nearly all stand. So do they where the curve only draws the form of the law that they name.
     """
-    best = tournament.entries[0] if tournament.entries else tournament.nominal
+    best = comparison.entries[0] if comparison.entries else comparison.nominal
     variance = max(1.0, recovery.fit.data / recovery.fit.count)
-    nominal, curve = tournament.nominal.fit, recovery.fit
+    nominal, curve = comparison.nominal.fit, recovery.fit
     left = (best.fit.data - best.fit.count) / max(nominal.data - nominal.count, 1.0)
     if left < NEARLY_ALL and best.effects and curve.data > FAR_OFF * curve.count:
         return False
@@ -136,9 +136,9 @@ def _parameters(effects: Sequence[Effect]) -> int:
     return sum(len(effect.parameters) for effect in effects)
 
 
-def contenders(winner: Entry, tournament: Tournament) -> tuple[Entry, ...]:
+def contenders(winner: Entry, comparison: ModelComparison) -> tuple[Entry, ...]:
     """The winner and whatever comes within CONTENDING of it: what a further test has to tell apart."""
-    near = (entry for entry in tournament.entries if not bounded(entry) and _is_rival(winner, entry, CONTENDING))
+    near = (entry for entry in comparison.entries if not bounded(entry) and _is_rival(winner, entry, CONTENDING))
     return winner, *near
 
 
@@ -147,13 +147,13 @@ def _is_rival(winner: Entry, entry: Entry, within: float = TIE) -> bool:
     return winner.score - entry.score < within and not set(winner.ids) <= set(entry.ids)
 
 
-def _without_physics(calibration: Calibration, nominal: Mapping[str, float], tournament: Tournament) -> Decision:
+def _without_physics(calibration: Calibration, nominal: Mapping[str, float], comparison: ModelComparison) -> Decision:
     """Nothing is named: say whether parameters differ. A set of values differs if the data say so, taken together."""
-    result = tournament.nominal.fit
+    result = comparison.nominal.fit
     gain = calibration.nominal.objective - result.objective
     changed = [one.name for one in result.free if has_changed(result, nominal, one.name)]
-    different = gain / tournament.scatter > ENOUGH + len(changed) * log(max(result.count, 2)) and changed
-    return Decision("parameters" if different else "consistent", tournament.nominal, (), None, None)
+    different = gain / comparison.residual_variance > ENOUGH + len(changed) * log(max(result.count, 2)) and changed
+    return Decision("parameters" if different else "consistent", comparison.nominal, (), None, None)
 
 
 def whiteness(residuals: Sequence[Array], lags: int = 20) -> list[float]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from eha_core.errors import EhaError
-from eha_core.exam.sitting import Progress, run_tool
+from eha_core.exam.run_exam import Progress, run_tool
 
 BAGS: dict[str, tuple[str, frozenset[str]]] = {
     "paper_leakage_levels.mcap": ("consistent", frozenset()),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from eha_core.diagnosis.model_comparison import TIE
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.diagnosis.tournament import TIE
 from eha_core.effects import effects
 from eha_core.quantities import RAISED
 from eha_core.report.finding import counted

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eha_core.diagnosis.model_comparison import TIE
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.diagnosis.tournament import TIE
 from eha_core.quantities import quantity, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged, left_in_words, left_over, told_channel

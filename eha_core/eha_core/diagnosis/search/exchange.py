@@ -35,7 +35,7 @@ def weakest_first(candidate: Candidate) -> list[Member]:
 
 
 def rivals_for(search: Search, best: Candidate, member: Member) -> list[Guess]:
-    """What promises most in a member's place when the others are fitted without it."""
+    """What has the largest predicted gain in a member's place when the others are fitted without it."""
     rest = refit_without(search, best, member)
     guesses = at_the_fit(search, rest, FOR_ONE_PLACE + 1)
     return [one for one in guesses if one.hypothesis != best.hypothesis][:FOR_ONE_PLACE]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, neutral
 from eha_core.diagnosis.refine import as_given
-from eha_core.diagnosis.screen import Promise, one_each, screen, sized
+from eha_core.diagnosis.screen import ScoreTest, one_each, screen, sized
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects
 from eha_core.diagnosis.search.prune import wald
 from eha_core.effects import Effect
@@ -30,16 +30,16 @@ def joint_start(search: Search, nominal: Candidate) -> Candidate:
     at = as_given(search.problem, nominal.fit)
     able = _one_form_each([effect for effect in search.able if _is_smooth(effect)])
     begin = [start for effect in able for start in starts(effect, search.facts)]
-    promises = one_each(screen(search.problem, at, begin), len(able))
-    effects = [promise.start.effect for promise in promises]
+    score_tests = one_each(screen(search.problem, at, begin), len(able))
+    effects = [score_test.start.effect for score_test in score_tests]
     best = nominal
     for share in SHARES:
         search.progress(f"fitting the whole catalogue at once from {share:g} of its usual sizes")
         values = {**at.values}
-        for promise in promises:
-            values |= sized(promise.start, share if promise.factor >= 0.0 else -share)
+        for score_test in score_tests:
+            values |= sized(score_test.start, share if score_test.factor >= 0.0 else -share)
         free = with_effects(at.free, effects, values)
-        switches = _sizes(promises, values)
+        switches = _sizes(score_tests, values)
         free = tuple(switches.get(one.name, one) for one in free)
         soon = [one for one in free if not is_one_of(one.name, LATE)]
         early = fit(search.problem, values, soon, at.states, iterations=12)
@@ -71,12 +71,13 @@ def _one_form_each(effects: list[Effect]) -> list[Effect]:
     return list(chosen.values())
 
 
-def _sizes(promises: tuple[Promise, ...], values: dict[str, float]) -> dict[str, Free]:
+def _sizes(score_tests: tuple[ScoreTest, ...], values: dict[str, float]) -> dict[str, Free]:
     """The sizes, free in units of the start's: so one can vanish and come back."""
     found = {}
-    for promise in promises:
-        for name, row in zip(promise.start.effect.parameter_names(), promise.start.effect.parameters, strict=True):
+    for score_test in score_tests:
+        effect = score_test.start.effect
+        for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
             if row.switches:
-                scale = abs(promise.start.values[name] - row.nominal) or 1.0
+                scale = abs(score_test.start.values[name] - row.nominal) or 1.0
                 found[name] = Free(name, values[name], False, scale, 30.0, row.lower, row.upper)
     return found

@@ -13,7 +13,7 @@ from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypotheses import Start, starts
 from eha_core.diagnosis.hypothesis import Member
 from eha_core.diagnosis.refine import _set_free, as_given, with_dynamics_as_given
-from eha_core.diagnosis.screen import Promise, one_each, scaled, screen
+from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects, without_effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.freedom import LATE
@@ -24,7 +24,7 @@ AT_NOMINAL_VALUES = 6
 WITH_DYNAMICS_HELD = 2
 """How many effects are taken from each score test."""
 
-LEAST_PROMISING = 0.02
+LEAST_PREDICTED = 0.02
 """Where the fit is not far from the noise, so that predictions hold, an effect that predicts less than this share of
 what the first predicts is left for a later round: it is asked again once the first has been added (assumed)."""
 
@@ -48,15 +48,15 @@ def proposals(search: Search, base: Candidate, least: float) -> list[Guess]:
 
 def at_the_fit(search: Search, base: Candidate, most: int) -> list[Guess]:
     """Guesses of the base's set with one effect more, as a score test at its fit ranks them."""
-    promises = one_each(screen(search.problem, base.fit, _begin(search, base)), most)
-    return [_guess(base, base.fit, promise) for promise in promises]
+    score_tests = one_each(screen(search.problem, base.fit, _begin(search, base)), most)
+    return [_guess(base, base.fit, score_test) for score_test in score_tests]
 
 
-def _leading(promises: Sequence[Promise], base: Candidate) -> Sequence[Promise]:
-    """Those that promise enough beside the first."""
+def _leading(score_tests: Sequence[ScoreTest], base: Candidate) -> Sequence[ScoreTest]:
+    """Those whose predicted gain is worth a refit beside the first's."""
     if base.times_noise > FAR_FROM_NOISE:
-        return promises
-    return [one for one in promises if one.gain > LEAST_PROMISING * promises[0].gain]
+        return score_tests
+    return [one for one in score_tests if one.gain > LEAST_PREDICTED * score_tests[0].gain]
 
 
 def _begin(search: Search, base: Candidate) -> list[Start]:
@@ -65,16 +65,16 @@ def _begin(search: Search, base: Candidate) -> list[Start]:
 
 
 def _at_the_fit(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
-    for promise in _leading(one_each(screen(search.problem, base.fit, begin), AT_THE_FIT), base):
-        yield _guess(base, base.fit, promise)
+    for score_test in _leading(one_each(screen(search.problem, base.fit, begin), AT_THE_FIT), base):
+        yield _guess(base, base.fit, score_test)
 
 
 def _at_nominal_values(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
     if base.fit.data <= FAR_FROM_NOISE * base.fit.count:
         return
     nominal = as_given(search.problem, base.fit)
-    for promise in one_each(screen(search.problem, nominal, begin), AT_NOMINAL_VALUES):
-        yield _guess(base, nominal, promise, in_stages=True)
+    for score_test in one_each(screen(search.problem, nominal, begin), AT_NOMINAL_VALUES):
+        yield _guess(base, nominal, score_test, in_stages=True)
 
 
 def _with_dynamics_held(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
@@ -83,16 +83,16 @@ def _with_dynamics_held(search: Search, base: Candidate, begin: list[Start]) -> 
         return
     # what the dynamics could imitate shows only while they are held
     at = _set_free(held, tuple(one for one in base.fit.free if not is_one_of(one.name, LATE)))
-    for promise in one_each(screen(search.problem, at, begin), WITH_DYNAMICS_HELD):
-        guess = _guess(base, held, promise, in_stages=True)
+    for score_test in one_each(screen(search.problem, at, begin), WITH_DYNAMICS_HELD):
+        guess = _guess(base, held, score_test, in_stages=True)
         yield Guess(guess.hypothesis, guess.values, guess.free, guess.states, guess.predicted / HELD_SHARE, True)
 
 
-def _guess(base: Candidate, at: Fit, promise: Promise, in_stages: bool = False) -> Guess:
-    effect = promise.start.effect
-    values: Mapping[str, float] = {**at.values, **scaled(promise)}
+def _guess(base: Candidate, at: Fit, score_test: ScoreTest, in_stages: bool = False) -> Guess:
+    effect = score_test.start.effect
+    values: Mapping[str, float] = {**at.values, **scaled(score_test)}
     free = with_effects(base.fit.free, [effect], values)
-    return Guess(base.hypothesis.with_effects([effect]), values, free, at.states, promise.gain, in_stages)
+    return Guess(base.hypothesis.with_effects([effect]), values, free, at.states, score_test.gain, in_stages)
 
 
 def in_another_form(search: Search, base: Candidate) -> Iterator[Guess]:

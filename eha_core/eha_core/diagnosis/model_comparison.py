@@ -1,4 +1,5 @@
-"""Stage 4b, name: the promising hypotheses refitted with every nominal parameter free, and compared."""
+"""Stage 4b, name: the hypotheses of the largest predicted gain refitted with every nominal parameter free, and
+compared."""
 
 from __future__ import annotations
 
@@ -19,13 +20,13 @@ from eha_core.diagnosis.refine import (
     Found,
     Progress,
     attempts,
-    back_fit,
     cross,
     keep_better,
+    refit_nominal,
+    refit_with,
     settle,
-    try_effect,
 )
-from eha_core.diagnosis.screen import Promise, screen_spells
+from eha_core.diagnosis.screen import ScoreTest, screen_in_time
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.per_recording import base_name
@@ -42,8 +43,8 @@ TIE = 10.0
 """Rivals within this of the best score are not told apart."""
 
 HARDLY = 0.1
-"""Once a hypothesis explains all but noise, or but OVER of what there was, one that promises less than this share of
-what that gained is not tried."""
+"""Once a hypothesis explains all but noise, or but OVER of what there was, one whose predicted gain is less than
+this share of what that gained is not tried."""
 
 OVER = 0.05
 
@@ -82,74 +83,76 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Tournament:
-    """All that was refitted, the best first, the nominal model among them with score 0; the screening's promises; and
-    what one more effect beside the best is predicted to gain, the most of each site."""
+class ModelComparison:
+    """All that was refitted, the best first, the nominal model among them with score 0; the screening's score tests;
+    and what one more effect beside the best is predicted to gain, the most of each site."""
 
     nominal: Entry
     entries: tuple[Entry, ...]
-    promises: tuple[Promise, ...]
-    scatter: float
+    score_tests: tuple[ScoreTest, ...]
+    residual_variance: float
     left_over: Mapping[str, float] = field(default_factory=dict)
 
 
 def compete(
     problem: Problem, calibrated: Fit, candidates: Sequence[Effect], facts: Facts, progress: Progress = lambda _: None
-) -> Tournament:
+) -> ModelComparison:
     """Screen every candidate; refit those that may act for a while, if any, and the best of the others."""
     progress("screening the catalogue")
-    beginnings = [start for effect in candidates for start in starts(effect, facts)]
-    screened = screen_spells(problem, calibrated, beginnings)
-    promises = tuple(one for one in screened if one.windows is None)
-    passing = passing_effects(problem, calibrated, beginnings, screened, ENOUGH, progress)
+    initial_guesses = [start for effect in candidates for start in starts(effect, facts)]
+    screened = screen_in_time(problem, calibrated, initial_guesses)
+    score_tests = tuple(one for one in screened if one.windows is None)
+    passing = passing_effects(problem, calibrated, initial_guesses, screened, ENOUGH, progress)
     found: Found = {}
     best = min([calibrated.objective, *(result.objective for result in passing.values())])
     nearly_all = problem.count() + OVER * (calibrated.objective - problem.count())
     # a share of what a hopeless calibration leaves is still far from noise
     enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_OFF * problem.count()))
-    for attempt in attempts(problem, calibrated, beginnings, promises, REFINED, ENOUGH):
-        effect = attempt.promise.start.effect
-        if best < enough and attempt.promise.gain < HARDLY * (calibrated.objective - best):
+    for attempt in attempts(problem, calibrated, initial_guesses, score_tests, REFINED, ENOUGH):
+        effect = attempt.score_test.start.effect
+        if best < enough and attempt.score_test.gain < HARDLY * (calibrated.objective - best):
             continue
         progress(f"refitting with {effect.id}")
-        result = try_effect(problem, attempt, best)
+        result = refit_with(problem, attempt, best)
         keep_better(found, NOTHING.with_effects([effect]), result)
         best = min(best, result.objective)
     if best < FAR_OFF * problem.count() or passing:  # single effects that are far off are not worth their last digits
         found = cross(problem, settle(problem, found, progress))
-    return _ranked(problem, calibrated, {**passing, **found}, promises)
+    return _ranked(problem, calibrated, {**passing, **found}, score_tests)
 
 
-def from_every_start(problem: Problem, tournament: Tournament, progress: Progress = lambda _: None) -> Tournament:
-    """The tournament, and where all that was tried stays far off, with every start that was screened tried afresh.
+def from_every_start(
+    problem: Problem, comparison: ModelComparison, progress: Progress = lambda _: None
+) -> ModelComparison:
+    """The comparison, and where all that was tried stays far off, with every screened start from the nominal values.
 
-    What a start promises is linear in what it changes, and says little where a large effect has led the calibration
-    astray.
+    What is predicted of a start is linear in what it changes, and says little where a large effect has led the
+    calibration astray.
     """
-    nominal = tournament.nominal.fit
-    best = min([nominal, *(entry.fit for entry in tournament.entries)], key=lambda one: one.objective)
+    nominal = comparison.nominal.fit
+    best = min([nominal, *(entry.fit for entry in comparison.entries)], key=lambda one: one.objective)
     if best.data < FAR_OFF * best.count:
-        return tournament
-    found: Found = {entry.hypothesis: entry.fit for entry in tournament.entries}
+        return comparison
+    found: Found = {entry.hypothesis: entry.fit for entry in comparison.entries}
     lowest = best.objective
-    for promise in tournament.promises:
-        effect = promise.start.effect
+    for score_test in comparison.score_tests:
+        effect = score_test.start.effect
         progress(f"refitting with {effect.id} from every start")
-        result = try_effect(problem, Attempt(nominal, promise, afresh=True), lowest)
+        result = refit_with(problem, Attempt(nominal, score_test, from_nominal=True), lowest)
         keep_better(found, NOTHING.with_effects([effect]), result)
         lowest = min(lowest, result.objective)
     if lowest > best.objective - ENOUGH:
-        return tournament
-    return _ranked(problem, nominal, cross(problem, settle(problem, found, progress)), tournament.promises)
+        return comparison
+    return _ranked(problem, nominal, cross(problem, settle(problem, found, progress)), comparison.score_tests)
 
 
-def _ranked(problem: Problem, calibrated: Fit, found: Found, promises: tuple[Promise, ...]) -> Tournament:
-    nominal = back_fit(problem, calibrated, list(found.values()))
+def _ranked(problem: Problem, calibrated: Fit, found: Found, score_tests: tuple[ScoreTest, ...]) -> ModelComparison:
+    nominal = refit_nominal(problem, calibrated, list(found.values()))
     entries = rank(problem, nominal, found)
-    return Tournament(Entry(NOTHING, nominal, 0.0), entries, promises, scatter(nominal, entries))
+    return ModelComparison(Entry(NOTHING, nominal, 0.0), entries, score_tests, residual_variance(nominal, entries))
 
 
-def scatter(nominal: Fit, entries: Sequence[Entry]) -> float:
+def residual_variance(nominal: Fit, entries: Sequence[Entry]) -> float:
     """Variance of the residual in units of the assumed noise, under the best model and never below one."""
     best = min([nominal, *(entry.fit for entry in entries)], key=lambda one: one.objective)
     return max(1.0, best.data / best.count)

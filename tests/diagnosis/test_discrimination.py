@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_experiment import explanation
 
-from eha_core.diagnosis.outlook import STEP, separation
+from eha_core.diagnosis.discrimination import STEP, separation
 from eha_core.identification.freedom import nominal_freedom
 from eha_core.parameters import nominal_values
 
