@@ -16,7 +16,6 @@ from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.passing import passing_effects
 from eha_core.diagnosis.refine import (
     FAR_OFF,
-    Attempt,
     Found,
     Progress,
     attempts,
@@ -119,31 +118,6 @@ def compete(
     if best < FAR_OFF * problem.count() or passing:  # single effects that are far off are not worth their last digits
         found = cross(problem, settle(problem, found, progress))
     return _ranked(problem, calibrated, {**passing, **found}, score_tests)
-
-
-def from_every_start(
-    problem: Problem, comparison: ModelComparison, progress: Progress = lambda _: None
-) -> ModelComparison:
-    """The comparison, and where all that was tried stays far off, with every screened start from the nominal values.
-
-    What is predicted of a start is linear in what it changes, and says little where a large effect has led the
-    calibration astray.
-    """
-    nominal = comparison.nominal.fit
-    best = min([nominal, *(entry.fit for entry in comparison.entries)], key=lambda one: one.objective)
-    if best.data < FAR_OFF * best.count:
-        return comparison
-    found: Found = {entry.hypothesis: entry.fit for entry in comparison.entries}
-    lowest = best.objective
-    for score_test in comparison.score_tests:
-        effect = score_test.start.effect
-        progress(f"refitting with {effect.id} from every start")
-        result = refit_with(problem, Attempt(nominal, score_test, from_nominal=True), lowest)
-        keep_better(found, NOTHING.with_effects([effect]), result)
-        lowest = min(lowest, result.objective)
-    if lowest > best.objective - ENOUGH:
-        return comparison
-    return _ranked(problem, nominal, cross(problem, settle(problem, found, progress)), comparison.score_tests)
 
 
 def _ranked(problem: Problem, calibrated: Fit, found: Found, score_tests: tuple[ScoreTest, ...]) -> ModelComparison:

@@ -14,7 +14,7 @@ from eha_core.diagnosis.criteria import chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
-from eha_core.diagnosis.model_comparison import compete, from_every_start
+from eha_core.diagnosis.model_comparison import compete
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.sets import with_sets
 from eha_core.diagnosis.unknown import recover
@@ -64,9 +64,6 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
     able = candidates(observations)
     comparison = compete(calibration.problem, fitted, able, facts, progress)
     calibration, comparison = with_sets(calibration, comparison, able, facts, progress)
-    restarted = from_every_start(calibration.problem, comparison, progress)
-    if restarted is not comparison:
-        calibration, comparison = with_sets(calibration, restarted, able, facts, progress)
     recovery = recover(calibration.problem, comparison, facts, progress)
     decision = decide(calibration, model.values, comparison, recovery)
     equations = least(alternatives)

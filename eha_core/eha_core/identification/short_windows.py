@@ -13,6 +13,7 @@ from dataclasses import replace
 
 from eha_core.identification.fit import Fit, fit, fit_in_stages
 from eha_core.identification.freedom import Free
+from eha_core.identification.numbers import Array
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
 
@@ -26,6 +27,10 @@ other_law-0000 of seed 2026)."""
 
 ITERATIONS = 30
 
+OF_STATES = 8
+"""Iterations of the windows' starts alone, before anything else may move: a speed that is measured badly would lead the
+friction astray, which was right in the windows before."""
+
 
 def from_short_windows(
     problem: Problem, shorter: Sequence[Shooting], values: Mapping[str, float], free: Sequence[Free]
@@ -38,5 +43,9 @@ def from_short_windows(
     for place, (shooting, slack) in enumerate(zip(shorter, SLACK, strict=True)):
         part = replace(whole(shooting), slack=slack)
         run = fit if place else fit_in_stages
-        values = run(part, values, free, iterations=ITERATIONS).values
-    return fit(problem, values, free, iterations=ITERATIONS)
+        values = run(part, values, free, _starts(part, values), iterations=ITERATIONS).values
+    return fit(problem, values, free, _starts(problem, values), iterations=ITERATIONS)
+
+
+def _starts(problem: Problem, values: Mapping[str, float]) -> Array:
+    return fit(problem, values, (), iterations=OF_STATES).states

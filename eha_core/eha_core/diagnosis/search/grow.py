@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, WORTH_ADDING, chance_gain
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, UNFITTED, WORTH_ADDING, chance_gain
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
 from eha_core.diagnosis.search.proposals import proposals
 from eha_core.diagnosis.search.prune import look_back
+from eha_core.diagnosis.search.short_windows import set_with_friction
 
 LEGS = ((3, 4), (4, 2), (10, 1))
 """A race: so many iterations for every guess, and so many then go on. The right ones lead after two or three."""
@@ -18,6 +19,9 @@ def grow(search: Search, best: Candidate) -> Candidate:
     while not best.hypothesis.limited and len(best.hypothesis.members) < MOST_EFFECTS:
         race(search, proposals(search, best, chance_gain(search.problem.count(), best.times_noise)))
         reached = min(search, key=lambda one: one.fit.objective)
+        if reached.hypothesis != best.hypothesis and reached.times_noise > UNFITTED:
+            # what stopped short would have the next effect make up for it
+            reached = set_with_friction(search, reached)
         if reached.times_noise < FAR_FROM_NOISE:
             search.measure_noise(reached)
             reached, best = search.again(reached), search.again(best)

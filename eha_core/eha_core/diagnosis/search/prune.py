@@ -24,7 +24,7 @@ REFITTED = 8
 """Iterations of a fit without a member."""
 
 FURTHER = 30
-"""Iterations for which such a fit goes on where the curvature says that it can."""
+"""Iterations for which such a fit goes on at most."""
 
 LOOKED_AT = 4.0
 """A member is tried to be dropped where the curvature says that it costs no more than this many times what it must be
@@ -69,8 +69,8 @@ def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
 def prune(search: Search, best: Candidate) -> Candidate:
     """The set without the members that do not earn their place beside the others, by what a refit without each loses.
 
-    Where the curvature says that a member is worth less, the refit has not come to its end, or the curvature is that of
-    a long flat valley along which much changes together, such as all pressures' scale; so the refit goes on.
+    A refit that loses much goes on while it may come near enough; to its end where the curvature says that it can: along
+    a flat valley much changes together, such as all pressures' scale, and it takes long.
     """
     while len(best.hypothesis.members) > 1:
         simpler = {member: refit_without(search, best, member) for member in best.hypothesis.members}
@@ -79,8 +79,10 @@ def prune(search: Search, best: Candidate) -> Candidate:
         explained = search.found[NOTHING].objective - best.fit.objective
         asked = {member: asked_of(member, worth, best, explained) for member in simpler}
         for member in simpler:
-            if told[member] < asked[member] < _lost(simpler[member], best):
-                simpler[member] = search.go_on(simpler[member], FURTHER)
+            if _lost(simpler[member], best) > asked[member]:
+                near = told[member] < LOOKED_AT * asked[member]
+                enough = np.inf if near else best.fit.objective + asked[member]
+                simpler[member] = search.go_on(simpler[member], FURTHER, give_up_above=enough)
         lost = {member: _lost(one, best) for member, one in simpler.items()}
         least = min(lost, key=lambda member: lost[member] / asked[member])
         search.progress(f"chi^2 lost without: {', '.join(f'{one.id} {loss:.3g}' for one, loss in lost.items())}")
@@ -112,4 +114,4 @@ def asked_of(member: Member, worth: Mapping[Member, float], best: Candidate, exp
     ratio = CONVINCING / (1.0 - CONVINCING)
     # what makes up for a form leaves some of it over, too, beyond what may pass for noise
     their_forms = min(their_forms, ratio * (left + NOISE_KNOWN * best.fit.count))
-    return max(by_chance(member, worth, best) + their_forms, ratio * left)
+    return max(by_chance(member, worth, best) + their_forms, ratio * max(left - NOISE_KNOWN * best.fit.count, 0.0))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, UNFITTED
 from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.exchange import exchange
 from eha_core.diagnosis.search.grow import grow
 from eha_core.diagnosis.search.joint_start import joint_start
 from eha_core.diagnosis.search.prune import prune
-from eha_core.diagnosis.search.short_windows import forms_of_friction, set_with_friction
+from eha_core.diagnosis.search.short_windows import forms_of_friction, sticks
 
 ROUNDS = 8
 """Exchanges at most; each has to make the fit better by more than chance would."""
@@ -22,13 +22,11 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
     best = min(search, key=lambda one: one.fit.objective)
     if best.hypothesis.limited:
         return best
-    if best.times_noise > FAR_FROM_NOISE:
+    if best.times_noise > FAR_FROM_NOISE or (best.times_noise > UNFITTED and sticks(best.hypothesis)):
         best = forms_of_friction(search, nominal)
     if best.times_noise > FAR_FROM_NOISE:
         best = min(best, joint_start(search, nominal), key=lambda one: one.fit.objective)
     best = grow(search, best)
-    if best.times_noise > FAR_FROM_NOISE:
-        best = grow(search, set_with_friction(search, best))
     for _ in range(ROUNDS):
         if best.times_noise < NEAR_NOISE or len(best.hypothesis.members) < 2:
             break

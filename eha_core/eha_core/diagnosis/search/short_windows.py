@@ -1,15 +1,16 @@
 """Short windows first: laws of friction that stick are led to their optimum, which long windows hide.
 
-Where everything is far from the noise, each form of dry friction is fitted by itself from short windows to long ones,
-and so is the best set if it has one; what they find is compared with all else.
+Where everything is far from the noise, or friction explains most and not all, each form of dry friction is fitted by
+itself from short windows to long ones, and so is a set that has one; what they find is compared with all else.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypotheses import starts
-from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.search.candidates import Candidate, Search, with_effects
 from eha_core.effects import Effect
 from eha_core.identification.freedom import Free
@@ -22,9 +23,9 @@ STICKING = "dry friction"
 
 def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
     """The best so far when each form of dry friction was led from short windows to long ones, from nominal values."""
-    for effect in (one for one in search.able if _sticks(one)):
+    for effect in _that_stick(search.able):
         search.progress(f"fitting {effect.id} from short windows to long ones")
-        values = {**_at_nominal(nominal.fit.values, nominal.fit.free), **starts(effect, search.facts)[-1].values}
+        values = {**_at_nominal(nominal.fit.values, nominal.fit.free), **_first_guess(effect, search.facts)}
         free = with_effects(nominal.fit.free, [effect], values)
         found = from_short_windows(search.problem, search.shorter, values, free)
         search.keep(NOTHING.with_effects([effect]), found)
@@ -32,16 +33,38 @@ def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
 
 
 def set_with_friction(search: Search, best: Candidate) -> Candidate:
-    """A set with a law that sticks, led from short windows to long ones; the set as it is where it has none."""
-    if not any(_sticks(effect) for effect in best.hypothesis.effects):
+    """A set with a law that sticks, led from short windows to long ones; the set as it is where it has none.
+
+    That law begins at its first guess: what it had become in long windows is where it came to rest, and its shape may
+    be lost (a Stribeck velocity of next to nothing), from which no derivative leads back.
+    """
+    if not sticks(best.hypothesis):
         return best
+    effect, *_ = _that_stick(best.hypothesis.effects)
     search.progress(f"fitting {' + '.join(best.hypothesis.ids)} from short windows to long ones")
-    found = from_short_windows(search.problem, search.shorter, best.fit.values, best.fit.free)
-    return search.keep(best.hypothesis, found)
+    values = {**best.fit.values, **_first_guess(effect, search.facts)}
+    free = with_effects(best.fit.free, [effect], values)
+    return search.keep(best.hypothesis, from_short_windows(search.problem, search.shorter, values, free))
 
 
-def _sticks(effect: Effect) -> bool:
-    return effect.kind == STICKING
+def _first_guess(effect: Effect, facts: Facts) -> dict[str, float]:
+    """The effect's last start, but a Stribeck velocity as large as the speeds: from one that is larger than its own a
+    law narrows, from a smaller one no derivative leads back."""
+    values = dict(starts(effect, facts)[-1].values)
+    for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
+        if row.relative_to == "speed":
+            origin, scale = facts.scales["speed"]
+            values[name] = min(max(origin + scale, row.lower), row.upper)
+    return values
+
+
+def sticks(hypothesis: Hypothesis) -> bool:
+    """Whether one of the effects can hold the piston at rest."""
+    return bool(_that_stick(hypothesis.effects))
+
+
+def _that_stick(effects: Sequence[Effect]) -> list[Effect]:
+    return [one for one in effects if one.kind == STICKING]
 
 
 def _at_nominal(values: Mapping[str, float], free: tuple[Free, ...]) -> dict[str, float]:

@@ -1,0 +1,59 @@
+"""Friction in a set is begun anew over short windows where long ones have led it to a law that it is not."""
+
+import pytest
+from made import recorded
+
+from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.criteria import UNFITTED
+from eha_core.diagnosis.facts import gather
+from eha_core.diagnosis.hypotheses import candidates
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.search.candidates import Guess, Search, with_effects
+from eha_core.diagnosis.search.short_windows import set_with_friction, sticks
+from eha_core.effects import effects
+from eha_core.identification.observation import observe
+from eha_core.nominal import NominalModel
+from eha_core.parameters import nominal_values
+
+LAWS = {effect.id: effect for effect in effects()}
+PLANTED = {
+    "constant_load.force": 300.0,
+    "stribeck_friction.force": 400.0,
+    "stribeck_friction.static_force": 580.0,
+    "stribeck_friction.stribeck_velocity": 0.03,
+}
+LOST = {
+    "stribeck_friction.force": 520.0,
+    "stribeck_friction.static_force": 160.0,
+    "stribeck_friction.stribeck_velocity": 0.001,
+}
+
+
+@pytest.fixture(scope="module")
+def search():
+    observation = observe(recorded(PLANTED, duration=6.0))
+    calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
+    facts = gather([observation], calibration.shooting, calibration.fitted)
+    made = Search(calibration.problem, candidates([observation]), facts, shorter=calibration.shorter)
+    made.keep(NOTHING, calibration.fitted)
+    return made
+
+
+def fitted(search, values, iterations):
+    chosen = [LAWS[name] for name in sorted({name.split(".")[0] for name in values})]
+    begun = {**nominal_values(), **values}
+    free = with_effects(search.found[NOTHING].free, chosen, begun)
+    return search.try_guess(Guess(NOTHING.with_effects(chosen), begun, free, None), iterations)
+
+
+def test_a_law_that_has_lost_its_shape_is_led_back(search):
+    lost = fitted(search, {**PLANTED, **LOST}, 17)
+    assert lost.times_noise > UNFITTED
+    led = set_with_friction(search, lost)
+    assert led.hypothesis == lost.hypothesis and led.times_noise < 1.05
+    assert led.fit.values["stribeck_friction.stribeck_velocity"] == pytest.approx(0.03, rel=0.1)
+
+
+def test_a_set_that_cannot_stick_is_left_as_it_is(search):
+    load = fitted(search, {"constant_load.force": 300.0}, 3)
+    assert not sticks(load.hypothesis) and set_with_friction(search, load) is load
