@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +93,16 @@ def test_voltages_drive_as_a_signal_of_the_same_values_does() -> None:
     assert {"spool", "flow_a", "current", "supply_pressure"} <= set(states.channels) - set(one.channels)
     with pytest.raises(eha.ParameterError, match="one voltage for each sample"):
         eha.simulate(np.zeros((3, 2)))
+
+
+def test_values_in_the_names_of_the_parts_that_a_recording_carries_are_taken() -> None:
+    time = np.arange(100) / 200.0
+    recording = eha.Recording.from_arrays(time=time, position=0.1 * np.sin(time), voltage_command=np.cos(time))
+    turning = replace(recording, parts={"cylinder": "rotary_vane"})
+    with pytest.raises(EhaError, match=r"0\.495 s of data are too short"):
+        eha.diagnose(turning, {"moment_of_inertia": 0.4})
+    with pytest.raises(EhaError, match="moment_of_inertia does not apply to this plant"):
+        eha.diagnose(recording, {"moment_of_inertia": 0.4})
 
 
 def test_the_catalogue_lists_every_named_effect_with_its_docstring() -> None:

@@ -25,6 +25,7 @@ from eha_core.quantities import Quantity, quantity, unit_text, with_deviation
         (9.8e-4, "m^2", "9.80 cm²"),
         (5e6, "N/m", "5.00 MN/m"),
         (2.3e-12, "kg m^2", "2.30 × 10⁻¹² kg m²"),
+        (4.2e-7, "m^(7/2) kg^(-1/2)", "4.20 × 10⁻⁷ m³√(m/kg)"),
         (0.0, "N", "0 N"),
         (0.0, "Pa", "0 Pa"),
         (1e-3, "m", "1.00 mm"),

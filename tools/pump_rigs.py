@@ -125,8 +125,14 @@ def _record(truth: dict[str, float], concealed: Effect | None, g: np.random.Gene
     effects += [concealed] if concealed else []
     count = round(RATE * SECONDS) + 1
     stepped, reach = SteppedTruth(plant, effects, RATE, count), 0.6 * truth["actuator_displacement"]
-    time = np.arange(count) / RATE
-    speed = 100.0 * (1.0 + 0.35 * np.sin(0.9 * time + g.uniform(0, 6)) + 0.15 * np.sin(4.3 * time + g.uniform(0, 6)))
+    time, (slow, fast) = np.arange(count) / RATE, g.uniform(0, 6, 2)
+
+    def speed(instants: Array) -> Array:
+        share = 1.0 + 0.35 * np.sin(0.9 * instants + slow) + 0.15 * np.sin(4.3 * instants + fast)
+        return np.asarray(100.0 * share)
+
+    # a pump's speed does not change in steps when it is sampled: what the truth holds is that of midway to the next
+    between = speed(time + 0.5 / RATE)
     signs, rows = np.empty(count), np.empty((count, len(COLUMNS)))
     sign = until = 0.0
     for k in range(count):
@@ -137,8 +143,8 @@ def _record(truth: dict[str, float], concealed: Effect | None, g: np.random.Gene
             sign = 0.0 if sign and g.random() < 0.3 else float(g.choice((-1.0, 1.0)))
             until = float(time[k]) + (g.uniform(0.2, 0.5) if sign == 0.0 else g.uniform(0.4, 1.4))
         signs[k] = sign
-        rows[k] = stepped.hold(VOLTS * sign, float(speed[k]))
-    return _as_recording(time, signs, speed, rows, g)
+        rows[k] = stepped.hold(VOLTS * sign, float(between[k]))
+    return _as_recording(time, signs, speed(time), rows, g)
 
 
 def _as_recording(time: Array, signs: Array, speed: Array, rows: Array, g: np.random.Generator) -> eha.Recording:
@@ -168,7 +174,7 @@ def main() -> None:
         is_right = named == concealed and found.diagnosis.verdict not in ("unknown_physics", "ambiguous")
         right += is_right
         values = "; ".join(
-            f"{name} {value.value:.3g} +- {value.std:.2g}" for effect in found.effects
+            f"{name} {value.value:.5g} +- {value.std:.2g}" for effect in found.effects
             for name, value in effect.parameters.items()
         )  # fmt: skip
         print(

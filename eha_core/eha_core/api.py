@@ -16,7 +16,7 @@ from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.nominal import NominalModel, load_nominal, nominal_of
 from eha_core.parameters import ACTING
-from eha_core.plant import PAPER, composition_of
+from eha_core.plant import Composition, composition_of
 from eha_core.recording import Recording, read_recording
 from eha_core.recording.simulated import Experiment
 from eha_core.recording.simulated import simulate as run
@@ -119,8 +119,7 @@ def diagnose(
     from eha_core.report.results import Results
 
     given = [recording] if isinstance(recording, (Recording, str, Path)) else list(recording)
-    told = given_model(nominal)
-    composition = told.composition if told else PAPER
+    composition = given_parts(nominal)
     records, unseen = (
         [admitted(one, None, composition, progress) for one in several] for several in (given, tests)
     )
@@ -171,6 +170,14 @@ def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     kept = {name: value for name, value in recording.parameters.items() if name not in of_effects}
     known = {name: value for name, value in kept.items() if name in composition.rows}
     return nominal_of(known, composition=composition)
+
+
+def given_parts(nominal: Nominal) -> Composition | None:
+    """The actuator's parts as a model names them; None where it leaves them to the recording."""
+    if nominal is None or (isinstance(nominal, Mapping) and "plant" not in nominal):
+        return None
+    model = given_model(nominal)
+    return model.composition if model is not None else None
 
 
 def given_model(nominal: Nominal, parts: Mapping[str, str] | None = None) -> NominalModel | None:

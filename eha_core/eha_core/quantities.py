@@ -24,6 +24,9 @@ _PREFIXES = {
 }
 """The units of an engineer's data sheet, by SI unit, each with its size in that; the smallest first."""
 
+_ROOTS = {"m^(5/2) kg^(-1/2)": "m²√(m/kg)", "m^(7/2) kg^(-1/2)": "m³√(m/kg)"}
+"""Units of what lets oil through by the root of a pressure, as they are shown."""
+
 RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 """Digits as superscripts, for `str.translate`."""
 
@@ -57,8 +60,8 @@ def scale_for(unit: str, magnitude: float) -> Scale:
 
 def unit_text(unit: str) -> str:
     """A unit with whole powers raised: m^3/(s Pa) as m³/(s Pa); nothing for the unit of pure numbers."""
-    if unit == "m^(5/2) kg^(-1/2)":
-        return "m²√(m/kg)"
+    if unit in _ROOTS:
+        return _ROOTS[unit]
     return "" if unit == "-" else re.sub(r"\^(-?\d+)", lambda power: power[1].translate(RAISED), unit)
 
 

@@ -14,7 +14,6 @@ from eha_core.cli._paths import require_file, require_folder, require_recordings
 from eha_core.cli._progress import Progress
 from eha_core.errors import EhaError
 from eha_core.long_record.admission import admitted
-from eha_core.plant import PAPER
 from eha_core.recording import Recording, load_topics_file, read_recording
 from eha_core.workers import Workers
 
@@ -78,7 +77,7 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
     if arguments.motion_given:
         return _run_motion_given(arguments, _read(arguments.recordings, arguments), progress)
     given = given_model(arguments.nominal)
-    composition = given.composition if given else PAPER
+    composition = given.composition if given else None
     records, unseen = (
         [admitted(path, arguments.topics, composition, progress) for path in paths]
         for paths in (arguments.recordings, arguments.test)
@@ -213,7 +212,7 @@ def diagnose_alone(
 
     try:
         given = given_model(nominal)
-        record = admitted(path, topics, given.composition if given else PAPER)
+        record = admitted(path, topics, given.composition if given else None)
         model = known_model(given, record.recordings[0])
         recordings = [admit(one, model.values, as_recorded, model.composition) for one in record.recordings]
         diagnosis = judged(diagnose_together(recordings, model, jobs=1), [record], model)

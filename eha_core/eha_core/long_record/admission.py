@@ -8,7 +8,7 @@ from pathlib import Path
 
 from eha_core.errors import RecordingError
 from eha_core.long_record import limits
-from eha_core.plant import PAPER, Composition
+from eha_core.plant import Composition, composition_of
 from eha_core.recording import Recording, load_topics_file, read_recording
 from eha_core.recording.bag import bag_extent, bag_size
 from eha_core.recording.blocks import Block, Blocks, BlocksInMemory, BlocksOfFile
@@ -50,7 +50,7 @@ class Admitted:
 def admitted(
     given: Recording | str | Path,
     topics: str | Path | None = None,
-    composition: Composition = PAPER,
+    composition: Composition | None = None,
     progress: Progress = lambda _: None,
 ) -> Admitted:
     """Read a recording; of one longer than LONGEST_WHOLE the stretches that show most of it, and no more.
@@ -58,11 +58,12 @@ def admitted(
     Args:
         given: a recording, or the path of one.
         topics: a topics file.
-        composition: the actuator's parts.
+        composition: the actuator's parts; None: those that the recording carries, else the paper's.
         progress: is told how far a long record was read.
 
     Raises:
         RecordingError: as `read_recording`.
+        ParameterError: a long recording carries parts that there are not.
     """
     if isinstance(given, Recording):
         return _of_recording(given, composition, progress)
@@ -83,7 +84,7 @@ def _is_long_file(path: Path) -> bool:
     return bag_size(path) > READ_AT_ONCE if extent is None else extent > limits.LONGEST_WHOLE
 
 
-def _of_recording(recording: Recording, composition: Composition, progress: Progress) -> Admitted:
+def _of_recording(recording: Recording, composition: Composition | None, progress: Progress) -> Admitted:
     if recording.duration > limits.LONGEST_WHOLE:
         found = _stretches(BlocksInMemory(recording, limits.STRETCH), composition, progress)
         if found is not None:
@@ -91,7 +92,7 @@ def _of_recording(recording: Recording, composition: Composition, progress: Prog
     return Admitted(recording.path, (recording,))
 
 
-def _stretches(blocks: Blocks, composition: Composition, progress: Progress) -> Admitted | None:
+def _stretches(blocks: Blocks, composition: Composition | None, progress: Progress) -> Admitted | None:
     """The stretches to fit; None where the record is short after all, or nothing in it can be used."""
     # the fits' room loads slowly, and most records are short
     from eha_core.long_record.choose import choose
@@ -100,7 +101,10 @@ def _stretches(blocks: Blocks, composition: Composition, progress: Progress) -> 
     seen: list[Shown] = []
 
     def survey(block: Block) -> None:
-        if block.end - block.start > 0.99 * limits.STRETCH and (one := shown(block, composition)) is not None:
+        if block.recording is None or block.end - block.start <= 0.99 * limits.STRETCH:
+            return
+        parts = composition or composition_of(block.recording.parts)
+        if (one := shown(block, parts)) is not None:
             seen.append(one)
 
     blocks.each(survey, progress=progress)

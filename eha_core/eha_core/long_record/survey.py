@@ -34,12 +34,14 @@ EXTREME = 0.001
 @dataclass(frozen=True)
 class Shown:
     """The instants of one block: (instants, quantities) of the driving channel, its change over an instant, the
-    position, the speed, and the pressures' difference where they were measured."""
+    position, the speed, and the pressures' difference where they were measured; `further` has each further driving
+    channel, as the sign that switches a pump's valve, and its change (instants, 2)."""
 
     number: int
     start: float
     end: float
     instants: Array
+    further: tuple[Array, ...] = ()
 
 
 def shown(block: Block, composition: Composition) -> Shown | None:
@@ -53,18 +55,21 @@ def shown(block: Block, composition: Composition) -> Shown | None:
     position = observation.channel("position")
     if position is None or float(np.std(position.values)) < MOVES * position.noise:
         return None
-    return Shown(block.number, block.start, block.end, _instants(observation))
+    at = np.linspace(0.0, observation.duration, INSTANTS, dtype=np.float64)
+    first, *further = (_driving(time, values, at) for time, values in observation.inputs)
+    return Shown(block.number, block.start, block.end, _instants(observation, first, at), tuple(further))
 
 
-def _instants(observation: Observation) -> Array:
+def _driving(time: Array, values: Array, at: Array) -> Array:
+    held = values[np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)]
+    return np.stack([held, np.gradient(held)], axis=1)
+
+
+def _instants(observation: Observation, driving: Array, at: Array) -> Array:
     position = observation.channel("position")
     assert position is not None, "observe asks for it"
-    at = np.linspace(0.0, observation.duration, INSTANTS)
-    time, driving = observation.inputs[0]
-    held = driving[np.clip(np.searchsorted(time, at, side="right") - 1, 0, None)]
     columns = [
-        held,
-        np.gradient(held),
+        *driving.T,
         np.interp(at, position.time, position.values),
         np.interp(at, position.time, smooth(position, 1)),
     ]
@@ -76,17 +81,19 @@ def _instants(observation: Observation) -> Array:
 
 
 def cells(blocks: list[Shown]) -> list[frozenset[int]]:
-    """The cells that each block visits: of (command, its change), (position, speed) and (pressures' difference,
-    speed), each quantity's range over the record divided evenly, and the speed's around standstill once more."""
-    width = min(one.instants.shape[1] for one in blocks)
-    everything = np.concatenate([one.instants[:, :width] for one in blocks])
+    """The cells that each block visits: of (command, its change) for every driving channel, (position, speed) and
+    (pressures' difference, speed), each quantity's range over the record divided evenly, and the speed's around
+    standstill once more."""
+    width, further = min(one.instants.shape[1] for one in blocks), min(len(one.further) for one in blocks)
+    quantities = [np.hstack([one.instants[:, :width], *one.further[:further]]) for one in blocks]
+    everything = np.concatenate(quantities)
     lowest, highest = np.quantile(everything, [EXTREME, 1.0 - EXTREME], axis=0)
     spread = np.where(highest > lowest, highest - lowest, 1.0)
     rest = AT_REST * float(np.max(np.abs([lowest[3], highest[3]])))
     pairs = [(0, 1), (2, 3), *([(4, 3)] if width > 4 else [])]
+    pairs += [(place, place + 1) for place in range(width, width + 2 * further, 2)]
     found = []
-    for one in blocks:
-        values = one.instants[:, :width]
+    for values in quantities:
         part = np.clip(((values - lowest) / spread * CELLS).astype(np.int64), 0, CELLS - 1)
         part[:, 3] = np.where(np.abs(values[:, 3]) < rest, CELLS, part[:, 3])
         each = [

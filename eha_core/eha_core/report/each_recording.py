@@ -4,12 +4,14 @@ never saw is predicted."""
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis, LongRecord, PredictedRecording
-from eha_core.parameters import catalogue
+from eha_core.parameter import Parameter
+from eha_core.plant import Composition
 from eha_core.quantities import quantity
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.stage import Table
@@ -28,7 +30,8 @@ def each_recording(diagnosis: Diagnosis) -> list[str]:
         left = ", ".join(
             f"{channel_title(name)} {fit.rmse_after / fit.noise:.2f}" for name, fit in one.held_out.items()
         )
-        own = "".join(f"; {name} {_valued(name, value)}" for name, value in one.own_values.items())
+        rows = ((_row(name, diagnosis.composition), value) for name, value in one.own_values.items())
+        own = "".join(f"; {row.name} {row.symbol} = {quantity(value, row.unit)}" for row, value in rows)
         lines.append(f"  {Path(one.path).name}: {left} times the noise on held-out data{own}")
     for tested in diagnosis.tests:
         lines += _tested(tested)
@@ -48,8 +51,13 @@ def _tested(tested: PredictedRecording) -> Iterator[str]:
         yield f"{label:40}" + "".join(f"{quantity(one.free_running, unit):>14}" for one in each)
 
 
-def _valued(name: str, value: float) -> str:
-    return quantity(value, catalogue()[name].unit)
+def _row(name: str, composition: Composition) -> Parameter:
+    """What a value of these parts is called, its symbol and its unit; of an effect's, by its full name."""
+    for effect in composition.effects:
+        if name in effect.parameter_names():
+            place = effect.parameter_names().index(name)
+            return replace(composition.as_shown(effect).parameters[place], name=name)
+    return composition.place_rows[name]
 
 
 def recording_tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
@@ -61,16 +69,18 @@ def recording_tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
 
 def _together(diagnosis: Diagnosis) -> Table:
     first = diagnosis.together[0]
-    channels, own = list(first.held_out), list(first.own_values)
+    channels = list(first.held_out)
+    own = {name: _row(name, diagnosis.composition) for name in first.own_values}
     rows = tuple(
         (
             Path(one.path).name,
             *(f"{one.held_out[name].rmse_after / one.held_out[name].noise:.2f}" for name in channels),
-            *(_valued(name, one.own_values[name]) for name in own),
+            *(quantity(one.own_values[name], row.unit) for name, row in own.items()),
         )
         for one in diagnosis.together
     )
-    headings = ("recording", *(f"{channel_title(name)} [× noise]" for name in channels), *map(words, own))
+    titles = (f"{words(row.name)} {row.symbol}" for row in own.values())
+    headings = ("recording", *(f"{channel_title(name)} [× noise]" for name in channels), *titles)
     return Table(headings, rows, "Recordings fitted together: held-out errors, and the values that are their own")
 
 
