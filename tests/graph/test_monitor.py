@@ -135,7 +135,8 @@ def test_the_recording_is_read_by_others_and_keeps_the_parameters(rig: Rig) -> N
 
 def test_every_topic_of_the_simulator_can_be_recorded(rig: Rig) -> None:
     """One of them has a type that ROS 2 has from Kilted on and no type store knows."""
-    pytest.importorskip("control_msgs.msg")
+    commands = pytest.importorskip("control_msgs.msg")
+    rig.node.create_publisher(commands.JointCommand, "joint_command/effort", 10)
     rig.start_sim()
     monitor = start_monitor(rig, "diagnostics_rate:=5.0")
     reports = rig.diagnostics("eha_monitor")
