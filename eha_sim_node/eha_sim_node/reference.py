@@ -17,9 +17,11 @@ from eha_core.errors import ParameterError
 from eha_core.plant import Plant
 from eha_core.realtime import NANOSECONDS
 from eha_core.signals import Signal, make_signal, signals
+from eha_sim_node.diagnostics import Diagnostics, Report
 from eha_sim_node.joints import JOINT
 from eha_sim_node.parameters import ParameterSet, Row, Value, plant_rows, plant_values
 from eha_sim_node.running import run
+from eha_sim_node.sample_count import SampleCount
 from eha_sim_node.stamps import nanoseconds_of, set_stamp
 from eha_sim_node.state_topics import OUTPUT_QUALITY
 
@@ -35,6 +37,8 @@ OWN_ROWS = (
     Row("step_size", 1e-4, "step of that response [s]", 1e-6, 1e-3, fixed=True),
     Row("listeners", 1, "how many subscribers a signal that a timer drives waits for", 1, 100, fixed=True),
     Row("duration", 0.0, "time after which the signal is zero and the node ends [s]; 0: never", 0.0, 1e6, fixed=True),
+    Row("diagnostics_rate", 1.0, "rate of /diagnostics where a timer drives the signal, in wall-clock time [Hz]",
+        0.1, 100.0, fixed=True),
 )  # fmt: skip
 
 
@@ -110,6 +114,7 @@ class ReferenceNode(rclpy.node.Node):
             else None
         )
         self._reference = JointState(name=[JOINT])
+        self._count = SampleCount(own["rate"])
         self._voltage = Float64()
         self._settings.declare(self._apply)
         self.create_service(Trigger, "~/reset", self._on_reset)
@@ -119,6 +124,7 @@ class ReferenceNode(rclpy.node.Node):
             simulated = self.get_parameter("use_sim_time").value
             self._steady = self.get_clock() if simulated else Clock(clock_type=ClockType.STEADY_TIME)
             self.create_timer(1.0 / own["rate"], self._on_timer, clock=self._steady)
+            self._diagnostics = Diagnostics(self, own["diagnostics_rate"], lambda: Report(*self._count.report()))
         self.get_logger().info(f"{own['mode']}: {own['signal']}")
 
     def _on_joint_states(self, message: JointState) -> None:
@@ -127,7 +133,9 @@ class ReferenceNode(rclpy.node.Node):
 
     def _on_timer(self) -> None:
         if self._origin is not None or self._is_heard():
-            self._sample(self._steady.now().nanoseconds, self.get_clock().now().nanoseconds)
+            now = self._steady.now().nanoseconds
+            self._count.sample(now)
+            self._sample(now, self.get_clock().now().nanoseconds)
 
     def _is_heard(self) -> bool:
         """Whether subscribers are there and have been the same for a while.
@@ -183,6 +191,7 @@ class ReferenceNode(rclpy.node.Node):
 
     def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._origin = None
+        self._count.restart()
         if self._actuator:
             self._actuator.reset()
         response.success = True

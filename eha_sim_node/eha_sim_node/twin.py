@@ -143,9 +143,13 @@ class TwinNode(rclpy.node.Node):
 def _departures(comparison: Comparison) -> list[str]:
     """One line for each equation that departs, the most first."""
     return [
-        f"{name} departs by {comparison.ratios[name]:.3g} times the noise since {_stamp(since)} s"
+        f"{name} departs by {_times(comparison.ratios[name])} times the noise since {_stamp(since)} s"
         for name, since in comparison.departs.items()
     ]
+
+
+def _times(ratio: float) -> str:
+    return f"{ratio:,.0f}" if ratio >= 100.0 else f"{ratio:.3g}"
 
 
 def _stamp(nanoseconds: int) -> str:

@@ -133,6 +133,19 @@ def test_the_recording_is_read_by_others_and_keeps_the_parameters(rig: Rig) -> N
     assert positions[-1] > 0.0
 
 
+def test_every_topic_of_the_simulator_can_be_recorded(rig: Rig) -> None:
+    """One of them has a type that ROS 2 has from Kilted on and no type store knows."""
+    commands = pytest.importorskip("control_msgs.msg")
+    rig.node.create_publisher(commands.JointCommand, "joint_command/effort", 10)
+    rig.start_sim()
+    monitor = start_monitor(rig, "diagnostics_rate:=5.0")
+    reports = rig.diagnostics("eha_monitor")
+    rig.wait(lambda: is_recorded(rig, f"{rig.namespace}/joint_command/effort"), "the recorder on the topic", 20)
+    rig.wait(lambda: len(reports) > 2, "reports")
+    assert "is not recorded" not in monitor.output
+    assert not any("is not recorded" in report["message"] for report in reports)
+
+
 def test_start_stop_split(rig: Rig) -> None:
     voltage = rig.commands
     start_monitor(rig, "record:=false", "name:=run")

@@ -11,10 +11,26 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 from eha_core.plant import Plant
+from eha_sim_node.sample_count import SampleCount
 
 
 def times_of(messages: list[JointState]) -> np.ndarray:
     return np.array([message.header.stamp.sec + message.header.stamp.nanosec * 1e-9 for message in messages])
+
+
+def test_samples_that_a_late_timer_drops_are_counted_and_told() -> None:
+    count = SampleCount(100.0)
+    for tick in range(100):
+        count.sample(10_000_000 * tick + 3_000_000 * (tick % 2))  # jitter within a period
+    assert count.report() == ({"samples": 100, "missed": 0}, [])
+    for tick in range(100, 200, 4):
+        count.sample(10_000_000 * tick)
+    values, troubles = count.report()
+    assert values == {"samples": 125, "missed": 72}
+    assert len(troubles) == 1 and troubles[0].startswith("74 % of the samples were not sent")
+    assert count.report() == (values, [])
+    count.sample(0)  # /clock was set back
+    assert count.report() == ({"samples": 1, "missed": 0}, [])
 
 
 def test_a_sine_of_position_with_its_velocity(rig: Rig) -> None:

@@ -112,7 +112,8 @@ def test_a_hypothesis_that_swaps_one_effect_is_told_by_the_swap() -> None:
     swapped = {"valve_deadband", "stribeck_friction", "constant_load"}
     assert rung(swapped, chosen) == "Stribeck friction in place of Coulomb friction"
     assert rung({*chosen, "end_stop"}, chosen) == "the named effects with end stop"
-    assert rung({"end_stop"}, chosen) == "end stop"
+    assert rung({"end_stop"}, chosen) == "end stop alone"
+    assert rung({"end_stop"}, {"coulomb_friction"}) == "end stop"
 
 
 def test_what_is_not_told_from_nothing_is_no_finding(several: Diagnosis) -> None:

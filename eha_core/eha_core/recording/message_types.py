@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +27,15 @@ _TEXT_TYPES = ("string", "wstring")
 
 
 def _message_folders(package: str) -> Iterator[Path]:
-    """The folders that may hold a package's .msg files: ROS prefixes, this environment, the source tree."""
+    """The folders that may hold a package's .msg files: ROS prefixes, this environment, the source tree, and where the
+    package is that an import would find."""
     prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
     for prefix in (*prefixes, sys.prefix):
         yield Path(prefix) / "share" / package / "msg"
     yield _SOURCE_TREE / package / "msg"
+    spec = find_spec(package) if package.isidentifier() else None  # a dotted name would import what is before the dot
+    for folder in (spec.submodule_search_locations or ()) if spec else ():
+        yield Path(folder) / "msg"
 
 
 @lru_cache(maxsize=1)

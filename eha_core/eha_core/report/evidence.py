@@ -32,6 +32,8 @@ def named(effects: tuple[str, ...]) -> str:
 
 def rung(effects: set[str], chosen: set[str]) -> str:
     """A hypothesis by its effects; a large set by how it differs from the one that was named."""
+    if len(effects) == 1 < len(chosen):
+        return f"{named(tuple(effects))} alone"
     if len(effects) <= IN_FULL:
         return named(tuple(sorted(effects)))
     if effects == chosen:
@@ -95,7 +97,8 @@ def _screened(diagnosis: Diagnosis) -> str:
     seen = {f"measured_{name}" for name in diagnosis.channels}
     blind = [effect.id for effect in left if effect.needs and not set(effect.needs) <= seen]
     weak = [effect.id for effect in left if effect.id not in blind]
-    told = [f"Screened out, as a score test says they would gain too little: {listed(list(map(effect_title, weak)))}."]
+    weakly = listed(list(map(effect_title, weak)))
+    told = [f"Screened out, as by a score test or a refit they gain too little: {weakly}."]
     if blind:
         told.append(f"Not tried, as their channels were not recorded: {listed(list(map(effect_title, blind)))}.")
     return " ".join(told if weak else told[1:])

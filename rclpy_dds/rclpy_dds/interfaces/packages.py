@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import Any
 
 from rclpy_dds.interfaces import store
+from rclpy_dds.interfaces.folders import interface_folders
 from rclpy_dds.interfaces.message import message_class, module_name, service_class
 
 KINDS = ("msg", "srv")
@@ -56,10 +57,12 @@ class _InterfaceModule(ModuleType):
 
 
 def package_spec(package: str) -> importlib.machinery.ModuleSpec | None:
-    """Return the spec of an interface package, None when nothing defines one."""
+    """Return the spec of an interface package, located where its definitions are; None when nothing defines one."""
     if package not in store.package_names():
         return None
-    return importlib.machinery.ModuleSpec(package, _Loader(), origin="rclpy_dds", is_package=True)
+    spec = importlib.machinery.ModuleSpec(package, _Loader(), origin="rclpy_dds", is_package=True)
+    spec.submodule_search_locations = interface_folders(package)
+    return spec
 
 
 def submodule_spec(fullname: str) -> importlib.machinery.ModuleSpec | None:
