@@ -129,3 +129,8 @@ def test_a_tool_that_does_not_exist_is_said_in_one_line(exam: Exam) -> None:
 def test_a_tool_is_held_to_one_core() -> None:
     source = "import json, os, sys; json.dump(os.environ['OMP_NUM_THREADS'], open(sys.argv[1], 'w'))"
     assert run_tool([sys.executable, "-c", source, "{answer}"]).diagnosis == "1"
+
+
+def test_cases_whose_outcome_is_known_are_left_out(exam: Exam) -> None:
+    whole = Exam(exam.folder, 5, exam.seed).members
+    assert Exam(exam.folder, 3, exam.seed, opened=2).members == whole[2:]

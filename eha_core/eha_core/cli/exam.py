@@ -35,6 +35,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("--cases", type=int, default=100, metavar="N", help="number of recordings (default 100)")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="seed of the exam (default 0)")
+    parser.add_argument(
+        "--opened", type=int, default=0, metavar="N", help="leave out the first N of the seed: their outcome is known"
+    )
     parser.add_argument("--tier", metavar="T", help="one tier alone")
     parser.add_argument("--jobs", type=int, default=1, metavar="J", help="recordings worked on at once (default 1)")
     parser.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler whose workers see --out")
@@ -70,7 +73,9 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.cases < 1 or arguments.jobs < 1:
         raise EhaError(f"--cases {arguments.cases} --jobs {arguments.jobs}: give 1 or more of each")
-    exam = Exam(arguments.out, arguments.cases, arguments.seed, arguments.tier)
+    if arguments.opened < 0:
+        raise EhaError(f"--opened {arguments.opened}: give 0 or more")
+    exam = Exam(arguments.out, arguments.cases, arguments.seed, arguments.tier, arguments.opened)
     tools = _tools(arguments)
     marks = sit(exam, tools, Workers(arguments.jobs, arguments.dask), _show)
     summaries = [summarise(tool, marks[tool]) for tool in tools]

@@ -41,8 +41,8 @@ NEXT_TO_NOTHING = 0.15
 of: no recording tells it from none (assumed; weak effects of the exam have as much of their typical size)."""
 
 WORTH_ADDING = 0.1
-"""Share of what is left over that an effect must explain to be added: the first of several does, and it ends a
-search that only bends what is there (assumed)."""
+"""Share of what is left over that an effect must explain to be added, or an exchange: the first of several does, and it
+ends a search that only bends what is there (assumed)."""
 
 
 LEFT_IN_A_CHANNEL = 1.2

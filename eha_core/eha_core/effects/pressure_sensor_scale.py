@@ -4,7 +4,8 @@ Signature: one chamber's measured pressure swings in one proportion too far for 
 unlike an offset's, the error vanishes with the pressure.
 Equation: measured P1 = (1 + ratio_a) P1, measured P2 = (1 + ratio_b) P2.
 Sign: a positive ratio reads too high.
-Validity: linear sensors whose zeros are right.
+Validity: linear sensors whose zeros are right. One that reads less than half or more than twice is of another range or
+unit.
 Source: E. O. Doebelin, Measurement Systems, McGraw-Hill 1966, chapter 3 (static calibration).
 """
 
@@ -22,8 +23,8 @@ EFFECT = Effect(
             "r_1",
             "-",
             0.0,
-            -0.95,
-            20.0,
+            -0.5,
+            1.0,
             "gain error of chamber A's sensor",
             ASSUMED,
             typical=0.08,
@@ -35,8 +36,8 @@ EFFECT = Effect(
             "r_2",
             "-",
             0.0,
-            -0.95,
-            20.0,
+            -0.5,
+            1.0,
             "gain error of chamber B's sensor",
             ASSUMED,
             typical=-0.06,

@@ -51,17 +51,19 @@ ONE_CORE = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 @dataclass(frozen=True)
 class Exam:
-    """What is sat: how many cases, from which seed, of one tier or (None) of all, in which folder."""
+    """What is sat: how many cases, from which seed, of one tier or (None) of all, in which folder; after the `opened`
+    first of that seed, whose outcome is known."""
 
     folder: Path
     cases: int
     seed: int
     tier: str | None = None
+    opened: int = 0
 
     @property
     def members(self) -> list[tuple[str, int]]:
         """(tier, number) of each case."""
-        return plan(self.cases, self.tier)
+        return plan(self.opened + self.cases, self.tier)[self.opened :]
 
 
 def sit(exam: Exam, tools: Mapping[str, str], workers: Workers, progress: Progress) -> dict[str, list[Mark]]:
@@ -79,7 +81,7 @@ def _claim(exam: Exam) -> None:
     """Refuse a folder that holds another exam."""
     exam.folder.mkdir(parents=True, exist_ok=True)
     path = exam.folder / "exam.json"
-    wanted = {"cases": exam.cases, "seed": exam.seed, "tier": exam.tier}
+    wanted = {"cases": exam.cases, "seed": exam.seed, "tier": exam.tier, "opened": exam.opened}
     if path.is_file():
         there = json.loads(path.read_text(encoding="utf-8"))
         same = there.get("seed") == exam.seed and there.get("tier") == exam.tier

@@ -7,7 +7,7 @@ without it, and the catalogue competes for its place.
 
 from __future__ import annotations
 
-from eha_core.diagnosis.criteria import chance_gain
+from eha_core.diagnosis.criteria import WORTH_ADDING, chance_gain
 from eha_core.diagnosis.hypothesis import Member
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
 from eha_core.diagnosis.search.grow import race
@@ -24,7 +24,8 @@ def exchange(search: Search, best: Candidate) -> Candidate:
         race(search, rivals_for(search, best, member))
         reached = min(search, key=lambda one: one.fit.objective)
         needed = chance_gain(search.problem.count(), reached.times_noise)
-        if best.fit.objective - reached.fit.objective > needed:
+        left = max(0.0, best.fit.data - best.fit.count)
+        if best.fit.objective - reached.fit.objective > max(needed, WORTH_ADDING * left):
             return look_back(search, reached, needed)
     return best
 

@@ -69,8 +69,8 @@ def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
 def prune(search: Search, best: Candidate) -> Candidate:
     """The set without the members that do not earn their place beside the others, by what a refit without each loses.
 
-    A refit that loses much goes on while it may come near enough; to its end where the curvature says that it can: along
-    a flat valley much changes together, such as all pressures' scale, and it takes long.
+    A refit that loses much goes on while it may come near enough; to its end where the curvature says that it can:
+    along a flat valley much changes together, such as all pressures' scale, and it takes long.
     """
     while len(best.hypothesis.members) > 1:
         simpler = {member: refit_without(search, best, member) for member in best.hypothesis.members}
