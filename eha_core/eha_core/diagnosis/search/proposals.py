@@ -1,8 +1,8 @@
 """Initial guesses: which effects to add to a set, and from where to fit them.
 
 A score test says how much of what a fit leaves unexplained an effect could explain (`diagnosis.screen`). It is linear,
-so it is asked where the effects show best: at the fit itself, and with the valve's dynamics held at their nominal
-values, as a faster or slower valve would imitate a delay or a lag.
+so it is asked where the effects show best: at the fit itself; where that is far from the noise, at the nominal values,
+which nothing has biased; and with the valve's dynamics held, which would imitate a delay or a lag.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypotheses import Start, starts
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.refine import _set_free, with_dynamics_as_given
+from eha_core.diagnosis.refine import _set_free, as_given, with_dynamics_as_given
 from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects, without_effect
 from eha_core.identification.fit import Fit
@@ -20,6 +20,7 @@ from eha_core.identification.freedom import LATE
 from eha_core.identification.per_recording import is_one_of
 
 AT_THE_FIT = 8
+AT_NOMINAL_VALUES = 6
 WITH_DYNAMICS_HELD = 2
 """How many effects are taken from each score test."""
 
@@ -34,7 +35,11 @@ HELD_SHARE = 0.25
 def proposals(search: Search, base: Candidate, least: float) -> list[Guess]:
     """Guesses of the base's set with one effect more, the largest predicted gain first, of those above `least`."""
     begin = _begin(search, base)
-    guesses = [guess for strategy in (_at_the_fit, _with_dynamics_held) for guess in strategy(search, base, begin)]
+    guesses = [
+        guess
+        for strategy in (_at_the_fit, _at_nominal_values, _with_dynamics_held)
+        for guess in strategy(search, base, begin)
+    ]
     # where only noise is left no other form can be better
     forms = in_another_form(search, base) if base.times_noise > NEAR_NOISE else ()
     new_forms = [one for one in forms if one.hypothesis not in search.found]
@@ -62,6 +67,14 @@ def _begin(search: Search, base: Candidate) -> list[Start]:
 def _at_the_fit(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
     for score_test in _leading(one_each(screen(search.problem, base.fit, begin), AT_THE_FIT), base):
         yield _guess(base, base.fit, score_test)
+
+
+def _at_nominal_values(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
+    if base.fit.data <= FAR_FROM_NOISE * base.fit.count:
+        return
+    nominal = as_given(search.problem, base.fit)
+    for score_test in one_each(screen(search.problem, nominal, begin), AT_NOMINAL_VALUES):
+        yield _guess(base, nominal, score_test, in_stages=True)
 
 
 def _with_dynamics_held(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
