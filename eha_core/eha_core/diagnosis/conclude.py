@@ -2,49 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from eha_core.diagnosis.calibrate import corrected_noise, has_changed, identifiable
+from eha_core.diagnosis.calibrate import corrected_noise
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEAST_OF_A_LAW
 from eha_core.diagnosis.discrimination import RATE
 from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, predicted_recordings
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment import not_proposed, propose
 from eha_core.diagnosis.explained import explained, predictions
-from eha_core.diagnosis.facts import facts_alone
+from eha_core.diagnosis.fitted_values import changed_values, fitted_parameters, named_effects
 from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.locate import stated
 from eha_core.diagnosis.model_comparison import Entry
+from eha_core.diagnosis.pictures import pictures
 from eha_core.diagnosis.result import (
     Alternative,
     ChannelFit,
     Diagnosis,
     Experiment,
-    FittedParameter,
-    FittedValue,
     Location,
-    NamedEffect,
-    Pictures,
     UnknownLaw,
 )
-from eha_core.diagnosis.search.prune import wald
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
-from eha_core.effects import SITES, Effect
+from eha_core.effects import SITES
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.intervals import with_residual
-from eha_core.identification.numbers import Array
-from eha_core.identification.per_recording import base_name, is_one_of
 from eha_core.identification.problem import Problem
-from eha_core.identification.shooting import Shooting
 from eha_core.identification.together import cut_together
 from eha_core.identification.validate import channel_rmse, instants_of, judge, split
-from eha_core.plant import Composition
 from eha_core.recording import Recording
 
 FINAL_STEP = 1e-4
@@ -71,7 +63,7 @@ def conclude(
     recording = recordings[evidence.lead - 1]
     steps, without = ladder(replace(evidence, decision=decision), final)
     order = [one.added for one in steps]
-    effects = _named(decision.winner, final, composition)
+    effects = named_effects(decision.winner, final, composition)
     effects = tuple(sorted(effects, key=lambda one: order.index(one.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
@@ -84,7 +76,7 @@ def conclude(
         verdict=decision.verdict,
         summary=summary(decision, effects, unknown, left),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
-        parameters=_parameters(final, evidence.nominal, composition),
+        parameters=fitted_parameters(final, evidence.nominal, composition),
         effects=effects,
         alternatives=tuple(Alternative(entry.ids, gap) for entry, gap in decision.rivals),
         unknown=unknown,
@@ -93,8 +85,8 @@ def conclude(
         next_experiment=experiment,
         rivals=tuple((entry.ids, entry.score) for entry in evidence.comparison.entries),
         whiteness=dict(zip(evidence.calibration.shooting.names, whiteness(decision.winner.fit.residuals), strict=True)),
-        fitted_values=_changed_values(final, composition),
-        pictures=_pictures(evidence, before, calibrated, decision.winner.fit),
+        fitted_values=changed_values(final, composition),
+        pictures=pictures(evidence, before, calibrated, decision.winner.fit),
         start_stamp=recording.start_stamp,
         explained=left,
         prediction=predictions(
@@ -155,62 +147,6 @@ def _remarks(evidence: Evidence) -> tuple[str, ...]:
     return (*what, *(f"{one.path}: {remark}" for one in evidence.observations for remark in one.remarks))
 
 
-def _parameters(final: Fit, nominal: Mapping[str, float], composition: Composition) -> tuple[FittedParameter, ...]:
-    rows = composition.place_rows
-    found = []
-    for one in final.free:
-        base = base_name(one.name)
-        if base not in rows:
-            continue
-        note = "" if identifiable(final, one.name) else "this recording does not tell it; held near its nominal value"
-        at_bound = one.is_bound_by(final.values[one.name])
-        if at_bound:
-            note = "at the bound of what is believed of it: its interval does not count"
-        found.append(
-            FittedParameter(
-                one.name,
-                nominal[base],
-                final.values[one.name],
-                final.deviation(one.name),
-                rows[base].unit,
-                has_changed(final, nominal, one.name),
-                note,
-                at_bound,
-            )
-        )
-    return tuple(found)
-
-
-def _named(winner: Entry, final: Fit, composition: Composition) -> tuple[NamedEffect, ...]:
-    found = []
-    for member in (one for one in winner.hypothesis.members if one.effect.named):
-        effect = composition.as_shown(member.effect)
-        values = {
-            row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
-            for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)
-        }
-        values |= _in_other_recordings(effect, final)
-        active = winner.span if member.limited else None
-        statement = effect.describe({name: value.value for name, value in values.items()})
-        statement += f", from {active[0]:.4g} s to {active[1]:.4g} s only" if active else ""
-        evidence = winner.score if len(winner.effects) == 1 else wald(final, effect)
-        row = NamedEffect(effect.id, effect.site, effect.equation, values, evidence, statement, active, effect.kind)
-        found.append(row)
-    return tuple(found)
-
-
-def _in_other_recordings(effect: Effect, final: Fit) -> dict[str, FittedValue]:
-    """The values of an effect's parameters that differ between recordings, in all but the first: `force@2`."""
-    units = {name: row.unit for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}
-    return {
-        one.name.removeprefix(f"{effect.id}."): FittedValue(
-            final.values[one.name], final.deviation(one.name), units[base_name(one.name)]
-        )
-        for one in final.free
-        if "@" in one.name and is_one_of(one.name, units)
-    }
-
-
 def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, ...]:
     """The named effect's site first: where the name is certain, so is the site, and when it acts."""
     sites = {effect.site for effect in winner.effects}
@@ -266,12 +202,6 @@ def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, 
     return (Location(law.site, law.r_squared, where, when, statement), *others)
 
 
-def _changed_values(final: Fit, composition: Composition) -> dict[str, float]:
-    """What a simulator needs beside the nominal values of such an actuator to be the fitted plant."""
-    nominal = composition.places(composition.nominal_values())
-    return {name: final.values[name] for name in nominal if final.values[name] != nominal[name]}
-
-
 def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
     """The test that would tell the rivals apart; of a source that no voltage drives, why there is none."""
     source = evidence.observation.composition.source
@@ -287,31 +217,3 @@ def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
     used = float(np.std(shooting.inputs[0])) if evidence.observation.drive == "voltage" else 0.0
     rivals = [(entry.ids, entry.fit) for entry in contenders(decision.winner, evidence.comparison)]
     return propose(rivals, noises, used or 0.1 * limit, limit)
-
-
-def _pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pictures:
-    """Series for the report: measured channels and the three models' at the same times, windows restarted."""
-    whole = evidence.calibration.shooting
-    shooting = evidence.shown(whole)
-    models = [_modelled(shooting, evidence.shown_fit(whole, one)) for one in (before, calibrated, after)]
-    times = {name: shooting.times(one) for name, one in zip(shooting.names, shooting.samplings, strict=True)}
-    measured = {name: one.values for name, one in zip(shooting.names, shooting.samplings, strict=True)}
-    variables: dict[str, Array] = {}
-    facts = facts_alone(whole, evidence.facts, evidence.lead)
-    if len(facts.rows):
-        for name in ("velocity", "spool_position", "position", "pressure_a", "pressure_b"):
-            variables[name] = facts.column(name)
-        variables["time"] = np.asarray((np.arange(len(facts.rows)) + 1) * shooting.every * shooting.step_size)
-    if evidence.observation.drive == "voltage":
-        times["voltage_command"], measured["voltage_command"] = evidence.observation.inputs[0]
-    equations = {one.equation: (one.time, one.residual) for one in evidence.equations}
-    outside = split(whole, instants_of(after))[1]
-    lead = whole.recordings[evidence.lead - 1]
-    spans = whole.local_edges.tolist()
-    judged = tuple((spans[window][0], spans[window][1]) for window in outside.windows if window in lead)
-    return Pictures(times, measured, models[0], models[1], models[2], variables, equations, judged)
-
-
-def _modelled(shooting: Shooting, result: Fit) -> dict[str, Array]:
-    pairs = zip(shooting.names, shooting.samplings, result.residuals, strict=True)
-    return {name: one.values - residual * one.noise for name, one, residual in pairs}

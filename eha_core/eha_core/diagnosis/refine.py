@@ -67,16 +67,16 @@ def with_dynamics_as_given(problem: Problem, calibrated: Fit) -> Fit | None:
         return None
     rest = [one for one in calibrated.free if one.name not in late]
     held = fit(problem, {**calibrated.values, **late}, rest, calibrated.states, iterations=5)
-    return _set_free(held, calibrated.free)
+    return set_free(held, calibrated.free)
 
 
 def as_given(problem: Problem, calibrated: Fit) -> Fit:
     """The calibration with every nominal parameter back at its nominal value, only the windows' starts fitted again."""
     given = {one.name: one.reference for one in calibrated.free if is_one_of(one.name, NOMINAL_NAMES)}
-    return _set_free(fit(problem, {**calibrated.values, **given}, (), calibrated.states, iterations=5), calibrated.free)
+    return set_free(fit(problem, {**calibrated.values, **given}, (), calibrated.states, iterations=5), calibrated.free)
 
 
-def _set_free(held: Fit, free: tuple[Free, ...]) -> Fit:
+def set_free(held: Fit, free: tuple[Free, ...]) -> Fit:
     """A fit as a point at which all of `free` may move again."""
     return replace(held, free=free, q=np.array([one.coordinate(held.values[one.name]) for one in free]))
 
@@ -131,7 +131,7 @@ def attempts(
     if dynamics_held is None:
         return tuple(chosen)
     # what the dynamics could imitate shows only while they are held
-    held = _set_free(dynamics_held, tuple(one for one in base.free if not is_one_of(one.name, LATE)))
+    held = set_free(dynamics_held, tuple(one for one in base.free if not is_one_of(one.name, LATE)))
     again = one_each(screen(problem, held, initial_guesses), WITH_DYNAMICS_AS_GIVEN)
     known = {one.score_test.start.effect.id for one in chosen if one.from_nominal}
     from_nominal = [Attempt(dynamics_held, one, True) for one in again if one.start.effect.id not in known]

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypotheses import Start, starts
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.refine import _set_free, as_given, with_dynamics_as_given
+from eha_core.diagnosis.refine import as_given, set_free, with_dynamics_as_given
 from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects, without_effect
 from eha_core.identification.fit import Fit
@@ -82,7 +82,7 @@ def _with_dynamics_held(search: Search, base: Candidate, begin: list[Start]) -> 
     if held is None:
         return
     # what the dynamics could imitate shows only while they are held
-    at = _set_free(held, tuple(one for one in base.fit.free if not is_one_of(one.name, LATE)))
+    at = set_free(held, tuple(one for one in base.fit.free if not is_one_of(one.name, LATE)))
     for score_test in one_each(screen(search.problem, at, begin), WITH_DYNAMICS_HELD):
         guess = _guess(base, held, score_test, in_stages=True)
         yield Guess(guess.hypothesis, guess.values, guess.free, guess.states, guess.predicted / HELD_SHARE, True)

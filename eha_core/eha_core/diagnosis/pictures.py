@@ -1,0 +1,41 @@
+"""Series for the report: what was measured, and what the models before, calibrated and after make of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.facts import facts_alone
+from eha_core.diagnosis.result import Pictures
+from eha_core.identification.fit import Fit
+from eha_core.identification.numbers import Array
+from eha_core.identification.shooting import Shooting
+from eha_core.identification.validate import instants_of, split
+
+
+def pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pictures:
+    """Measured channels and the three models' at the same times, windows restarted."""
+    whole = evidence.calibration.shooting
+    shooting = evidence.shown(whole)
+    models = [_modelled(shooting, evidence.shown_fit(whole, one)) for one in (before, calibrated, after)]
+    times = {name: shooting.times(one) for name, one in zip(shooting.names, shooting.samplings, strict=True)}
+    measured = {name: one.values for name, one in zip(shooting.names, shooting.samplings, strict=True)}
+    variables: dict[str, Array] = {}
+    facts = facts_alone(whole, evidence.facts, evidence.lead)
+    if len(facts.rows):
+        for name in ("velocity", "spool_position", "position", "pressure_a", "pressure_b"):
+            variables[name] = facts.column(name)
+        variables["time"] = np.asarray((np.arange(len(facts.rows)) + 1) * shooting.every * shooting.step_size)
+    if evidence.observation.drive == "voltage":
+        times["voltage_command"], measured["voltage_command"] = evidence.observation.inputs[0]
+    equations = {one.equation: (one.time, one.residual) for one in evidence.equations}
+    outside = split(whole, instants_of(after))[1]
+    lead = whole.recordings[evidence.lead - 1]
+    spans = whole.local_edges.tolist()
+    judged = tuple((spans[window][0], spans[window][1]) for window in outside.windows if window in lead)
+    return Pictures(times, measured, models[0], models[1], models[2], variables, equations, judged)
+
+
+def _modelled(shooting: Shooting, result: Fit) -> dict[str, Array]:
+    pairs = zip(shooting.names, shooting.samplings, result.residuals, strict=True)
+    return {name: one.values - residual * one.noise for name, one, residual in pairs}
