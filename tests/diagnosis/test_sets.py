@@ -8,11 +8,12 @@ from made import recorded
 
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.criteria import NOISE_KNOWN
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.candidates import Guess, Search, with_effects
-from eha_core.diagnosis.search.prune import asked_of, prune, refit_without, wald
+from eha_core.diagnosis.search.prune import asked_of, by_chance, prune, refit_without, wald
 from eha_core.diagnosis.verdict import coherence
 from eha_core.effects import effects
 from eha_core.exam.drawing import draw_case
@@ -68,9 +69,12 @@ def test_what_a_member_must_be_worth_rises_with_what_is_left(three):
     worth = dict.fromkeys(three.hypothesis.members, 100000.0)
     at_the_noise = asked_of(spring, worth, three, 1e6)
     far = replace(three, fit=replace(three.fit, data=3.0 * three.fit.count))
-    assert asked_of(spring, worth, far, 1e6) == pytest.approx(2.0 / 3.0 * 2.0 * three.fit.count)
+    assert asked_of(spring, worth, far, 1e6) == pytest.approx(2.0 / 3.0 * (2.0 - NOISE_KNOWN) * three.fit.count)
     assert asked_of(spring, worth, three, 0.0) < at_the_noise  # the overlap's law has other forms
     assert at_the_noise < 0.02 * asked_of(spring, worth, far, 1e6)
+    # what may pass for noise asks for nothing more than chance does
+    quiet = replace(three, fit=replace(three.fit, data=(1.0 + 0.9 * NOISE_KNOWN) * three.fit.count))
+    assert asked_of(spring, worth, quiet, 0.0) == by_chance(spring, worth, quiet)
 
 
 def test_a_fit_in_another_noise_is_the_same_model(search):
