@@ -4,10 +4,11 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.criteria import ENOUGH
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates, starts
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.model_comparison import ENOUGH, REFINED
+from eha_core.diagnosis.model_comparison import REFINED
 from eha_core.diagnosis.refine import attempts, refit_with, settle
 from eha_core.diagnosis.screen import screen
 from eha_core.effects import effects

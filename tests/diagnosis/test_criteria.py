@@ -24,6 +24,23 @@ def test_no_threshold_moved():
         "UNFITTED": 1.3,
         "LEAST_OF_A_LAW": 0.5,
         "COHERENT": 1.5,
+        "ENOUGH": 20.0,
+        "TIE": 10.0,
+        "CONTENDING": 20.0,
+        "HARDLY": 0.1,
+        "OVER": 0.05,
+        "ADEQUATE": 1.05,
+        "DEAR": 0.03,
+        "HELD_OUT": 5.0,
+        "PARTLY": 0.2,
+        "NEARLY_ALL": 0.1,
+        "ITS_FORM": 0.05,
+        "WHATEVER_FORM": 0.005,
+        "UNKNOWN_MARGIN": 50.0,
+        "OUTSTANDING": 1.5,
+        "LEFT_OVER": 0.05,
+        "NOTICEABLE": 4.0,
+        "RELEVANT": 0.01,
     }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from test_experiment import explanation
 
-from eha_core.diagnosis import verdict
+from eha_core.diagnosis import criteria, verdict
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
@@ -138,16 +138,16 @@ def knots_cost(effects_parameters: int, variance: float = 1.0) -> float:
 def test_a_curve_beats_the_catalogue_by_a_margin_and_its_knots(more, found):
     named = entry(500.0, "constant_load", of=fit(4.0 * COUNT))
     own = len(LAWS["constant_load"].parameters)
-    objective = 4.0 * COUNT - (verdict.UNKNOWN_MARGIN + knots_cost(own)) - more
+    objective = 4.0 * COUNT - (criteria.UNKNOWN_MARGIN + knots_cost(own)) - more
     assert decide(named, recovery=recovered(100.0, objective=objective)).verdict == found
 
 
 def test_a_curve_far_above_the_noise_does_not_beat_a_name_that_explains_nearly_all():
     named = entry(500.0, "constant_load", of=fit(2.8 * COUNT, objective=1e6))
-    for data, found in ((verdict.FAR_OFF * COUNT * 1.01, "missing_physics"), (COUNT, "unknown_physics")):
+    for data, found in ((criteria.FAR_FROM_NOISE * COUNT * 1.01, "missing_physics"), (COUNT, "unknown_physics")):
         assert decide(named, recovery=recovered(100.0, data=data, objective=0.0)).verdict == found
     half = entry(500.0, "constant_load", of=fit(3.0 * COUNT, objective=1e6))  # leaves more than a tenth
-    far = recovered(100.0, data=verdict.FAR_OFF * COUNT * 1.01, objective=0.0)
+    far = recovered(100.0, data=criteria.FAR_FROM_NOISE * COUNT * 1.01, objective=0.0)
     assert decide(half, recovery=far).verdict == "unknown_physics"
 
 
@@ -177,7 +177,7 @@ def test_a_curve_that_draws_the_named_law_in_its_other_form_leaves_it_its_name(n
 @pytest.mark.parametrize(("gain", "found"), [(-1.0, "consistent"), (1.0, "parameters")])
 def test_parameters_differ_where_the_data_say_so_together(gain, found):
     calm = replace(NOMINAL, fit=replace(fit(1.2 * COUNT), free=(SimpleNamespace(name="moving_mass"),)))
-    threshold = 2.0 * (verdict.ENOUGH + np.log(COUNT))
+    threshold = 2.0 * (criteria.ENOUGH + np.log(COUNT))
     how = {"nominal": calm, "before": threshold + gain, "residual_variance": 2.0}
     decision = decide(named=("moving_mass",), **how)
     assert decision.verdict == found and decision.winner is calm and decision.judged_winner is None

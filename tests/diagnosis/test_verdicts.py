@@ -9,7 +9,7 @@ from made import recorded
 
 from eha_core.cli import main
 from eha_core.diagnosis import diagnose
-from eha_core.diagnosis.model_comparison import TIE
+from eha_core.diagnosis.criteria import TIE
 from eha_core.exam.cases import draw_case
 from eha_core.exam.measuring import measure, simulate_case
 from eha_core.identification.observation import observe, reaching

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
 from eha_core.identification.freedom import nominal_freedom
 from eha_core.identification.noise import residual_noise
@@ -26,12 +27,6 @@ flows or a fast valve can need the others."""
 UNNOTICED = 20.0
 """Chi^2 by which the response may change as its step is halved: less than any effect must gain to be named. Of a model
 that is far off, the share WORTH of what it leaves may be more."""
-
-NOTICEABLE = 4.0
-"""A parameter has changed when it left its nominal value by this many standard deviations ..."""
-
-RELEVANT = 0.01
-"""... and by this share of itself (or, where the nominal value is zero, of the scale on which it is free)."""
 
 NOWHERE_ELSE = 0.8
 AT_ALL = 50.0

@@ -1,6 +1,7 @@
 """Every threshold that decides which effects are named: its meaning and where it comes from.
 
-What a hypothesis gains is told in chi^2, the squared residual in units of the noise's variance. `tests/diagnosis/
+What a hypothesis gains is told in chi^2, the squared residual in units of the noise's variance. Where no origin is
+stated a value is assumed, and kept as it served development cases of the exam (seeds up to 2028). `tests/diagnosis/
 test_criteria.py` fails when one of them moves.
 """
 
@@ -11,7 +12,8 @@ FAR_FROM_NOISE = 5.0
 a residual of twice the noise's size beside the noise."""
 
 NEAR_NOISE = 1.03
-"""Chi^2 a sample below which no member of a set is put up for exchange. Tuned on development cases (seed 9001)."""
+"""Chi^2 a sample below which no member of a set is put up for exchange, and no leader is tried from another start.
+Tuned on development cases (seed 9001)."""
 
 MOST_EFFECTS = 8
 """Members that a set may have: more than a rig of every kind of wear has at once (assumed)."""
@@ -59,6 +61,58 @@ found in any residual (assumed)."""
 
 COHERENT = 1.5
 """The same of a residual averaged over blocks: outliers are not coherent, physics is (assumed)."""
+
+ENOUGH = 20.0
+"""An effect is named only if its score exceeds this: far beyond what the best of many hypotheses gains by chance."""
+
+TIE = 10.0
+"""Rivals within this of the best score are not told apart."""
+
+HARDLY = 0.1
+"""Once a hypothesis explains all but noise, or but OVER of what there was, one whose predicted gain is less than
+this share of what that gained is not tried."""
+
+OVER = 0.05
+
+ADEQUATE = 1.05
+DEAR = 0.03
+"""Where even the best model leaves more than ADEQUATE times the noise, its residual is no noise but more physics, and
+small gains mean little: a parameter must then pay for itself by up to this share of what is left over (assumed)."""
+
+HELD_OUT = 5.0
+"""A named effect must lower chi^2 on held-out windows by this."""
+
+CONTENDING = 2.0 * TIE
+"""What falls behind the winner by less may still be the truth, when a rival leads by chance."""
+
+PARTLY = 0.2
+"""Share of what the nominal equations leave over above which a coherent rest is more physics: a name must explain most
+of what is there."""
+
+NEARLY_ALL = 0.1
+"""Share of what the nominal equations leave over below which a name has explained nearly all of it."""
+
+ITS_FORM = 0.05
+WHATEVER_FORM = 0.005
+"""Shares below which what a name leaves over may be its law's other form: a curve of the same site follows it, or
+whatever curve has knots enough."""
+
+UNKNOWN_MARGIN = 50.0
+"""A recovered curve must beat the best of the catalogue by this, its many knots paid for, before the catalogue is
+refused."""
+
+OUTSTANDING = 1.5
+"""An effect is taken to act for a while where its predicted gain is this many times that of any effect that always
+acts. Of effects that do always act, the best windows in a row are predicted to gain no more than the whole record."""
+
+LEFT_OVER = 0.05
+"""A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""
+
+NOTICEABLE = 4.0
+"""A parameter has changed when it left its nominal value by this many standard deviations ..."""
+
+RELEVANT = 0.01
+"""... and by this share of itself (or, where the nominal value is zero, of the scale on which it is free)."""
 
 
 def chance_gain(samples: int, times_noise: float) -> float:

@@ -9,13 +9,12 @@ from math import log
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import NEXT_TO_NOTHING
+from eha_core.diagnosis.criteria import ADEQUATE, DEAR, ENOUGH, FAR_FROM_NOISE, HARDLY, NEXT_TO_NOTHING, OVER
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.passing import passing_effects
 from eha_core.diagnosis.refine import (
-    FAR_OFF,
     Found,
     Progress,
     attempts,
@@ -34,23 +33,6 @@ from eha_core.parameters import catalogue
 
 REFINED = 8
 """How many hypotheses are refitted in full after a screening."""
-
-ENOUGH = 20.0
-"""An effect is named only if its score exceeds this: far beyond what the best of many hypotheses gains by chance."""
-
-TIE = 10.0
-"""Rivals within this of the best score are not told apart."""
-
-HARDLY = 0.1
-"""Once a hypothesis explains all but noise, or but OVER of what there was, one whose predicted gain is less than
-this share of what that gained is not tried."""
-
-OVER = 0.05
-
-ADEQUATE = 1.05
-DEAR = 0.03
-"""Where even the best model leaves more than ADEQUATE times the noise, its residual is no noise but more physics, and
-small gains mean little: a parameter must then pay for itself by up to this share of what is left over."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +88,7 @@ def compete(
     best = min([calibrated.objective, *(result.objective for result in passing.values())])
     nearly_all = problem.count() + OVER * (calibrated.objective - problem.count())
     # a share of what a hopeless calibration leaves is still far from noise
-    enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_OFF * problem.count()))
+    enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_FROM_NOISE * problem.count()))
     for attempt in attempts(problem, calibrated, initial_guesses, score_tests, REFINED, ENOUGH):
         effect = attempt.score_test.start.effect
         if best < enough and attempt.score_test.gain < HARDLY * (calibrated.objective - best):
@@ -115,7 +97,8 @@ def compete(
         result = refit_with(problem, attempt, best)
         keep_better(found, NOTHING.with_effects([effect]), result)
         best = min(best, result.objective)
-    if best < FAR_OFF * problem.count() or passing:  # single effects that are far off are not worth their last digits
+    # single effects that are far off are not worth their last digits
+    if best < FAR_FROM_NOISE * problem.count() or passing:
         found = cross(problem, settle(problem, found, progress))
     return _ranked(problem, calibrated, {**passing, **found}, score_tests)
 

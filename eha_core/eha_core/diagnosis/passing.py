@@ -14,6 +14,7 @@ from math import log
 
 import numpy as np
 
+from eha_core.diagnosis.criteria import OUTSTANDING
 from eha_core.diagnosis.effect_freedom import effect_freedom, span_freedom
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.hypothesis import NOTHING
@@ -24,10 +25,6 @@ from eha_core.identification.numbers import Array
 from eha_core.identification.parallel import each
 from eha_core.identification.problem import Problem
 from eha_core.parameters import ACTING
-
-OUTSTANDING = 1.5
-"""An effect is taken to act for a while where its predicted gain is this many times that of any effect that always
-acts. Of effects that do always act, the best windows in a row are predicted to gain no more than the whole record."""
 
 SPACINGS = (0.25, 0.0625, 0.015, 0.004)
 ABREAST = 4

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.effect_freedom import effect_freedom
 from eha_core.diagnosis.hypotheses import Start
 from eha_core.diagnosis.hypothesis import Hypothesis
@@ -22,17 +23,11 @@ from eha_core.identification.per_recording import is_one_of
 from eha_core.identification.problem import Problem
 from eha_core.parameters import ACTING, NOMINAL
 
-FAR_OFF = 5.0
-"""Chi^2 a sample beyond which a calibration's parameter values mean little."""
-
 SETTLED_LEADERS = 3
 
 SETTLE_REACH = 300.0
 """The best few are fitted to their end, those at least that came within this of the best, or half of what it left
 over."""
-
-NOT_EXPLAINED = 1.03
-"""Chi^2 a sample above which a leader is tried from another start."""
 
 CROSSED = 3
 """How many of the leaders behind the best are fitted once more from where it stands."""
@@ -105,7 +100,7 @@ class Attempt:
 def attempt_on(base: Fit, score_test: ScoreTest) -> Attempt:
     """An attempt from where a fit stands; from the nominal values where that is far off, which has bent its parameters
     to imitate what is missing."""
-    return Attempt(base, score_test, base.data > FAR_OFF * base.count)
+    return Attempt(base, score_test, base.data > FAR_FROM_NOISE * base.count)
 
 
 def attempts(
@@ -123,7 +118,7 @@ def attempts(
     A fit that is far off has bent its parameters, and what is missing shows against the nominal ones first.
     """
     leading = one_each(score_tests, most)
-    if base.data > FAR_OFF * base.count:
+    if base.data > FAR_FROM_NOISE * base.count:
         straight = one_each(screen(problem, as_given(problem, base), initial_guesses), most)
         leading = one_each((*straight, *leading), 2 * most)
     chosen = [attempt_on(base, score_test) for score_test in leading if score_test.gain > least]
@@ -172,7 +167,7 @@ def settle(problem: Problem, found: Found, progress: Progress = lambda _: None) 
             continue
         progress(f"settling {' and '.join(hypothesis.ids)}")
         result = fit(exact, result.values, result.free, result.states, iterations=30)
-        if result.data > NOT_EXPLAINED * result.count:
+        if result.data > NEAR_NOISE * result.count:
             untouched = {one.name: one.reference for one in result.free if is_one_of(one.name, NOMINAL_NAMES)}
             again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
             if again.objective < result.objective:
@@ -241,7 +236,7 @@ def _other_instants(problem: Problem, exact: Problem, result: Fit) -> Fit:
     for one in result.free:
         if one.resolution == 0.0:
             continue
-        if result.data > NOT_EXPLAINED * result.count:
+        if result.data > NEAR_NOISE * result.count:
             result = _far_instant(problem, exact, result, one)
         for shift in INSTANT_SHIFTS:
             moved = {**result.values, one.name: result.values[one.name] + shift}

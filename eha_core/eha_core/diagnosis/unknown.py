@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eha_core.curve import KNOTS
-from eha_core.diagnosis.criteria import CONVINCING, UNFITTED, chance_gain
+from eha_core.diagnosis.criteria import CONVINCING, LEFT_OVER, UNFITTED, chance_gain
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.model_comparison import Entry, ModelComparison, parameter_cost
@@ -22,9 +22,6 @@ from eha_core.identification.freedom import Free
 from eha_core.identification.observation import WITH_OIL
 from eha_core.identification.problem import Problem, linearise, normal_equations
 from eha_core.identification.shooting import Shooting
-
-LEFT_OVER = 0.05
-"""A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""
 
 FULLY_FITTED = 2
 """How many of the curves with the largest predicted gain are fitted in full."""

@@ -10,22 +10,28 @@ import numpy as np
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import Calibration, has_changed
-from eha_core.diagnosis.criteria import COHERENT, LEAST_OF_A_LAW, UNFITTED
-from eha_core.diagnosis.model_comparison import ENOUGH, TIE, Entry, ModelComparison, bounded, parameter_cost
-from eha_core.diagnosis.refine import FAR_OFF
+from eha_core.diagnosis.criteria import (
+    COHERENT,
+    CONTENDING,
+    ENOUGH,
+    FAR_FROM_NOISE,
+    HELD_OUT,
+    ITS_FORM,
+    LEAST_OF_A_LAW,
+    NEARLY_ALL,
+    PARTLY,
+    TIE,
+    UNFITTED,
+    UNKNOWN_MARGIN,
+    WHATEVER_FORM,
+)
+from eha_core.diagnosis.model_comparison import Entry, ModelComparison, bounded, parameter_cost
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.noise import NORMAL_MEDIAN
 from eha_core.identification.numbers import Array
 from eha_core.identification.validate import Judged, instants_of, judge
-
-HELD_OUT = 5.0
-"""A named effect must lower chi^2 on held-out windows by this."""
-
-
-CONTENDING = 2.0 * TIE
-"""What falls behind the winner by less may still be the truth, when a rival leads by chance."""
 
 
 @dataclass(frozen=True)
@@ -39,24 +45,8 @@ class Decision:
     judged_winner: Judged | None
 
 
-PARTLY = 0.2
-"""Share of what the nominal equations leave over above which a coherent rest is more physics: a name must explain most
-of what is there."""
-
-NEARLY_ALL = 0.1
-"""Share of what the nominal equations leave over below which a name has explained nearly all of it."""
-
-ITS_FORM = 0.05
-WHATEVER_FORM = 0.005
-"""Shares below which what a name leaves over may be its law's other form: a curve of the same site follows it, or
-whatever curve has knots enough."""
-
 SMOOTHED = 20
 """Samples a block in which a residual is averaged to see whether it is coherent."""
-
-UNKNOWN_MARGIN = 50.0
-"""A recovered curve must beat the best of the catalogue by this, its many knots paid for, before the catalogue is
-refused."""
 
 
 def decide(
@@ -120,7 +110,7 @@ def _beats_the_catalogue(recovery: Recovery, comparison: ModelComparison) -> boo
     variance = max(1.0, recovery.fit.data / recovery.fit.count)
     nominal, curve = comparison.nominal.fit, recovery.fit
     left = (best.fit.data - best.fit.count) / max(nominal.data - nominal.count, 1.0)
-    if left < NEARLY_ALL and best.effects and curve.data > FAR_OFF * curve.count:
+    if left < NEARLY_ALL and best.effects and curve.data > FAR_FROM_NOISE * curve.count:
         return False
     forms = [one for one in best.effects if one.approximate]
     if left < WHATEVER_FORM and forms or left < ITS_FORM and any(one.site == recovery.effect.site for one in forms):

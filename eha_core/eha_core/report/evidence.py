@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eha_core.diagnosis.model_comparison import TIE
+from eha_core.diagnosis.criteria import TIE
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.effects import effects
 from eha_core.quantities import RAISED

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.model_comparison import TIE
+from eha_core.diagnosis.criteria import TIE
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import quantity, short
 from eha_core.recording import CHANNEL_KINDS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eha_core.diagnosis.model_comparison import ENOUGH
+from eha_core.diagnosis.criteria import ENOUGH
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.report.evidence import IN_FULL, evidence_picture, named
 from eha_core.report.finding import counted, names_listed
