@@ -118,3 +118,8 @@ RELEVANT = 0.01
 def chance_gain(samples: int, times_noise: float) -> float:
     """Chi^2 that one more effect must gain to be looked at, where the model leaves `times_noise` chi^2 a sample."""
     return (CHANCE + OF_SAMPLES * samples) * max(1.0, times_noise)
+
+
+def gain_to_go_on(samples: int, times_noise: float, left: float) -> float:
+    """Chi^2 that a search's next set must gain where the set before it leaves `left` beside the noise."""
+    return max(chance_gain(samples, times_noise), WORTH_ADDING * max(0.0, left))

@@ -7,7 +7,7 @@ without it, and the catalogue competes for its place.
 
 from __future__ import annotations
 
-from eha_core.diagnosis.criteria import WORTH_ADDING, chance_gain
+from eha_core.diagnosis.criteria import chance_gain, gain_to_go_on
 from eha_core.diagnosis.hypothesis import Member
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
 from eha_core.diagnosis.search.grow import race
@@ -23,10 +23,9 @@ def exchange(search: Search, best: Candidate) -> Candidate:
     for member in weakest_first(best):
         race(search, rivals_for(search, best, member))
         reached = min(search, key=lambda one: one.fit.objective)
-        needed = chance_gain(search.problem.count(), reached.times_noise)
-        left = max(0.0, best.fit.data - best.fit.count)
-        if best.fit.objective - reached.fit.objective > max(needed, WORTH_ADDING * left):
-            return look_back(search, reached, needed)
+        samples, left = search.problem.count(), best.fit.data - best.fit.count
+        if best.fit.objective - reached.fit.objective > gain_to_go_on(samples, reached.times_noise, left):
+            return look_back(search, reached, chance_gain(samples, reached.times_noise))
     return best
 
 

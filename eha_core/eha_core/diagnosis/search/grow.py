@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, UNFITTED, WORTH_ADDING, chance_gain
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, UNFITTED, chance_gain, gain_to_go_on
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
 from eha_core.diagnosis.search.proposals import proposals
 from eha_core.diagnosis.search.prune import look_back
@@ -25,12 +25,10 @@ def grow(search: Search, best: Candidate) -> Candidate:
         if reached.times_noise < FAR_FROM_NOISE:
             search.measure_noise(reached)
             reached, best = search.again(reached), search.again(best)
-        gain = best.fit.objective - reached.fit.objective
-        left = max(0.0, best.fit.data - best.fit.count)
-        needed = chance_gain(search.problem.count(), reached.times_noise)
-        if gain < max(needed, WORTH_ADDING * left):
+        samples, left = search.problem.count(), best.fit.data - best.fit.count
+        if best.fit.objective - reached.fit.objective < gain_to_go_on(samples, reached.times_noise, left):
             break
-        best = look_back(search, reached, needed)
+        best = look_back(search, reached, chance_gain(samples, reached.times_noise))
         search.report(best)
     return best
 
