@@ -48,7 +48,7 @@ def test_the_page_shows_the_rig_and_turns_its_leakage(rig: Rig, tmp_path: Path) 
     url = serve(rig)
     assert post(f"{url}internal_leakage", b"1e-10") == 200
     rig.wait(lambda: "no simulator" in values(url)["refused"], "what is wrong", 5)
-    rig.start_sim("initial_position:=0.0123")
+    rig.start_sim("initial_position:=0.0123", "spring_stiffness:=0.0")  # which would move the leaking piston
     states = rig.hear(ActuatorState, "state")
     rig.wait(lambda: values(url).get("pressure_b"), "the rig's values", 20)
     assert post(f"{url}internal_leakage", b"1e-10") == 200

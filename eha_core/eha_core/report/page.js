@@ -20,6 +20,8 @@ function narrowed(layout, table) {
     if (key[0] === "y" && axis.ticktext) {
       axis.tickfont = { size: 10 };
       axis.ticktext = axis.ticktext.map(table ? (name) => name.replace(/^.*: /, "") : inTwoLines);
+    } else if (key[0] === "y" && axis.title.text.length > 28) {
+      axis.title.text = inTwoLines(axis.title.text);
     } else if (key[0] === "x" && axis.title.text.length > 24) {
       axis.title.text = inTwoLines(axis.title.text);
       axis.title.standoff += 10;
@@ -32,12 +34,19 @@ function narrowed(layout, table) {
   }
 }
 
+// What stands beside a bar gets the room that it needs on a narrow plot, and does not repeat what the axis says.
+function barsNarrowed(bars, layout) {
+  bars.text = bars.text.map((text) => text.replace(/ behind$|^best$/, ""));
+  const { range } = layout.xaxis;
+  if (range && bars.text.some((text) => text.length > 8)) layout.xaxis.range = [range[0], 1.35 * range[1]];
+}
+
 for (const place of plots) {
   const { data, layout } = JSON.parse(place.querySelector("script").textContent);
   layout.autosize = true;
   if (place.clientWidth < 360) {
     narrowed(layout, data.find((trace) => trace.type === "heatmap"));
-    for (const bars of data.filter((trace) => trace.type === "bar")) bars.text = bars.text.map((text) => text.replace(" behind", ""));
+    for (const bars of data.filter((trace) => trace.type === "bar")) barsNarrowed(bars, layout);
   }
   layout.dragmode = touch ? false : "zoom"; // a finger on a plot scrolls the page
   Plotly.newPlot(place, data, layout, {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import signal
@@ -25,13 +26,26 @@ calls_services = pytest.mark.skipif(
 
 
 class Command:
-    """One call of `ros2`, running beside the test."""
+    """One call of `ros2`, running beside the test within a `with`, which leaves nothing of it behind."""
 
     def __init__(self, *arguments: str, cwd: Path | None = None) -> None:
         self.process = subprocess.Popen(
             [str(ROS2), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd,
             start_new_session=True,
         )  # fmt: skip
+
+    def __enter__(self) -> Command:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End what a failed test left running; by asking, since a killed node stays in the graph for its lease."""
+        assert self.process.stdout is not None
+        if self.process.stdout.closed:  # its result was taken
+            return
+        with contextlib.suppress(ProcessLookupError):
+            self.interrupt()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self.result(10.0)
 
     def interrupt(self) -> None:
         """Send what Ctrl-C sends: a signal to the command and to what it has started."""
@@ -41,22 +55,22 @@ class Command:
         """Return exit status, output and errors."""
         try:
             output, errors = self.process.communicate(timeout=timeout)
-        finally:
-            if self.process.poll() is None:
-                os.killpg(self.process.pid, signal.SIGKILL)
-                self.process.communicate()
+        except subprocess.TimeoutExpired:  # the command, or what it has started and which holds its output open
+            os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.communicate()
+            raise
         return self.process.returncode, output, errors
 
 
 def run(graph: Graph | None, *arguments: str) -> tuple[int, str, str]:
     """Run a command to its end while the test's nodes go on."""
-    command = Command(*arguments)
-    if graph is not None:
-        assert graph.spin_until(lambda: command.process.poll() is not None, 30.0)
-    return command.result()
+    with Command(*arguments) as command:
+        if graph is not None:
+            assert graph.spin_until(lambda: command.process.poll() is not None, 30.0)
+        return command.result()
 
 
-def in_the_end(graph: Graph, text: str, *arguments: str) -> str:
+def in_the_end(graph: Graph | None, text: str, *arguments: str) -> str:
     """Return a command's output once it holds a text: ROS 2's daemon and the layer first have to find the nodes."""
     status, output = 1, ""
     for _ in range(5):

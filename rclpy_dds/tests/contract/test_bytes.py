@@ -107,8 +107,10 @@ def test_type_hashes_agree_with_rosbags(graph: Graph) -> None:
 
     node = graph.node("hasher")
     for number, (name, message_class) in enumerate(CLASSES.items()):
-        publisher = node.create_publisher(message_class, f"hashed_{number}", 1)
-        [endpoint] = node.get_publishers_info_by_topic(f"hashed_{number}")
+        topic = f"hashed_{number}"
+        publisher = node.create_publisher(message_class, topic, 1)
+        assert graph.spin_until(lambda topic=topic: node.get_publishers_info_by_topic(topic)), name
+        [endpoint] = node.get_publishers_info_by_topic(topic)
         if not has_char(name):
             assert str(endpoint.topic_type_hash) == STORE.hash_rihs01(name), name
         node.destroy_publisher(publisher)

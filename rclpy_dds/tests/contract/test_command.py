@@ -49,6 +49,7 @@ def test_pub_sends_the_number_asked_for(graph: Graph) -> None:
     graph.node("listener").create_subscription(Float64, "x", lambda message: received.append(message.data), 10)
     status, output, _ = _run(graph, "topic", "pub", "-t", "3", "-r", "50", "/x", "std_msgs/msg/Float64", "{data: 1e-3}")
     assert status == 0 and "publishing #3: std_msgs.msg.Float64(data=0.001)" in output
+    assert graph.spin_until(lambda: len(received) >= 3)
     assert received == [0.001] * 3
 
 
@@ -62,13 +63,13 @@ def test_hz_tells_the_rate(graph: Graph) -> None:
         sent.append(time.monotonic())
 
     node.create_timer(0.01, send)
-    command = Command("topic", "hz", "/x")
-    assert graph.spin_until(lambda: publisher.get_subscription_count() == 1, 15.0)
-    end = time.monotonic() + 2.5  # it tells once a second
-    sent.clear()
-    graph.spin_until(lambda: time.monotonic() > end)
-    command.interrupt()
-    output = command.result()[1]
+    with Command("topic", "hz", "/x") as command:
+        assert graph.spin_until(lambda: publisher.get_subscription_count() == 1, 15.0)
+        end = time.monotonic() + 2.5  # it tells once a second
+        sent.clear()
+        graph.spin_until(lambda: time.monotonic() > end)
+        command.interrupt()
+        output = command.result()[1]
     rate = float(output.split("average rate: ")[1].split()[0])
     assert rate == pytest.approx((len(sent) - 1) / (sent[-1] - sent[0]), rel=0.2)  # 100, but on a busy machine
 
@@ -77,7 +78,8 @@ def test_hz_tells_the_rate(graph: Graph) -> None:
 def test_parameters_are_set_got_and_described(graph: Graph) -> None:
     node = graph.node("sim")
     node.declare_parameter("leakage", 1e-12)
-    assert _run(graph, "param", "set", "/sim", "leakage", "1.0e-10")[:2] == (0, "Set parameter successful\n")
+    done = "Set parameter successful\n"
+    assert in_the_end(graph, done, "param", "set", "/sim", "leakage", "1.0e-10") == done
     assert node.get_parameter("leakage").value == 1e-10
     assert _run(graph, "param", "get", "/sim", "leakage")[1] == "Double value is: 1e-10\n"
     assert "  leakage\n" in _run(graph, "param", "list", "/sim")[1]
@@ -112,15 +114,15 @@ def test_a_recording_is_made_described_and_played(graph: Graph, tmp_path: Path) 
     timer = node.create_timer(0.01, send)
     timer.cancel()
     bag = tmp_path / "bag"
-    recorder = Command("bag", "record", "-s", "mcap", "-o", str(bag), "--topics", "/x")
-    assert graph.spin_until(lambda: publisher.get_subscription_count() == 1, 15.0)
-    timer.reset()
-    assert graph.spin_until(lambda: len(sent) >= 50)
-    timer.cancel()
-    end = time.monotonic() + 0.5
-    graph.spin_until(lambda: time.monotonic() > end)
-    recorder.interrupt()
-    assert recorder.result()[0] == 0
+    with Command("bag", "record", "-s", "mcap", "-o", str(bag), "--topics", "/x") as recorder:
+        assert graph.spin_until(lambda: publisher.get_subscription_count() == 1, 15.0)
+        timer.reset()
+        assert graph.spin_until(lambda: len(sent) >= 50)
+        timer.cancel()
+        end = time.monotonic() + 0.5
+        graph.spin_until(lambda: time.monotonic() > end)
+        recorder.interrupt()
+        assert recorder.result()[0] == 0
     information = _run(None, "bag", "info", str(bag))[1]
     assert f"Topic: /x | Type: std_msgs/msg/Float64 | Count: {len(sent)} | Serialization Format: cdr" in information
     received: list[float] = []
@@ -135,16 +137,17 @@ def test_what_is_recorded_and_played_can_be_chosen_by_pattern(graph: Graph, tmp_
     publishers = [node.create_publisher(Float64, name, 10) for name in names]
     timer = node.create_timer(0.02, lambda: [publisher.publish(Float64(data=1.0)) for publisher in publishers])
     chosen = ["-e", "^/rig", "--exclude-topics", "/rig/b"]
-    recorder = Command("bag", "record", "-s", "mcap", "-o", str(bag), *chosen)
-    assert graph.spin_until(lambda: all(publishers[i].get_subscription_count() == 1 for i in (0, 2)), 15.0)
-    assert not graph.spin_until(lambda: any(publishers[i].get_subscription_count() for i in (1, 3)), 1.0)
-    recorder.interrupt()
-    assert recorder.result()[0] == 0
+    with Command("bag", "record", "-s", "mcap", "-o", str(bag), *chosen) as recorder:
+        assert graph.spin_until(lambda: all(publishers[i].get_subscription_count() == 1 for i in (0, 2)), 15.0)
+        assert not graph.spin_until(lambda: any(publishers[i].get_subscription_count() for i in (1, 3)), 1.0)
+        recorder.interrupt()
+        assert recorder.result()[0] == 0
     timer.cancel()
     heard: set[str] = set()
     for name in names:
         node.create_subscription(Float64, name, lambda _, name=name: heard.add(name), 10)
     assert _run(graph, "bag", "play", str(bag), "-d", "1", "-e", "/rig/.", "-x", ".*c")[0] == 0
+    assert graph.spin_until(lambda: heard)
     assert heard == {"/rig/a"}
 
 
@@ -194,24 +197,29 @@ def _heard(graph: Graph, text: str) -> bool:
     return graph.spin_until(lambda: text in heard, 20.0)
 
 
+def _appears(graph: Graph, name: str) -> bool:
+    """Tell whether a node is found in time: its name may be discovered later than its first message."""
+    return graph.spin_until(lambda: name in graph.nodes[0].get_fully_qualified_node_names())
+
+
 def test_run_starts_a_node_and_ends_with_it(package: Path, graph: Graph) -> None:
-    command = Command("run", "some_package", "node", "--ros-args", "-p", "gain:=2.5", "-r", "__ns:=/a")
-    assert _heard(graph, "up as /a/launched with 2.5")
-    assert "/a/launched" in graph.nodes[0].get_fully_qualified_node_names()
-    command.interrupt()
-    status, _, errors = command.result()
+    with Command("run", "some_package", "node", "--ros-args", "-p", "gain:=2.5", "-r", "__ns:=/a") as command:
+        assert _heard(graph, "up as /a/launched with 2.5")
+        assert _appears(graph, "/a/launched")
+        command.interrupt()
+        status, _, errors = command.result()
     assert status == 0 and "up as /a/launched with 2.5" in errors
 
 
 def test_launch_starts_and_ends_what_the_file_says(package: Path, graph: Graph) -> None:
-    command = Command("launch", "some_package", "one.launch.yaml", "gain:=3.5")
-    assert _heard(graph, "up as /rig/renamed with 3.5")
-    observer = graph.nodes[0]
-    assert "/rig/renamed" in observer.get_fully_qualified_node_names()
-    command.process.send_signal(signal.SIGINT)  # which launch passes on
-    status, output, errors = command.result()
+    with Command("launch", "some_package", "one.launch.yaml", "gain:=3.5") as command:
+        assert _heard(graph, "up as /rig/renamed with 3.5")
+        assert _appears(graph, "/rig/renamed")
+        command.process.send_signal(signal.SIGINT)  # which launch passes on
+        status, output, errors = command.result()
     assert status == 0, errors
     assert "up as /rig/renamed with 3.5" in output + errors
+    observer = graph.nodes[0]
     assert graph.spin_until(lambda: "/rig/renamed" not in observer.get_fully_qualified_node_names(), 2.0)
 
 
@@ -222,5 +230,5 @@ def test_parameters_of_another_process(graph: Graph, program: Callable[..., Prog
         "print('ready'); rclpy.spin(n)"
     )
     program(source).wait_for("ready")
-    assert _run(None, "param", "set", "/far", "a", "5")[0] == 0
+    assert in_the_end(None, "Set parameter successful", "param", "set", "/far", "a", "5")
     assert _run(None, "param", "get", "--hide-type", "/far", "a")[1] == "5\n"

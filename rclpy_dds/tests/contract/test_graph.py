@@ -36,7 +36,12 @@ def test_nodes_are_told_by_name_and_namespace(observed: Graph) -> None:
 
 def test_topics_and_services_are_told_with_their_types(observed: Graph) -> None:
     observer = observed.nodes[0]
-    assert observed.spin_until(lambda: "/rig/volts" in dict(observer.get_topic_names_and_types()))
+    assert observed.spin_until(
+        lambda: (
+            {"/rig/volts", "/rig/word"} <= set(dict(observer.get_topic_names_and_types()))
+            and "/rig/switch" in dict(observer.get_service_names_and_types())
+        )
+    )
     topics, services = dict(observer.get_topic_names_and_types()), dict(observer.get_service_names_and_types())
     assert topics["/rig/volts"] == FLOAT and topics["/rig/word"] == ["std_msgs/msg/String"]
     assert services["/rig/switch"] == SWITCH

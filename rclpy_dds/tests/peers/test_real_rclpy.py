@@ -68,7 +68,7 @@ def test_topics_go_both_ways_and_standing_ones_arrive_late(peer: subprocess.Pope
             sent.append(message)
             assert spin_until(lambda number=number: len(heard) > number)
         assert heard == sent
-        assert ("real_peer", "/") in node.get_node_names_and_namespaces()
+        assert spin_until(lambda: ("real_peer", "/") in node.get_node_names_and_namespaces())
     finally:
         executor.shutdown()
         node.destroy_node()
