@@ -30,3 +30,17 @@ def test_a_function_that_leaves_more_than_it_explains_is_no_law(share, told):
     if law is not None:
         assert law.function_of == "velocity"
         assert law.expression == "3e3 v [N], v in m/s"
+
+
+def test_a_curve_that_no_expression_fits_is_told_by_its_knots_alone():
+    speeds = np.linspace(-0.2, 0.2, 12)
+    forces = 300.0 * np.random.default_rng(6).standard_normal(12)
+    knots = tuple(zip(speeds.tolist(), forces.tolist(), strict=True))
+    evidence = SimpleNamespace(
+        decision=SimpleNamespace(verdict="unknown_physics"),
+        balances=(),
+        recovery=Recovery(CURVE, "velocity", NOTHING.with_effects([CURVE]), explanation({}), 500.0, 0.8, knots),
+    )
+    law = _unknown(evidence)
+    assert law is not None and law.expression == ""
+    assert (law.site, law.function_of, law.r_squared, law.samples) == ("force", "velocity", 0.8, knots)

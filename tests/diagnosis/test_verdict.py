@@ -142,6 +142,15 @@ def test_a_curve_beats_the_catalogue_by_a_margin_and_its_knots(more, found):
     assert decide(named, recovery=recovered(100.0, objective=objective)).verdict == found
 
 
+@pytest.mark.parametrize(("more", "found"), [(-1.0, "missing_physics"), (1.0, "unknown_physics")])
+def test_the_margin_of_a_curve_is_counted_in_what_it_leaves_a_sample(more, found):
+    named = entry(500.0, "constant_load", of=fit(4.0 * COUNT))
+    own = len(LAWS["constant_load"].parameters)
+    needed = 3.0 * (criteria.UNKNOWN_MARGIN + knots_cost(own, 3.0))
+    curve = recovered(100.0, data=3.0 * COUNT, objective=4.0 * COUNT - needed - more)
+    assert decide(named, recovery=curve).verdict == found
+
+
 def test_a_curve_far_above_the_noise_does_not_beat_a_name_that_explains_nearly_all():
     named = entry(500.0, "constant_load", of=fit(2.8 * COUNT, objective=1e6))
     for data, found in ((criteria.FAR_FROM_NOISE * COUNT * 1.01, "missing_physics"), (COUNT, "unknown_physics")):
