@@ -206,6 +206,7 @@ def test_whiteness_counts_in_deviations_of_white_noise():
     wave = np.cos(2.0 * np.pi * np.arange(n) / period)
     white, found = verdict.whiteness([WHITE[:n], wave + 3.0])
     assert white < 4.0 < found
+    assert verdict.whiteness([WHITE[:n] + 3.0])[0] == pytest.approx(white)  # an offset is no memory
     assert found == pytest.approx(np.sqrt(n) * (1.0 - 4.0 / n), rel=2e-3)  # the overlap at half a period
     assert verdict.whiteness([np.zeros(50)]) == [0.0]
     assert verdict.whiteness([np.array([1.0, -1.0])]) == [0.0]
