@@ -142,6 +142,15 @@ def test_a_curve_beats_the_catalogue_by_a_margin_and_its_knots(more, found):
     assert decide(named, recovery=recovered(100.0, objective=objective)).verdict == found
 
 
+@pytest.mark.parametrize(("more", "found"), [(-1.0, "missing_physics"), (1.0, "unknown_physics")])
+def test_the_margin_of_a_curve_is_counted_in_what_it_leaves_a_sample(more, found):
+    named = entry(500.0, "constant_load", of=fit(4.0 * COUNT))
+    own = len(LAWS["constant_load"].parameters)
+    needed = 3.0 * (criteria.UNKNOWN_MARGIN + knots_cost(own, 3.0))
+    curve = recovered(100.0, data=3.0 * COUNT, objective=4.0 * COUNT - needed - more)
+    assert decide(named, recovery=curve).verdict == found
+
+
 def test_a_curve_far_above_the_noise_does_not_beat_a_name_that_explains_nearly_all():
     named = entry(500.0, "constant_load", of=fit(2.8 * COUNT, objective=1e6))
     for data, found in ((criteria.FAR_FROM_NOISE * COUNT * 1.01, "missing_physics"), (COUNT, "unknown_physics")):
@@ -197,6 +206,7 @@ def test_whiteness_counts_in_deviations_of_white_noise():
     wave = np.cos(2.0 * np.pi * np.arange(n) / period)
     white, found = verdict.whiteness([WHITE[:n], wave + 3.0])
     assert white < 4.0 < found
+    assert verdict.whiteness([WHITE[:n] + 3.0])[0] == pytest.approx(white)  # an offset is no memory
     assert found == pytest.approx(np.sqrt(n) * (1.0 - 4.0 / n), rel=2e-3)  # the overlap at half a period
     assert verdict.whiteness([np.zeros(50)]) == [0.0]
     assert verdict.whiteness([np.array([1.0, -1.0])]) == [0.0]

@@ -12,12 +12,16 @@ import yaml
 
 from eha_core.errors import RecordingError
 from eha_core.exam.drawing import draw_case
+from eha_core.exam.measuring import measure
 from eha_core.exam.second import with_other_loads
 from eha_core.plausibility import admit, check
+from eha_core.plausibility.relations import relations
 from eha_core.recording import Recording
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tools.hostile import wrong_recordings as wrong
+from tools.hostile.plant_tests import run_on_plant
+from tools.hostile.sound_recordings import KINDS
 
 FAMILIES = ("light_servo", "heavy_press", "single_rod", "low_pressure")
 SEED = 31
@@ -156,6 +160,61 @@ def test_a_command_that_a_leak_shifts_midway_has_to_do_with_the_motion() -> None
     torn = with_other_loads(case)[0]
     assert "leakage_onset" in case.effect_ids and np.std(torn["voltage_command"][1]) > 0.05
     assert check(wrong.as_recording(torn), {**draw_nominal(), **case.nominal}) is None
+
+
+def small_test(tier: str, number: int, seed: int) -> wrong.Rig:
+    """A rig's test of some per cent of its usual travel, so slow that its valve hardly opens."""
+    case = draw_case(tier, number, seed)
+    case = KINDS["small"](replace(case, duration=8.0), np.random.default_rng([case.seed, 12]))
+    truth = run_on_plant(case)
+    arrays = wrong.with_velocity(case, measure(case, truth), truth)
+    return wrong.Rig(case, arrays, {**draw_nominal(), **case.nominal})
+
+
+def test_pressures_that_a_leak_draws_down_while_the_valve_hardly_opens_are_no_mistake() -> None:
+    """Both chambers leak to the outside, by more than the piston takes: a sixteenth of the supply is left in them."""
+    rig = small_test("tracking", 9, 12121)
+    assert rig.case.effect_ids == ("external_leakage",)
+    levels = [np.mean(rig.arrays[name][1]) / rig.nominal["supply_pressure"] for name in ("pressure_a", "pressure_b")]
+    assert max(levels) < 0.07
+    recording = wrong.as_recording(rig.arrays)
+    assert not relations(recording, rig.nominal)["level"].sound
+    assert check(recording, rig.nominal) is None
+
+
+SLOW = ("null_parameters", 0, SEED)
+
+
+@pytest.mark.parametrize("name", ["pressures in kPa", "pressures times 10", "one pressure times 10", "position in mm"])
+def test_a_unit_is_told_where_little_but_noise_lies_between_the_pressures(name: str) -> None:
+    """The valve hardly opens. What no leak explains is told, and noise between pressures is not taken for a copy."""
+    rig = small_test(*SLOW)
+    mistake = next(one for one in wrong.MISTAKES if one.name == name)
+    assert check(wrong.as_recording(rig.arrays), rig.nominal) is None
+    finding = check(wrong.make_wrong(mistake, rig, rig), rig.nominal)
+    assert finding is not None and mistake.told in finding.mistake
+
+
+@pytest.mark.parametrize("end", [1.0, -1.0])
+@pytest.mark.parametrize("lacking", wrong.SUBSETS, ids=lambda names: "without " + "+".join(names))
+def test_a_position_in_mm_from_one_end_that_stays_inside_the_stroke_has_two_readings(
+    lacking: tuple[str, ...], end: float
+) -> None:
+    """The piston works in one half of its stroke: counted from that half's end it seems to work in the other."""
+    rig = small_test(*SLOW)
+    stroke = rig.case.plant["actuator_displacement"]
+    time, position = rig.arrays["position"]
+    highest = np.max(end * position)
+    one_half = end * (end * position - highest - 0.01 * stroke)
+    arrays = {**rig.arrays, "position": (time, 1e3 * (one_half + end * stroke))}
+    recording = wrong.as_recording({name: pair for name, pair in arrays.items() if name not in lacking})
+    finding = check(recording, rig.nominal)
+    assert finding is not None and finding.mistake == "position is in mm"
+    assert finding.other is not None and finding.other[0] == "position is in mm and does not count from mid-stroke"
+    for cure, back in ((finding.cure, one_half + end * stroke), (finding.other[1], one_half)):
+        whole = cured(recording, cure)
+        assert check(whole, rig.nominal) is None
+        np.testing.assert_allclose(whole.channels["position"].values, back, atol=1e-6)
 
 
 def draw_nominal() -> dict[str, float]:

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from eha_core.errors import RecordingError
 from eha_core.plant import PAPER, Composition
-from eha_core.plausibility.copies import copies
+from eha_core.plausibility.copies import copies, noisy_copies
 from eha_core.plausibility.finding import Finding, Suspect
 from eha_core.plausibility.mistakes import suspects, unrelated
 from eha_core.plausibility.other_source import contradiction
 from eha_core.plausibility.relation import Relation
-from eha_core.plausibility.relations import relations
+from eha_core.plausibility.relations import LOW, relations
 from eha_core.recording import Recording
 
 CLOSER = 0.5
@@ -32,12 +32,14 @@ def check(
         nominal: every parameter's nominal value by name [SI].
         composition: the actuator's parts.
     """
-    if copy := copies(recording, nominal):
+    if copy := copies(recording):
         return Finding(copy.mistake, copy.cure)
     found = relations(recording, nominal, composition)
+    noisy = noisy_copies(recording, nominal) if not _pressures_are_low(found) else None
     if not any(relation.broken for relation in found.values()):
-        return None
+        return Finding(noisy.mistake, noisy.cure) if noisy else None
     mended = _mended(found, recording, suspects(recording, nominal), nominal, composition)
+    mended = mended or _mended(found, recording, [noisy] if noisy else [], nominal, composition)
     mended = mended or _mended(found, recording, unrelated(recording, nominal), nominal, composition)
     if not mended:
         return None
@@ -70,16 +72,16 @@ def _mended(
 ) -> list[tuple[float, Suspect]]:
     """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording.
 
-    Of several units of one channel the closest is meant.
+    Of several units of one channel the closest is meant; a unit alone and a unit with another zero are both told.
     """
-    mended: dict[frozenset[str], tuple[float, Suspect]] = {}
+    mended: dict[tuple[frozenset[str], bool], tuple[float, Suspect]] = {}
     for suspect in possible:
         without = relations(suspect.without(recording), nominal, composition)
         if without and _mends(found, without):
             distance = sum(relation.distance for relation in without.values())
-            channels = frozenset(suspect.undone)
-            if channels not in mended or distance < mended[channels][0]:
-                mended[channels] = (distance, suspect)
+            key = (frozenset(suspect.undone), suspect.moves_zero)
+            if key not in mended or distance < mended[key][0]:
+                mended[key] = (distance, suspect)
     return list(mended.values())
 
 
@@ -87,6 +89,11 @@ def _mends(found: Mapping[str, Relation], without: Mapping[str, Relation]) -> bo
     """Whether nothing is broken any more, and what was broken or sound is sound (or can be looked at no longer)."""
     judged = [relation for name, relation in without.items() if name in found and _is_certain(found[name])]
     return all(relation.sound for relation in judged) and not any(relation.broken for relation in without.values())
+
+
+def _pressures_are_low(found: Mapping[str, Relation]) -> bool:
+    """Whether both pressures are so low that they may have another unit, beside which any difference is noise."""
+    return "level" in found and found["level"].value < LOW
 
 
 def _is_certain(relation: Relation) -> bool:

@@ -21,17 +21,33 @@ MISSING = 0.25
 """Share of the difference that moving the nominal piston takes, below which two pressures do not differ by it."""
 
 
-def copies(recording: Recording, nominal: Mapping[str, float]) -> Suspect | None:
-    """The pair of channels that tell the same, if there is one; without the second of them."""
+def copies(recording: Recording) -> Suspect | None:
+    """The pair of channels that tell the same to the last digit, if there is one; without the second of them."""
     for one, other in combinations(recording.channels.values(), 2):
         if one.unit != other.unit:
             continue
         difference = one.values - np.interp(one.time, other.time, other.values)
         identical = float(np.ptp(difference)) + abs(float(np.mean(difference))) <= IDENTICAL * float(np.ptp(one.values))
-        noisy = {one.name, other.name} == {"pressure_a", "pressure_b"} and _is_noise(difference)
-        if (identical and np.ptp(one.values) > 0.0) or (noisy and _moves_nothing(recording, nominal)):
-            return Suspect(f"{one.name} and {other.name} are one signal recorded twice", {other.name: None})
+        if identical and np.ptp(one.values) > 0.0:
+            return _recorded_twice(one.name, other.name)
     return None
+
+
+def noisy_copies(recording: Recording, nominal: Mapping[str, float]) -> Suspect | None:
+    """The two pressures, if they differ by noise alone and by less than the motion takes.
+
+    That compares the pressures' scale with the position's: it holds where neither has another unit.
+    """
+    one, other = (recording.channels.get(name) for name in ("pressure_a", "pressure_b"))
+    if one is None or other is None:
+        return None
+    difference = one.values - np.interp(one.time, other.time, other.values)
+    alike = _is_noise(difference) and _moves_nothing(recording, nominal)
+    return _recorded_twice(one.name, other.name) if alike else None
+
+
+def _recorded_twice(one: str, other: str) -> Suspect:
+    return Suspect(f"{one} and {other} are one signal recorded twice", {other: None})
 
 
 def _is_noise(difference: FloatArray) -> bool:

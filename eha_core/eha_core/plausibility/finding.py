@@ -32,10 +32,15 @@ class Finding:
 
 @dataclass(frozen=True)
 class Suspect:
-    """A mistake that may have been made; `undone` are the channels without it, None for one to be left out."""
+    """A mistake that may have been made; `undone` are the channels without it, None for one to be left out.
+
+    `moves_zero` says whether a channel's unit and its zero are wrong: where the zero stays inside the stroke, nothing
+    tells that from the unit alone.
+    """
 
     mistake: str
     undone: Mapping[str, Channel | None]
+    moves_zero: bool = False
 
     @property
     def cure(self) -> str:

@@ -54,10 +54,10 @@ def position_units(recording: Recording, nominal: Mapping[str, float]) -> Iterat
         if velocity:
             yield Suspect(f"velocity is in {unit}/s", velocity)
             yield Suspect(f"position is in {unit} and velocity in {unit}/s", {"position": scaled, **velocity})
-        shift = _shift_to_middle(scaled, nominal)
+        shift = _shift_to_middle(scaled, nominal) or _shift_from_end(scaled, nominal)
         if shift:
             counted = f"position is in {unit} and does not count from mid-stroke"
-            yield Suspect(counted, {"position": rescaled(recording, "position", factor, shift)})
+            yield Suspect(counted, {"position": rescaled(recording, "position", factor, shift)}, moves_zero=True)
 
 
 def other_units(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Suspect]:
@@ -92,6 +92,14 @@ def _shift_to_middle(position: Channel, nominal: Mapping[str, float]) -> float:
     if abs(abs(middle) - stroke) < 0.25 * stroke:
         middle = float(np.copysign(stroke, middle))
     return -float(f"{middle:.3g}") if abs(middle) + 0.5 * np.ptp(position.values) > stroke else 0.0
+
+
+def _shift_from_end(position: Channel, nominal: Mapping[str, float]) -> float:
+    """What makes a position count from mid-stroke if it counts from an end [m]; one that takes both signs does not."""
+    stroke = nominal["actuator_displacement"]
+    if np.min(position.values) > 0.0:
+        return -stroke
+    return stroke if np.max(position.values) < 0.0 else 0.0
 
 
 def unrelated(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Suspect]:

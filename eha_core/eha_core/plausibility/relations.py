@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.plant import PAPER, Composition
-from eha_core.plausibility.command import command
+from eha_core.plausibility.command import command, gain
 from eha_core.plausibility.regression import correlation, fitted, regression
 from eha_core.plausibility.relation import Relation, Values, off_by, within
 from eha_core.plausibility.signals import BLOCK, Signals, on_grid
@@ -18,6 +18,15 @@ from eha_core.recording.recording import FloatArray
 
 MOVING = 0.1
 """Share of the largest speed above which the valve, and no leak, sets the pressures."""
+SLOW = 0.006
+"""Share of the rated speed, RMS, below which a leak may draw both pressures down as far as a wrong unit does. A leak to
+the outside of q times the piston's flow, at half the supply, leaves the share p of the supply where
+(1 + 2 q p) / (1 - 2 q p) = sqrt((1 - p) / p): an eighth at q = 1.8. A worn rig's leak takes 1 % of the rated flow
+(assumed)."""
+NOTHING_LEFT = -0.98
+"""Excess of both pressures, over half the supply, that no leak explains: the piston moves (assumed)."""
+LOW = -0.55
+"""The same, from which on the levels are certainly right."""
 
 
 OF_A_VALVE = ("command", "command_scale", "level")
@@ -110,6 +119,16 @@ def _levels(signals: Signals, nominal: Values) -> list[Relation]:
     excess = 2.0 * float(np.mean(np.concatenate(over))) / supply
     load = float(np.mean(nominal["piston_area"] * a - nominal["piston_area_b"] * b)) / (nominal["piston_area"] * supply)
     lopsided = min(abs(excess), abs(load)) > 0.12 and abs(excess * load) > 0.04
-    broken = lopsided or not -0.75 < excess < 0.6
+    drawn_down = excess < 0.0 and _is_slow(signals, nominal)
+    lowest = NOTHING_LEFT if drawn_down else -0.75
+    broken = (lopsided and not drawn_down) or not lowest < excess < 0.6
+    sound = not broken and not lopsided and LOW < excess < 0.4
     distance = 3.0 * (abs(excess) + abs(load))  # a pressure ten times too large or small is then one of 1 or more
-    return [Relation("level", excess, broken, not broken and -0.55 < excess < 0.4, distance)]
+    return [Relation("level", excess, broken, sound, distance)]
+
+
+def _is_slow(signals: Signals, nominal: Values) -> bool:
+    """Whether the piston takes so little flow that a leak may take more; without what noise adds to its speed."""
+    rated = gain(nominal) * nominal["saturation_current"] * nominal["coil_resistance"]
+    squared = float(np.var(signals.speed)) - signals.speed_noise**2
+    return squared < (SLOW * rated) ** 2

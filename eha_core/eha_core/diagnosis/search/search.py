@@ -17,24 +17,18 @@ ROUNDS = 8
 def search_sets(search: Search, nominal: Candidate) -> Candidate:
     """The set of effects that explains the recording best and of which every member earns its place.
 
-    Begins at the best that is there. Where that ends far from the noise it has gone astray, and a second search begins
-    at what stands out of a joint fit.
+    Begins at the best that is there. Where what grows from it ends far from the noise, it has gone astray, and another
+    set grows from what stands out of a joint fit; the better one goes on.
     """
     best = min(search, key=lambda one: one.fit.objective)
     if best.hypothesis.limited:
         return best
     if best.times_noise > FAR_FROM_NOISE or (best.times_noise > UNFITTED and sticks(best.hypothesis)):
         best = forms_of_friction(search, nominal)
-    best = _improve(search, best)
-    if best.times_noise > FAR_FROM_NOISE:
-        other = _improve(search, joint_start(search, nominal))
-        best = min(search.again(best), other, key=lambda one: one.fit.objective)
-    return prune(search, best)
-
-
-def _improve(search: Search, best: Candidate) -> Candidate:
-    """The set that adding effects leads to and then exchanging them, as long as that makes the fit better."""
     best = grow(search, best)
+    if best.times_noise > FAR_FROM_NOISE:
+        other = grow(search, joint_start(search, nominal))
+        best = min(search.again(best), other, key=lambda one: one.fit.objective)
     for _ in range(ROUNDS):
         if best.times_noise < NEAR_NOISE or len(best.hypothesis.members) < 2:
             break
@@ -43,4 +37,4 @@ def _improve(search: Search, best: Candidate) -> Candidate:
             break
         search.report(better)
         best = grow(search, better)
-    return best
+    return prune(search, best)
