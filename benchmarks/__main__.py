@@ -11,6 +11,7 @@ from importlib import import_module
 from pathlib import Path
 
 from benchmarks.row import as_markdown
+from eha_core.errors import EhaError
 
 BENCHMARKS = ("plant_step", "lockstep", "integrators", "windows", "reading", "diagnosis", "layer", "node")
 ON_REQUEST = ("hour",)
@@ -56,7 +57,10 @@ def main(words: Sequence[str] | None = None) -> int:
         options = (arguments.seconds,) if name == "node" else ()
         if options != (0.0,):
             print(f"measuring {name} ...", file=sys.stderr, flush=True)
-            rows += import_module(f"benchmarks.{name}").measure(*options)
+            try:
+                rows += import_module(f"benchmarks.{name}").measure(*options)
+            except EhaError as error:
+                return _refuse(f"{name}: {error}")
     print(as_markdown(rows))
     return 0
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+VERDICTS = {True: "yes", False: "no", None: "not measured"}
+
 
 @dataclass(frozen=True)
 class Row:
@@ -29,8 +31,19 @@ def skipped(what: str, target: str, why: str) -> Row:
 def as_markdown(rows: list[Row]) -> str:
     """Return the table in Markdown."""
     lines = ["| what | measured | peer | figure | target | met |", "|---|---|---|---|---|---|"]
-    verdicts = {True: "yes", False: "no", None: "not measured"}
     for row in rows:
-        verdict = verdicts[row.met] + (f": {row.note}" if row.note else "")
+        verdict = VERDICTS[row.met] + (f": {row.note}" if row.note else "")
         lines.append(f"| {row.what} | {row.measured} | {row.peer} | {row.figure} | {row.target} | {verdict} |")
     return "\n".join(lines)
+
+
+def from_markdown(text: str) -> list[Row]:
+    """Return the rows of a table as above; other lines are passed over."""
+    table = [line for line in text.splitlines() if line.startswith("|")]
+    met = {verdict: known for known, verdict in VERDICTS.items()}
+    rows = []
+    for line in table[2:]:
+        what, measured, peer, figure, target, last = line.strip("| ").split(" | ")
+        verdict, _, note = last.partition(": ")
+        rows.append(Row(what, measured, peer, figure, target, met[verdict], note))
+    return rows

@@ -107,3 +107,26 @@ def test_unknown_benchmark_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     message = capsys.readouterr().err
     assert message.count("\n") == 1
     assert "'plant'" in message
+
+
+def test_rows_are_read_back_from_the_table() -> None:
+    from benchmarks.row import Row, as_markdown, from_markdown, skipped
+
+    rows = [
+        Row("a node, 10 s", "0.05 %", "-", "0.05 %", "< 1 %", True),
+        Row("a trip", "2 us", "a peer: 1 us", "2.00 x", "<= 1.5 x", False),
+        skipped("rclpy", "<= 1.5 x", "there is no rclpy: none at all"),
+    ]
+    assert from_markdown(f"2 CPUs, load 1.0\n{as_markdown(rows)}\n") == rows
+
+
+def test_failure_of_the_layers_benchmarks_is_told_in_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from benchmarks import layer
+    from benchmarks.__main__ import main
+
+    monkeypatch.setattr(layer, "COMMAND", [*layer.COMMAND, "--no-such-option"])
+    assert main(["layer"]) != 0
+    measuring, message = capsys.readouterr().err.splitlines()
+    assert message.startswith("benchmarks: layer: ")

@@ -1,6 +1,6 @@
 """What an executor costs: for each callback that it runs, and while nothing happens.
 
-Run as `python -m benchmarks.layer_executor callbacks COUNT`; prints the time [s] of one callback of a guard condition,
+Run as `python layer_executor.py callbacks COUNT`; prints the time [s] of one callback of a guard condition,
 of a timer, of a subscription, and of a bare loop that calls the same function. Or as `... idle SECONDS`; prints the
 share of one core that a node uses while nobody talks to it.
 """

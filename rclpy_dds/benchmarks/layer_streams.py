@@ -1,6 +1,6 @@
 """Ten topics at 1 kHz each, from one process to ten subscriptions of another.
 
-Run as `python -m benchmarks.layer_streams receive SECONDS`, which prints how many messages came and the share of one
+Run as `python layer_streams.py receive SECONDS`, which prints how many messages came and the share of one
 core that this took, and `... send SECONDS`. Both say `ready` once they have found each other; the sender then begins
 with a line on its input and ends with its input.
 """

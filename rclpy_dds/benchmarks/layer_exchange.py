@@ -1,6 +1,6 @@
 """One end of an exchange of messages between two processes.
 
-Run as `python -m benchmarks.layer_exchange echo END KIND EVERY` and `... drive END KIND EVERY`, END one of `node` and
+Run as `python layer_exchange.py echo END KIND EVERY` and `... drive END KIND EVERY`, END one of `node` and
 `plain`. The echo answers every EVERY-th message with the message itself. The driver reads numbers from its input and
 prints a line for each: with EVERY 1, the round-trip times [s] of so many messages sent at 1 kHz; else the time [s] that
 so many times EVERY messages took, sent back to back. Each says `ready` once it has found the other, and ends with
@@ -14,7 +14,7 @@ import threading
 import time
 from typing import Any
 
-from benchmarks.layer_ends import ENDS, End
+from layer_ends import ENDS, End
 
 PERIOD = 1e-3
 LIMIT = 30.0  # s; nothing that is measured here takes as long

@@ -23,7 +23,7 @@ from rclpy.qos import HistoryPolicy, QoSProfile
 from sensor_msgs.msg import Image, JointState
 from std_msgs.msg import Float64
 
-from benchmarks import layer_types as plain
+import layer_types as plain
 
 PIXELS = bytes(range(250)) * 400  # 100 kB
 VALUES = [0.1, -2.5, math.pi]
