@@ -27,6 +27,8 @@ from rclpy_dds.errors import CommandError
 
 HIDDEN_NODE_PREFIX = "_"
 _POLL = 0.02
+# What a participant that was discovered may take to tell its endpoints and nodes: Fast DDS' heartbeats come every 3 s.
+_SLOWEST_DISCOVERY = 5.0
 
 
 @contextmanager
@@ -53,9 +55,9 @@ def add_spin_time(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time")
 
 
-def discover(args: argparse.Namespace) -> None:
+def discover(node: Node, args: argparse.Namespace) -> None:
     """Wait until discovery has had its time."""
-    time.sleep(max(0.0, getattr(args, "spin_time", 0.5)))
+    wait_in_graph(node, lambda: False, args.spin_time)
 
 
 def wait_until(condition: Callable[[], Any], timeout: float | None) -> Any:
@@ -68,6 +70,14 @@ def wait_until(condition: Callable[[], Any], timeout: float | None) -> Any:
             break
         time.sleep(_POLL)
     return value
+
+
+def wait_in_graph(node: Node, condition: Callable[[], Any], timeout: float | None) -> Any:
+    """Wait like `wait_until`, and longer while a discovered participant has still to tell what it has."""
+    if value := wait_until(condition, timeout):
+        return value
+    wait_until(lambda: condition() or node.context.graph.settled(), _SLOWEST_DISCOVERY)
+    return condition()
 
 
 def spin(node: Node, until: Future | None = None, timeout: float | None = None) -> None:
@@ -160,7 +170,7 @@ def topic_type(node: Node, topic: str, timeout: float | None) -> str | None:
     def find() -> list[str]:
         return dict(node.get_topic_names_and_types()).get(full, [])
 
-    types = wait_until(find, timeout)
+    types = wait_in_graph(node, find, timeout)
     if len(types) > 1:
         raise CommandError(f"Cannot echo topic '{full}', as it contains more than one type: [{', '.join(types)}]")
     return types[0] if types else None

@@ -9,7 +9,7 @@ from rcl_interfaces.msg import ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.node import Node
 
-from rclpy_dds.commands.common import add_spin_time, call, full_node_names, wait_until
+from rclpy_dds.commands.common import add_spin_time, call, full_node_names, wait_in_graph
 from rclpy_dds.errors import CommandError
 
 TYPE_NAMES = {
@@ -43,7 +43,7 @@ def find_node(node: Node, args: argparse.Namespace) -> str:
         CommandError: it is not there in time.
     """
     wanted = "/" + args.node_name.lstrip("/")
-    if not wait_until(lambda: wanted in full_node_names(node, True), max(args.timeout, args.spin_time)):
+    if not wait_in_graph(node, lambda: wanted in full_node_names(node, True), max(args.timeout, args.spin_time)):
         raise CommandError("Node not found")
     return wanted
 

@@ -152,6 +152,22 @@ class Graph:
                 found[bytes(gid.data)] = (info.node_name, info.node_namespace)
         return found
 
+    def settled(self) -> bool:
+        """Return whether every participant that was discovered has told its endpoints and its nodes.
+
+        Fast DDS tells both up to 3 s, its period of heartbeats, after its participant was discovered.
+        """
+        with self._lock:
+            owned = self.owners().keys()
+            endpoints = [*self.writers(), *self.readers()]
+            have_endpoints = {endpoint.participant for endpoint in endpoints}
+            tell_nodes = {endpoint.participant for endpoint in endpoints if endpoint.topic == "ros_discovery_info"}
+            return (
+                self._alive.keys() <= have_endpoints
+                and tell_nodes <= self._participants.keys()
+                and owned <= {endpoint.gid for endpoint in endpoints}
+            )
+
     def writers(self) -> list[Endpoint]:
         """Return every writer of the domain."""
         return self._take_endpoints(0)

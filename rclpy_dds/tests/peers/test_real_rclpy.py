@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -73,3 +74,12 @@ def test_topics_go_both_ways_and_standing_ones_arrive_late(peer: subprocess.Pope
         executor.shutdown()
         node.destroy_node()
         rclpy.shutdown(context=context)
+
+
+def test_a_list_is_whole_at_once(peer: subprocess.Popen[str]) -> None:
+    assert peer.stdout.readline().strip() == "rmw_fastrtps_cpp"
+    ros2 = [sys.executable, "-m", "rclpy_dds.commands.main"]
+    for what, names in (("node", {"/real_peer"}), ("topic", {"/back", "/standing", "/there"})):
+        for _ in range(3):  # Fast DDS tells its endpoints and nodes at a moment between 0.05 and 3 s
+            found = subprocess.run([*ros2, what, "list"], check=True, capture_output=True, text=True).stdout.split()
+            assert names <= set(found)

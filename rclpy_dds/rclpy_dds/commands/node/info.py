@@ -6,7 +6,7 @@ import argparse
 
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
-from rclpy_dds.commands.common import add_spin_time, command_node, full_node_names, wait_until
+from rclpy_dds.commands.common import add_spin_time, command_node, full_node_names, wait_in_graph, wait_until
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,7 +22,7 @@ def main(args: argparse.Namespace) -> str | None:
     """Print what the node publishes, subscribes to, offers and calls."""
     wanted = "/" + args.node_name.lstrip("/")
     with command_node() as node:
-        if not wait_until(lambda: wanted in full_node_names(node, True), args.spin_time):
+        if not wait_in_graph(node, lambda: wanted in full_node_names(node, True), args.spin_time):
             return f"Unable to find node '{args.node_name}'"
         wait_until(lambda: False, 0.1)  # endpoints are discovered right after their node
         namespace, _, name = wanted.rpartition("/")

@@ -17,7 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> None:
     """Print the nodes."""
     with command_node() as node:
-        discover(args)
+        discover(node, args)
         names = full_node_names(node, args.all)
     if args.count_nodes:
         print(len(names))

@@ -28,7 +28,7 @@ def main(args: argparse.Namespace) -> int:
         if args.node_name:
             targets = [find_node(node, args)]
         else:
-            discover(args)
+            discover(node, args)
             targets = full_node_names(node, args.include_hidden_nodes)
         for target in targets:
             try:

@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> None:
     """Print the services."""
     with command_node() as node:
-        discover(args)
+        discover(node, args)
         found = node.get_service_names_and_types()
         if not args.include_hidden_services:
             found = [(name, types) for name, types in found if not topic_or_service_is_hidden(name)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from rclpy_dds.commands.common import add_spin_time, command_node, topic_type, wait_until
+from rclpy_dds.commands.common import add_spin_time, command_node, topic_type, wait_in_graph
 
 _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
@@ -31,8 +31,10 @@ def main(args: argparse.Namespace) -> str | None:
         def subscriptions() -> list[Any]:
             return list(node.get_subscriptions_info_by_topic(args.topic_name))
 
-        # A node tells its name on a topic, which may come after its endpoints; Fast DDS takes its time.
-        wait_until(lambda: all(one.node_name != _UNKNOWN for one in publishers() + subscriptions()), args.spin_time)
+        # A node tells its name on a topic, which may come after its endpoints.
+        wait_in_graph(
+            node, lambda: all(one.node_name != _UNKNOWN for one in publishers() + subscriptions()), args.spin_time
+        )
         print(f"Type: {name}", end=end)
         for title, infos in (("Publisher", publishers()), ("Subscription", subscriptions())):
             print(f"{title} count: {len(infos)}", end=end)

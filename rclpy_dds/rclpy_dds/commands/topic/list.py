@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> None:
     """Print the topics."""
     with command_node() as node:
-        discover(args)
+        discover(node, args)
         found = node.get_topic_names_and_types()
         if not args.include_hidden_topics:
             found = [(name, types) for name, types in found if not topic_or_service_is_hidden(name)]
