@@ -128,7 +128,8 @@ def test_a_recording_is_made_described_and_played(graph: Graph, tmp_path: Path) 
     received: list[float] = []
     node.create_subscription(Float64, "/again", lambda message: received.append(message.data), 1000)
     # Slowly, after a while: ROS 2's own waits for nobody and sends what belongs to its first tenth of a second at once.
-    assert _run(graph, "bag", "play", str(bag), "-r", "0.5", "-d", "1", "-m", "/x:=/again")[0] == 0
+    status, output, errors = _run(graph, "bag", "play", str(bag), "-r", "0.5", "-d", "1", "-m", "/x:=/again")
+    assert status == 0 and "[rosbag2_player]: " in output + errors
     assert graph.spin_until(lambda: len(received) == len(sent)) and received == sent
 
 

@@ -8,6 +8,8 @@ import pytest
 from contract.commands import run as _run
 from contract.conftest import Graph
 
+from rclpy_dds.commands import main as command
+
 
 def test_a_dump_of_a_group_called_like_a_parameter_is_a_parameters_file(graph: Graph, tmp_path: Path) -> None:
     node, values = graph.node("sim"), {"gain": 1.5, "gain.a": 2.5, "valve.lag.time": 3.5}
@@ -49,3 +51,11 @@ def test_an_unusable_launch_file_is_one_line(tmp_path: Path, text: str) -> None:
     file.write_text(text)
     status, _, errors = _run(None, "launch", str(file))
     assert status == 1 and str(file) in errors and len(errors.strip().splitlines()) == 1
+
+
+def test_ctrl_c_while_it_starts_ends_it_without_a_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(arguments: list[str]) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "_parser", interrupted)
+    assert command.main(["topic", "list"]) == 130

@@ -101,6 +101,8 @@ class _Player:
             self.publishers[channel.topic] = self.node.create_publisher(kind, topic, _offered(channel.metadata))
         if not self.publishers:
             raise CommandError(f"{self.args.bag_path}: no topic left to play")
+        topics = ", ".join(f"'{publisher.topic_name}'" for publisher in self.publishers.values())
+        self.node.get_logger().info(f"Playing {topics} from '{self.args.bag_path}', press Ctrl-C to stop")
         time.sleep(0.5)
 
     def _wanted(self, topic: str) -> bool:
