@@ -6,9 +6,10 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis import diagnose_together
-from eha_core.identification.freedom import NOMINAL_TRUST, nominal_freedom
+from eha_core.identification.freedom import NOMINAL_TRUST, nominal_freedom, not_believed
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
+from eha_core.plant import PAPER
 
 RIG = {"damping_coefficient": 20.0 * nominal_values()["damping_coefficient"], "coulomb_friction.force": 200.0}
 
@@ -22,6 +23,7 @@ def test_an_unknown_value_may_go_a_thousandfold():
     assert known.upper / known.reference == pytest.approx(NOMINAL_TRUST[name].reach)
     assert unknown.upper / unknown.reference == pytest.approx(1000.0)
     assert unknown.trust > 2.0 * known.trust
+    assert not_believed(known, PAPER.place_rows[name]) == unknown
 
 
 @pytest.mark.timeout(400)

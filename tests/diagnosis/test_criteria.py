@@ -17,7 +17,7 @@ def test_no_threshold_moved():
         "OF_SAMPLES_BESIDE_A_FORM": 0.004,
         "OF_ITS_FORM": 6e-4,
         "NOISE_KNOWN": 0.02,
-        "CONVINCING": 0.4,
+        "CONVINCING": 0.63,
         "NEXT_TO_NOTHING": 0.15,
         "WORTH_ADDING": 0.1,
         "LEFT_IN_A_CHANNEL": 1.2,

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from test_experiment import explanation
 
-from eha_core.diagnosis.effect_freedom import effect_freedom
-from eha_core.diagnosis.model_comparison import freedom_used
+from eha_core.diagnosis.effect_freedom import effect_freedom, freedom_used
 from eha_core.effects import effects
 
 LAWS = {effect.id: effect for effect in effects()}

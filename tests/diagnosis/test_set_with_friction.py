@@ -9,7 +9,7 @@ from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.candidates import Guess, Search, with_effects
-from eha_core.diagnosis.search.short_windows import set_with_friction, sticks
+from eha_core.diagnosis.search.short_windows import set_in_each_form, set_with_friction, sticks
 from eha_core.effects import effects
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
@@ -52,6 +52,16 @@ def test_a_law_that_has_lost_its_shape_is_led_back(search):
     led = set_with_friction(search, lost)
     assert led.hypothesis == lost.hypothesis and led.times_noise < 1.05
     assert led.fit.values["stribeck_friction.stribeck_velocity"] == pytest.approx(0.03, rel=0.1)
+
+
+def test_where_another_form_was_taken_the_rigs_own_is_found_beside_the_other_members(search):
+    found = dict(search.found)
+    other = fitted(search, {"constant_load.force": 300.0, "coulomb_friction.force": 400.0}, 20)
+    assert other.times_noise > UNFITTED
+    search.found = {NOTHING: found[NOTHING], other.hypothesis: other.fit}
+    led = set_in_each_form(search, other)
+    search.found = found
+    assert led.hypothesis.ids == ("constant_load", "stribeck_friction") and led.times_noise < 1.05
 
 
 def test_a_set_that_cannot_stick_is_left_as_it_is(search):

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from made import recorded
 
-from eha_core.diagnosis import diagnose
+from eha_core.diagnosis import criteria, diagnose
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.criteria import NOISE_KNOWN
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
 from eha_core.diagnosis.hypothesis import NOTHING
@@ -69,12 +68,37 @@ def test_what_a_member_must_be_worth_rises_with_what_is_left(three):
     worth = dict.fromkeys(three.hypothesis.members, 100000.0)
     at_the_noise = asked_of(spring, worth, three, 1e6)
     far = replace(three, fit=replace(three.fit, data=3.0 * three.fit.count))
-    assert asked_of(spring, worth, far, 1e6) == pytest.approx(2.0 / 3.0 * (2.0 - NOISE_KNOWN) * three.fit.count)
-    assert asked_of(spring, worth, three, 0.0) < at_the_noise  # the overlap's law has other forms
+    ratio = criteria.CONVINCING / (1.0 - criteria.CONVINCING)
+    assert asked_of(spring, worth, far, 1e6) == pytest.approx(ratio * (2.0 - criteria.NOISE_KNOWN) * three.fit.count)
     assert at_the_noise < 0.02 * asked_of(spring, worth, far, 1e6)
     # what may pass for noise asks for nothing more than chance does
-    quiet = replace(three, fit=replace(three.fit, data=(1.0 + 0.9 * NOISE_KNOWN) * three.fit.count))
+    quiet = replace(three, fit=replace(three.fit, data=(1.0 + 0.9 * criteria.NOISE_KNOWN) * three.fit.count))
     assert asked_of(spring, worth, quiet, 0.0) == by_chance(spring, worth, quiet)
+
+
+def test_beside_a_law_of_several_forms_a_small_loss_is_believed_where_the_curvature_confirms_it(three):
+    spring = three.hypothesis.members[1]
+    quiet = replace(three, fit=replace(three.fit, data=float(three.fit.count)))
+    shares = (criteria.OF_SAMPLES, criteria.OF_SAMPLES_BESIDE_A_FORM)
+    least, more = (criteria.CHANCE + share * three.fit.count for share in shares)
+    for worth, asked in ((1.01 * least, least), (0.99 * least, more)):
+        worths = dict.fromkeys(three.hypothesis.members, worth)
+        assert by_chance(spring, worths, quiet) == pytest.approx(asked)
+    smooth = {one: 0.99 * least for one in three.hypothesis.members if one.id != "valve_deadband"}
+    assert by_chance(spring, smooth, quiet) == pytest.approx(least)
+
+
+def test_a_laws_form_leaves_something_for_what_acts_in_the_same_balance(three):
+    members = {one.id: one for one in NOTHING.with_effects(LAWS.values()).members}
+    friction, air, load, scale = (
+        members[one] for one in ("presliding_friction", "entrained_air", "constant_load", "position_sensor_scale")
+    )
+    quiet = replace(three, fit=replace(three.fit, data=float(three.fit.count)))
+    worth = {friction: 1e5, air: 1e5, load: 1e5, scale: 1e5}
+    left = {member: asked_of(member, worth, quiet, 1e6) - by_chance(member, worth, quiet) for member in worth}
+    assert left[load] == pytest.approx(criteria.OF_ITS_FORM * 1e5)  # the friction's form; air acts on the oil's flow
+    assert left[air] == left[friction] == 0.0
+    assert left[scale] == pytest.approx(criteria.OF_ITS_FORM * 2e5)
 
 
 def test_a_fit_in_another_noise_is_the_same_model(search):
@@ -90,14 +114,15 @@ def test_a_fit_in_another_noise_is_the_same_model(search):
     assert weighed.data == pytest.approx(anew.data, rel=1e-9)
 
 
-@pytest.mark.timeout(400)
-def test_three_effects_of_another_plant_are_named_and_nothing_else():
-    """By the exam's truth, which shares neither equations nor integrator with the plant."""
+def diagnosed(number, seed, names, noise):
+    """A rig of the exam with these of its effects alone, and what a short test of it is diagnosed as.
+
+    By the exam's truth, which shares neither equations nor integrator with the plant.
+    """
     case = replace(
-        draw_case("rig", 3, 9001),
-        duration=8.0, rate=500.0, noise=1.0, position_step=0.0, pressure_step=0.0, jitter=0.0, dropout=0.0,
+        draw_case("rig", number, seed),
+        duration=8.0, rate=500.0, noise=noise, position_step=0.0, pressure_step=0.0, jitter=0.0, dropout=0.0,
     )  # fmt: skip
-    names = ("coulomb_friction", "supply_pressure_droop", "constant_load")
     case = replace(case, effects=tuple(one for one in case.effects if one[0] in names))
     units = {"voltage_command": "V", "position": "m", "pressure_a": "Pa", "pressure_b": "Pa"}
     channels = {
@@ -105,9 +130,26 @@ def test_three_effects_of_another_plant_are_named_and_nothing_else():
         for name, (time, values) in measure(case, simulate_case(case)).items()
     }
     recording = Recording("made.mcap", channels, 0, case.duration, {}, (), None, ())
-    result = diagnose(recording, {**nominal_values(), **case.nominal})
-    assert result.verdict == "missing_physics"
-    assert sorted(effect.id for effect in result.effects) == sorted(names)
+    return case, diagnose(recording, {**nominal_values(), **case.nominal})
+
+
+def exactly(result, case):
+    """Whether physics is said to be missing, and just what is concealed is named."""
+    named = sorted(effect.id for effect in result.effects)
+    return result.verdict == "missing_physics" and named == sorted(case.effect_ids)
+
+
+@pytest.mark.timeout(400)
+def test_damping_beside_dry_friction_is_not_taken_for_stribecks_curve():
+    """Stribeck's law explains both nearly, with as many parameters: damping then has little left to explain."""
+    case, result = diagnosed(20, 11300, ("coulomb_friction", "quadratic_damping", "turbulent_leakage"), 10.0)
+    assert exactly(result, case)
+
+
+@pytest.mark.timeout(400)
+def test_three_effects_of_another_plant_are_named_and_nothing_else():
+    case, result = diagnosed(3, 9001, ("coulomb_friction", "supply_pressure_droop", "constant_load"), 1.0)
+    assert exactly(result, case)
     truth = dict(case.effects)
     load = next(effect for effect in result.effects if effect.id == "constant_load").parameters["force"]
     assert abs(load.value - float(truth["constant_load"]["force"])) < max(4.0 * load.std, 0.01 * abs(load.value))

@@ -7,6 +7,8 @@ test_criteria.py` fails when one of them moves.
 
 from __future__ import annotations
 
+from math import log
+
 FAR_FROM_NOISE = 5.0
 """Chi^2 a sample beyond which a fit's parameter values mean little, and its residual says little of the noise. Assumed;
 a residual of twice the noise's size beside the noise."""
@@ -34,9 +36,10 @@ NOISE_KNOWN = 0.02
 """Share to which a channel's noise variance is known: what is left may seem to be noise by so much. The deviation of
 `residual_noise` is 0.9 % of a record of 20,000 samples, that of its square 1.8 %."""
 
-CONVINCING = 0.4
-"""A member must be worth this share of what the set leaves without it. Of false members it was 0.42 of what is left
-with them at most, of true ones 19 and more but for one of 0.74 (nine rigs of four to six effects)."""
+CONVINCING = 0.63
+"""A member must be worth this share of what the set leaves without it, which is 1.7 times what it leaves with it. True
+members were worth 19 times that and more but for one of 0.74 (nine rigs of four to six effects), false ones 0.42 there,
+and 1.2 on a measured axis (EMPS: a stop of 10 N/m)."""
 
 NEXT_TO_NOTHING = 0.15
 """Share of its typical size below which a shape, such as the rounding of an edge, is no parameter that a law makes use
@@ -123,3 +126,8 @@ def chance_gain(samples: int, times_noise: float) -> float:
 def gain_to_go_on(samples: int, times_noise: float, left: float) -> float:
     """Chi^2 that a search's next set must gain where the set before it leaves `left` beside the noise."""
     return max(chance_gain(samples, times_noise), WORTH_ADDING * max(0.0, left))
+
+
+def parameter_cost(count: int, left_over: float) -> float:
+    """What a hypothesis pays for each of its parameters, where the best model leaves `left_over` chi^2 a sample."""
+    return log(count) + DEAR * count * max(0.0, 1.0 - ADEQUATE / left_over)

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from eha_core.diagnosis.criteria import NEXT_TO_NOTHING
 from eha_core.effects import Effect
+from eha_core.identification.fit import Fit
 from eha_core.identification.freedom import Free
+from eha_core.identification.per_recording import base_name
+from eha_core.parameters import catalogue
 
 EFFECT_TRUST = 30.0
 """An effect's parameter may move by this many times its starting size, or by e^3 where it moves by factors."""
@@ -39,3 +43,19 @@ def span_freedom(span: Mapping[str, float], bounds: Mapping[str, tuple[float, fl
     return tuple(
         Free(name, at, False, SPAN_SCALE, EFFECT_TRUST, *bounds[name], resolution) for name, at in span.items()
     )
+
+
+def freedom_used(result: Fit) -> int:
+    """How many parameters a fit makes use of: a shape of an effect's that is next to nothing is none.
+
+    A deadband with sharp edges has no rounding to pay for.
+    """
+    return sum(not _is_no_shape(result, one.name) for one in result.free)
+
+
+def _is_no_shape(result: Fit, name: str) -> bool:
+    if "." not in name:
+        return False  # the plant's own: of a source's own parameters the catalogue has no row
+    row = catalogue()[base_name(name)]
+    may_be_nothing = not row.switches and row.lower == row.nominal
+    return may_be_nothing and result.values[name] - row.lower < NEXT_TO_NOTHING * abs(row.typical)

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import log
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import ADEQUATE, DEAR, ENOUGH, FAR_FROM_NOISE, HARDLY, NEXT_TO_NOTHING, OVER
+from eha_core.diagnosis.criteria import ADEQUATE, ENOUGH, FAR_FROM_NOISE, HARDLY, OVER, parameter_cost
+from eha_core.diagnosis.effect_freedom import freedom_used
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
@@ -27,9 +27,7 @@ from eha_core.diagnosis.refine import (
 from eha_core.diagnosis.screen import ScoreTest, screen_in_time
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
-from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import Problem
-from eha_core.parameters import catalogue
 
 REFINED = 8
 """How many hypotheses are refitted in full after a screening."""
@@ -113,27 +111,6 @@ def residual_variance(nominal: Fit, entries: Sequence[Entry]) -> float:
     """Variance of the residual in units of the assumed noise, under the best model and never below one."""
     best = min([nominal, *(entry.fit for entry in entries)], key=lambda one: one.objective)
     return max(1.0, best.data / best.count)
-
-
-def parameter_cost(count: int, left_over: float) -> float:
-    """What a hypothesis pays for each of its parameters, where the best model leaves `left_over` chi^2 a sample."""
-    return log(count) + DEAR * count * max(0.0, 1.0 - ADEQUATE / left_over)
-
-
-def freedom_used(result: Fit) -> int:
-    """How many parameters a fit makes use of: a shape of an effect's that is next to nothing is none.
-
-    A deadband with sharp edges has no rounding to pay for.
-    """
-    return sum(not _is_no_shape(result, one.name) for one in result.free)
-
-
-def _is_no_shape(result: Fit, name: str) -> bool:
-    if "." not in name:
-        return False  # the plant's own: of a source's own parameters the catalogue has no row
-    row = catalogue()[base_name(name)]
-    may_be_nothing = not row.switches and row.lower == row.nominal
-    return may_be_nothing and result.values[name] - row.lower < NEXT_TO_NOTHING * abs(row.typical)
 
 
 def rank(problem: Problem, nominal: Fit, found: Found) -> tuple[Entry, ...]:

@@ -72,7 +72,9 @@ def passing_effects(
         reached = min(reached, result.objective)
         found[NOTHING.with_effects([effect], limited=True)] = result
     crossed = cross(problem, settle(problem, found, progress))
-    return {hypothesis: _sharpened(problem, result) for hypothesis, result in crossed.items()}
+    sharpened = {hypothesis: _sharpened(problem, result) for hypothesis, result in crossed.items()}
+    # half a millisecond beside another's instants a law would seem to explain less than a richer form of it
+    return cross(problem, sharpened)
 
 
 def _fitted_outside(problem: Problem, nominal: Fit, windows: tuple[int, int]) -> Fit:

@@ -19,14 +19,20 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.sets import with_sets
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
+from eha_core.identification.fit import fit
+from eha_core.identification.freedom import not_believed
 from eha_core.identification.observation import observe, reaching
 from eha_core.identification.parallel import side_by_side
+from eha_core.identification.per_recording import base_name
 from eha_core.identification.together import check_alike, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
 from eha_core.recording import Recording
 from eha_core.weak_form.balance import balances, least
 
 Progress = Callable[[str], None]
+
+BEYOND = 20
+"""Iterations of the model found without the bounds that it rests on, before all else is asked again without them."""
 
 
 def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
@@ -37,13 +43,24 @@ def examine(recordings: Sequence[Recording], model: NominalModel, progress: Prog
     """
     evidence = _examine(recordings, model, progress)
     bounds = evidence.decision.winner.fit.held_by_belief() - model.unknown
-    if not bounds:
+    if not bounds or not _gains_without(evidence, bounds):
         return evidence
     progress(f"once more: {', '.join(sorted(bounds))} went as far as believed of it")
     again = _examine(recordings, replace(model, unknown=model.unknown | bounds), progress)
     gain = evidence.decision.winner.fit.objective - again.decision.winner.fit.objective
     needed = chance_gain(again.calibration.problem.count(), again.comparison.residual_variance)
     return again if gain > needed else evidence
+
+
+def _gains_without(evidence: Evidence, bounds: frozenset[str]) -> bool:
+    """Whether the model found would explain more without these bounds: else they held nothing back."""
+    problem, found = evidence.calibration.problem, evidence.decision.winner.fit
+    rows = evidence.observation.composition.place_rows
+    free = [
+        not_believed(one, rows[base_name(one.name)]) if base_name(one.name) in bounds else one for one in found.free
+    ]
+    beyond = fit(problem, found.values, free, found.states, iterations=BEYOND)
+    return found.objective - beyond.objective > chance_gain(problem.count(), evidence.comparison.residual_variance)
 
 
 def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:

@@ -13,23 +13,19 @@ from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.model_comparison import (
-    Entry,
-    ModelComparison,
-    freedom_used,
-    parameter_cost,
-    rank,
-    residual_variance,
-)
+from eha_core.diagnosis.model_comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.refine import Found, Progress, cross, refit_nominal, settle
 from eha_core.diagnosis.search.candidates import Candidate, Search, in_noise_of
 from eha_core.diagnosis.search.exchange import rivals_for
+from eha_core.diagnosis.search.grow import grow
 from eha_core.diagnosis.search.proposals import at_the_fit, in_another_form
+from eha_core.diagnosis.search.prune import prune
 from eha_core.diagnosis.search.search import search_sets
+from eha_core.diagnosis.search.simpler_form import CLOSE, for_its_cost, try_forms
 from eha_core.effects import Effect
 
-CLOSE = 100.0
-"""Chi^2 by which a set may lie behind the best and still be fitted to its end."""
+ROUNDS = 3
+"""How often a set that one of its rivals took the place of is held against its own."""
 
 
 def with_sets(
@@ -44,13 +40,19 @@ def with_sets(
     found: Found = {**singles, NOTHING: comparison.nominal.fit}
     search = Search(calibration.problem, able, facts, progress, found, calibration.shorter)
     best = search_sets(search, search.again(Candidate(NOTHING, comparison.nominal.fit)))
-    calibration = _in_noise_of(search, calibration)
-    found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
     if len(best.hypothesis.members) > 1:
         # a set that stopped short would make any other form of a law look better
         settled = settle(search.problem, {best.hypothesis: best.fit}, progress)
         best = search.keep(best.hypothesis, settled[best.hypothesis])
-        best = _against_its_rivals(search, best)
+        for _ in range(ROUNDS):
+            before, best = best.hypothesis, _against_its_rivals(search, best)
+            if best.hypothesis == before:
+                break
+            # it leads for where its fit came to rest, maybe, and not for its new member
+            best = prune(search, grow(search, best))
+    calibration = _in_noise_of(search, calibration)
+    found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
+    if len(best.hypothesis.members) > 1:
         size = len(best.hypothesis.members)
         near = [one for one in search if one.fit.objective < best.fit.objective + CLOSE * max(1.0, best.times_noise)]
         for one in near:
@@ -88,12 +90,8 @@ def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
                 search.try_guess(guess, 15, give_up_above=best.fit.objective + CLOSE)
     size = len(best.hypothesis.members)
     while True:
-        for guess in in_another_form(search, best):
-            search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
-            search.try_guess(guess, 20, give_up_above=best.fit.objective + CLOSE)
-        of_size = [one for one in search if len(one.hypothesis.members) == size]
-        dear = parameter_cost(search.problem.count(), max(1.0, best.times_noise))
-        leading = min(of_size, key=lambda one: one.fit.objective + dear * freedom_used(one.fit))
+        try_forms(search, best, in_another_form(search, best))
+        leading = for_its_cost(search, [one for one in search if len(one.hypothesis.members) == size])
         if leading.hypothesis == best.hypothesis:
             return leading
         # where friction sticks a simpler form may have rested above its optimum, and goes on from here

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import exp, log
 
 from eha_core.identification.observation import WITH_OIL
+from eha_core.parameter import Parameter
 from eha_core.plant import PAPER, Composition
 from eha_core.plant.parts import Source
 
@@ -153,3 +154,13 @@ def _trust_of(source: Source) -> dict[str, Trust]:
 def _not_known(trust: Trust) -> Trust:
     """The trust in the nominal value of a parameter that is not known."""
     return replace(NOT_KNOWN, scale=trust.scale)
+
+
+def not_believed(one: Free, row: Parameter) -> Free:
+    """A nominal parameter as free as if nobody knew its value, within the limits of its `row` in the catalogue."""
+    reach = NOT_KNOWN.reach
+    if one.logarithmic:
+        lower, upper = max(row.lower, one.reference / reach), min(row.upper, one.reference * reach)
+    else:
+        lower, upper = row.lower, min(row.upper, one.reference + reach * one.scale)
+    return replace(one, trust=NOT_KNOWN.trust, lower=lower, upper=upper)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -96,22 +96,36 @@ def _lost(without: Candidate, best: Candidate) -> float:
     return without.fit.objective - best.fit.objective
 
 
-def by_chance(member: Member, others: Iterable[Member], best: Candidate) -> float:
-    """Chi^2 that a member may be worth beside the others by chance."""
-    beside_a_form = any(other.effect.approximate for other in others if other != member)
-    of_samples = OF_SAMPLES_BESIDE_A_FORM if beside_a_form else OF_SAMPLES
-    return max(1.0, best.times_noise) * (CHANCE + of_samples * best.fit.count)
+def by_chance(member: Member, worth: Mapping[Member, float], best: Candidate) -> float:
+    """Chi^2 that a member may be worth beside the others by chance.
+
+    Beside a law of several forms a refit may stop short, for friction makes the objective rugged: there a small loss
+    is believed where the curvature confirms it.
+    """
+    louder = max(1.0, best.times_noise)
+    least = louder * (CHANCE + OF_SAMPLES * best.fit.count)
+    if worth[member] > least or not any(other.effect.approximate for other in worth if other != member):
+        return least
+    return louder * (CHANCE + OF_SAMPLES_BESIDE_A_FORM * best.fit.count)
 
 
 def asked_of(member: Member, worth: Mapping[Member, float], best: Candidate, explained: float) -> float:
     """Chi^2 that a member must be worth beside the others, which are worth so much each, and `explained` together.
 
-    It rises with what the set leaves unexplained: a law of another form always leaves something for others.
+    It rises with what the set leaves unexplained: a law of another form always leaves something for others that act in
+    the same balance.
     """
-    forms = [gain for other, gain in worth.items() if other != member and other.effect.approximate]
+    beside = [other for other in worth if other != member and other.effect.approximate and meet(member, other)]
+    forms = [worth[other] for other in beside]
     left = max(best.fit.data - best.fit.count, 0.0)
     their_forms = OF_ITS_FORM * min(sum(max(gain, 0.0) for gain in forms), max(explained, 0.0))
     ratio = CONVINCING / (1.0 - CONVINCING)
     # what makes up for a form leaves some of it over, too, beyond what may pass for noise
     their_forms = min(their_forms, ratio * (left + NOISE_KNOWN * best.fit.count))
     return max(by_chance(member, worth, best) + their_forms, ratio * max(left - NOISE_KNOWN * best.fit.count, 0.0))
+
+
+def meet(member: Member, other: Member) -> bool:
+    """Whether two effects act in one balance, of the piston's forces or of the oil's flow; a sensor shows both."""
+    sites = (member.effect.site, other.effect.site)
+    return any(site in ("sensor", "schedule") for site in sites) or (sites[0] == "force") == (sites[1] == "force")

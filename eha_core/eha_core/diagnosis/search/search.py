@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, UNFITTED
+from eha_core.diagnosis.criteria import NEAR_NOISE, UNFITTED
 from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.exchange import exchange
 from eha_core.diagnosis.search.grow import grow
-from eha_core.diagnosis.search.joint_start import joint_start
 from eha_core.diagnosis.search.prune import prune
-from eha_core.diagnosis.search.short_windows import forms_of_friction, sticks
+from eha_core.diagnosis.search.short_windows import forms_of_friction, set_in_each_form, sticks
+from eha_core.diagnosis.search.simpler_form import from_a_simpler_form
 
 ROUNDS = 8
 """Exchanges at most; each has to make the fit better by more than chance would."""
@@ -17,18 +17,17 @@ ROUNDS = 8
 def search_sets(search: Search, nominal: Candidate) -> Candidate:
     """The set of effects that explains the recording best and of which every member earns its place.
 
-    Begins at the best that is there. Where what grows from it ends far from the noise, it has gone astray, and another
-    set grows from what stands out of a joint fit; the better one goes on.
+    Begins at the best single effect. Where it ends with more than noise left, its dry friction may have another form,
+    or a member another's place.
     """
     best = min(search, key=lambda one: one.fit.objective)
     if best.hypothesis.limited:
         return best
-    if best.times_noise > FAR_FROM_NOISE or (best.times_noise > UNFITTED and sticks(best.hypothesis)):
+    if best.times_noise > UNFITTED and sticks(best.hypothesis):
         best = forms_of_friction(search, nominal)
     best = grow(search, best)
-    if best.times_noise > FAR_FROM_NOISE:
-        other = grow(search, joint_start(search, nominal))
-        best = min(search.again(best), other, key=lambda one: one.fit.objective)
+    if best.times_noise > NEAR_NOISE and sticks(best.hypothesis):
+        best = grow(search, set_in_each_form(search, best))
     for _ in range(ROUNDS):
         if best.times_noise < NEAR_NOISE or len(best.hypothesis.members) < 2:
             break
@@ -37,4 +36,4 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
             break
         search.report(better)
         best = grow(search, better)
-    return prune(search, best)
+    return prune(search, from_a_simpler_form(search, best))

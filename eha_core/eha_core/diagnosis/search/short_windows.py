@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.search.candidates import Candidate, Search, with_effects
+from eha_core.diagnosis.search.candidates import Candidate, Search, with_effects, without_effect
 from eha_core.effects import Effect
 from eha_core.identification.freedom import Free
 from eha_core.identification.per_recording import base_name
@@ -30,6 +31,26 @@ def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
         found = from_short_windows(search.problem, search.shorter, values, free)
         search.keep(NOTHING.with_effects([effect]), found)
     return min(search, key=lambda one: one.fit.objective)
+
+
+def set_in_each_form(search: Search, best: Candidate) -> Candidate:
+    """The best so far when each form of the set's dry friction was led from short windows to long ones beside the
+    other members: from where the set stands, and where that does not reach the noise from the nominal values, which
+    another form has not bent."""
+    member = next(one for one in best.hypothesis.members if one.effect.kind == STICKING)
+    rest = best.hypothesis.without(member)
+    values, free = without_effect(best.fit, member.effect)
+    plant = tuple(one for one in search.found[NOTHING].free if one in free)
+    for begin in (values, _at_nominal(values, plant)):
+        for effect in _that_stick(search.able):
+            search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} from short windows to long ones")
+            begun = {**begin, **_first_guess(effect, search.facts)}
+            found = from_short_windows(search.problem, search.shorter, begun, with_effects(free, [effect], begun))
+            search.keep(rest.with_effects([effect]), found)
+        reached = min(search, key=lambda one: one.fit.objective)
+        if reached.times_noise < NEAR_NOISE:
+            break
+    return reached
 
 
 def set_with_friction(search: Search, best: Candidate) -> Candidate:
