@@ -22,6 +22,7 @@ def marked(number: int, named: str, noise: float = 1.0, tier: str = "single") ->
         verdict="missing_physics" if named else "consistent", named=names, outcome="right" if right else "wrong",
         site_right=None if tier == "null" else bool(named), in_stated_set=None, discovery=bool(named and not concealed),
         intervals=(), nominal_intervals=(), held_out_ratio=1.0, curve_r_squared=None, seconds=5.0, decidable=True,
+        false=() if right else names,
     )  # fmt: skip
 
 

@@ -164,6 +164,15 @@ def test_a_named_effect_and_an_unknown_law_are_right_together() -> None:
     assert mark(case, answer("missing_physics", "coulomb_friction")).outcome == "wrong"
 
 
+def test_an_unknown_law_that_effects_of_the_catalogue_express_is_named_beside_a_known_one() -> None:
+    both = (("supply_pressure_droop", {}), ("direction_friction", {"forward": 100.0, "backward": 300.0}))
+    case = replace(single(), tier="named_and_unknown", effects=both)
+    right = mark(case, answer("missing_physics", "supply_pressure_droop", "coulomb_friction", "constant_load"))
+    assert (right.outcome, right.false) == ("right", ())
+    wrong = mark(case, answer("missing_physics", "supply_pressure_droop", "end_stop"))
+    assert (wrong.outcome, wrong.false) == ("wrong", ("end_stop",))
+
+
 def test_what_was_named_in_place_of_what_is_counted() -> None:
     wrong = mark(single(), answer("missing_physics", "stribeck_friction"))
     right = mark(single(), answer("missing_physics", "coulomb_friction"))

@@ -25,7 +25,8 @@ BELOW_REQUIRED = 1
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the verb."""
-    tiers = "\n".join(f"  {tier:16s}{meaning}" for tier, meaning in MEANINGS.items())
+    width = max(map(len, MEANINGS))
+    tiers = "\n".join(f"  {tier:{width}s} {meaning}" for tier, meaning in MEANINGS.items())
     parser = subparsers.add_parser(
         "exam",
         help="score the diagnosis on recordings with concealed effects",

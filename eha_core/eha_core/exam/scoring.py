@@ -42,7 +42,8 @@ class Mark:
     law, whether its 95 % interval holds the truth. `nominal_intervals`: the same for the rig's parameters.
     `held_out_ratio`: held-out error after over noise, worst channel. `curve_r_squared`: agreement of a recovered law.
     `resolved`: whether the test that an ambiguous verdict prescribed led to the truth. `seen`: of what is concealed,
-    the effects that the recording can show beside the others. `complete`: what the diagnosis says of itself.
+    the effects that the recording can show beside the others. `false`: what is named and not concealed, under no name.
+    `complete`: what the diagnosis says of itself.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Mark:
     decidable: bool
     resolved: bool | None = None
     seen: tuple[str, ...] = ()
+    false: tuple[str, ...] = ()
     complete: bool | None = None
 
     @property
@@ -105,6 +107,7 @@ def mark(case: Case, answer: Answer, second: Answer | None = None) -> Mark:
         decidable=case.decidable,
         resolved=_resolved(case, second) if verdict == "ambiguous" else None,
         seen=case.seen,
+        false=tuple(name for name in named if not any(name in names for names in accepted(case))),
         complete=(diagnosis.get("explained") or {}).get("complete"),
     )
 
@@ -151,8 +154,10 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
 
 
 def _named_and_unknown(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[str, Any]) -> str:
-    """One effect of the catalogue and one law outside of it: right where both are told apart, abstained where a site of
-    theirs is told and nothing false is named."""
+    """One effect of the catalogue and one law outside of it: right where both are told apart, or named where effects of
+    the catalogue express that law; abstained where a site of theirs is told and nothing false is named."""
+    if verdict == "missing_physics" and set(named) in accepted(case):
+        return "right"
     known = {name for name in case.effect_ids if name not in OUTSIDE}
     if verdict == "unknown_physics" and set(named) <= known and _site_right(case, diagnosis):
         return "right" if named else "abstained"
@@ -162,7 +167,8 @@ def _named_and_unknown(case: Case, verdict: str, named: Sequence[str], diagnosis
 def accepted(case: Case) -> list[set[str]]:
     """The sets of effects that name what is concealed: its own, and what the catalogue calls the very same law."""
     own = set(case.effect_ids)
-    return [own, *(set(EQUIVALENT[name]) for name in own if len(own) == 1 and name in EQUIVALENT)]
+    known_as = {other for name in own for other in EQUIVALENT.get(name, (name,))}
+    return [own] if known_as == own else [own, known_as]
 
 
 def _in_stated_set(case: Case, diagnosis: Mapping[str, Any]) -> bool:

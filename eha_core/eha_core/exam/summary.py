@@ -124,8 +124,7 @@ def _found(marks: Sequence[Mark]) -> Proportion:
 
 def _false_names(marks: Sequence[Mark]) -> Proportion:
     """Of the names given, those of nothing concealed."""
-    false = [name not in m.concealed for m in marks for name in m.named]
-    return Proportion(sum(false), len(false))
+    return Proportion(sum(len(m.false) for m in marks), sum(len(m.named) for m in marks))
 
 
 def confusion(marks: Sequence[Mark]) -> list[tuple[str, str, int]]:
@@ -133,7 +132,7 @@ def confusion(marks: Sequence[Mark]) -> list[tuple[str, str, int]]:
     counts: Counter[tuple[str, str]] = Counter()
     for m in marks:
         missed = sorted(set(m.seen or m.concealed) - set(m.named)) or ["nothing"]
-        false = sorted(set(m.named) - set(m.concealed)) or ["nothing"]
+        false = sorted(m.false) or ["nothing"]
         counts.update((one, other) for one in missed for other in false if one != other)
     return [(one, other, count) for (one, other), count in counts.most_common()]
 

@@ -50,3 +50,14 @@ def test_values_are_found_again_and_a_load_does_not_do(recording: Windows) -> No
     assert found.friction == pytest.approx(AXIS.friction, rel=0.02)
     rival = fit_axis(start, [recording], with_load=True)
     assert rms(from_fitted_starts(rival, recording)) > 5.0 * rms(from_fitted_starts(found, recording))
+
+
+def test_a_steady_slide_needs_the_dry_friction_of_its_speed_and_the_viscous_part() -> None:
+    """A steady slide: the force is dry friction at that speed and the viscous part."""
+    axis = Axis(mass=95.0, forward=155.0, backward=235.0, friction=7.0, rise=12.0, stribeck_velocity=0.1)
+    held = simulate(axis, np.full((1, 500), 18.9), np.zeros(1), np.zeros(1), PERIOD)
+    assert np.all(held == 0.0)
+    speed = 0.05
+    force = 7.0 + 12.0 * np.exp(-0.25) + 155.0 * speed
+    found = simulate(axis, np.full((1, 100), force), np.zeros(1), np.full(1, speed), PERIOD)[0]
+    np.testing.assert_allclose(np.diff(found), speed * PERIOD, rtol=1e-9)

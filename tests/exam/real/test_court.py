@@ -10,7 +10,7 @@ import pytest
 
 from eha_core.cli import main
 from eha_core.errors import EhaError
-from eha_core.exam.real import Question, as_markdown, hold, mr_damper, pneumatic_seal
+from eha_core.exam.real import Question, as_markdown, emps, hold, mr_damper, pneumatic_seal
 from eha_core.exam.real.sealing import seal
 from eha_core.motion_given.law import Law, Value
 from eha_core.motion_given.terms import TERMS, Term
@@ -45,6 +45,22 @@ def test_friction_that_grows_with_pressure_is_told_from_friction_that_does_not(t
     assert all(one.met and one.seal for one in predictions)
     listed = (tmp_path / "out" / "sealed.txt").read_text().splitlines()
     assert [line[:8] for line in listed] == [one.seal for one in predictions]
+
+
+def test_the_axis_files_are_found_from_the_folder_that_a_diagnosis_is_run_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "here" / "out").mkdir(parents=True)
+    (tmp_path / "here" / "out" / f"{emps.FOUND_ON}.csv").write_text("time,force,position\n")
+
+    def diagnose(words: list[str]) -> tuple[dict[str, str], float]:
+        monkeypatch.chdir(tmp_path)
+        assert all(Path(word).is_file() for word in words if not word.startswith("--"))
+        return {"verdict": "asked"}, 0.0
+
+    monkeypatch.chdir(tmp_path / "here")
+    monkeypatch.setattr(emps, "diagnose", diagnose)
+    assert emps._diagnose(Path("out"), emps.VISCOUS_ONLY) == {"verdict": "asked"}
 
 
 def test_a_prediction_that_was_changed_is_not_opened(tmp_path: Path) -> None:

@@ -38,12 +38,17 @@ def named(friction: bool) -> dict[str, float]:
     return {"coulomb_friction.force": FRICTION["force"]} if friction else {}
 
 
-@pytest.mark.parametrize("friction", [False, True])
-def test_a_single_rod_on_a_servo_valve(friction: bool) -> None:
+@pytest.mark.parametrize(
+    "effects",
+    [[], [("coulomb_friction", FRICTION)], [("load_friction", {"coefficient": 1e-4})]],
+    ids=["smooth", "dry friction", "friction in proportion to the pressure"],
+)
+def test_a_single_rod_on_a_servo_valve(effects: list[tuple[str, dict[str, float]]]) -> None:
     time = np.arange(1001) / 1000.0
     command = 0.08 * np.sin(2.0 * np.pi * time) + 0.03 * np.sin(2.0 * np.pi * 4.3 * time)
-    truth = simulate_truth(ROD, effects(friction), command, 1.0)
-    model = Plant(ROD | named(friction), 1e-3 / STEPS, composition=compose(cylinder="single_rod"))
+    truth = simulate_truth(ROD, effects, command, 1.0)
+    named = {f"{effect}.{name}": value for effect, values in effects for name, value in values.items()}
+    model = Plant(ROD | named, 1e-3 / STEPS, composition=compose(cylinder="single_rod"))
     rows = model.run(np.repeat(command[:-1], STEPS), every=STEPS)
     assert np.sqrt(np.mean((truth["position"][1:] - rows.position) ** 2)) < 1e-8
     for pressure in ("pressure_a", "pressure_b"):

@@ -34,13 +34,22 @@ HELD = 1e-8
 
 @dataclass(frozen=True)
 class Axis:
-    """M x'' = F - (forward or backward, by direction) x' - friction sign(x') - load. SI."""
+    """M x'' = F - (forward or backward, by direction) x' - dry(x') sign(x') - load. SI.
+
+    Dry friction is `friction` while sliding fast, and `rise` more at rest, which is lost over `stribeck_velocity`.
+    """
 
     mass: float
     forward: float
     backward: float
     friction: float
     load: float = 0.0
+    rise: float = 0.0
+    stribeck_velocity: float = 1.0
+
+    def dry(self, velocity: Array) -> Array:
+        """Size of the dry friction [N] at a velocity [m/s]."""
+        return self.friction + self.rise * np.exp(-((velocity / self.stribeck_velocity) ** 2))
 
 
 @dataclass(frozen=True)
@@ -63,11 +72,11 @@ class Windows:
 def simulate(axis: Axis, force: Array, position: Array, velocity: Array, period: float) -> Array:
     """Positions (windows, samples) [m] from starts (windows,); the first sample is the start."""
     found = np.empty_like(force)
-    grip = axis.friction * period / axis.mass
     x, v = position.copy(), velocity.copy()
     for sample in range(force.shape[1]):
         found[:, sample] = x
         free = v + period * (force[:, sample] - axis.load) / axis.mass
+        grip = axis.dry(v) * period / axis.mass
         slipping = np.sign(free) * np.maximum(np.abs(free) - grip, 0.0)
         damping = np.where(slipping > 0.0, axis.forward, axis.backward)
         new = slipping / (1.0 + period * damping / axis.mass)

@@ -91,26 +91,39 @@ def read(data: Path, name: str, *wanted: str) -> list[Array]:
 
 
 def _diagnose(out: Path, nominal: Mapping[str, float]) -> Mapping[str, Any]:
-    """What `eha diagnose` says of the first recording, held against a model."""
-    file = out / "nominal.yaml"
+    """What `eha diagnose`, which is run in a folder of its own, says of the first recording, held against a model."""
+    folder = out.resolve()
+    file = folder / "nominal.yaml"
     file.write_text(json.dumps({"eha_sim": {"ros__parameters": dict(nominal)}}), encoding="utf-8")
-    words = [str(out / f"{FOUND_ON}.csv"), "--nominal", str(file)]
+    words = [str(folder / f"{FOUND_ON}.csv"), "--nominal", str(file)]
     return diagnose(words)[0]
 
 
 def axis_of(diagnosis: Mapping[str, Any]) -> Axis:
-    """The axis that a diagnosis found, dry friction of any form taken as Coulomb's."""
+    """The axis that a diagnosis found; of dry friction that clings before it slides, as it slides."""
     fitted = {row["name"]: float(row["fitted"]) for row in diagnosis.get("parameters") or ()}
-    effects = {one["id"]: one["parameters"] for one in diagnosis.get("effects") or ()}
+    effects = _effects_of(diagnosis)
+    dry = next((effects[one] for one in DRY if one in effects), {})
+    force = dry.get("force", 0.0)
     mean = fitted.get("damping_coefficient", VISCOUS_ONLY["damping_coefficient"])
-    ratio = float(effects[DIRECTIONAL]["ratio"]["value"]) if DIRECTIONAL in effects else 0.0
+    ratio = effects.get(DIRECTIONAL, {}).get("ratio", 0.0)
     return Axis(
         mass=fitted.get("moving_mass", VISCOUS_ONLY["moving_mass"]),
         forward=mean * (1.0 + ratio),
         backward=mean * (1.0 - ratio),
-        friction=next((float(effects[one]["force"]["value"]) for one in DRY if one in effects), 0.0),
-        load=float(effects["constant_load"]["force"]["value"]) if "constant_load" in effects else 0.0,
+        friction=force,
+        load=effects.get("constant_load", {}).get("force", 0.0),
+        rise=dry.get("static_force", force) - force,
+        stribeck_velocity=dry.get("stribeck_velocity", 1.0),
     )
+
+
+def _effects_of(diagnosis: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """The named effects' parameters [SI]."""
+    return {
+        one["id"]: {name: float(value["value"]) for name, value in one["parameters"].items()}
+        for one in diagnosis.get("effects") or ()
+    }
 
 
 def _windows(data: Path, name: str, length: float) -> Windows:
@@ -155,21 +168,19 @@ def _ahead(data: Path, out: Path, diagnosis: Mapping[str, Any]) -> Question:
 
 
 def _knocked_out(out: Path, diagnosis: Mapping[str, Any]) -> list[Question]:
-    """Each of the two effects is put into the model, and the other has to be found again, alone."""
-    axis = axis_of(diagnosis)
-    mean = 0.5 * (axis.forward + axis.backward)
-    known = {**VISCOUS_ONLY, "moving_mass": axis.mass, "damping_coefficient": mean}
-    trials = (
-        ("viscous friction by direction", (DIRECTIONAL,), {"coulomb_friction.force": axis.friction}),
-        (
-            "dry friction",
-            DRY,
-            {f"{DIRECTIONAL}.ratio": (axis.forward - axis.backward) / (axis.forward + axis.backward)},
-        ),
-    )
+    """The diagnosed model without each of its two effects: that one has to be found again, alone."""
+    fitted = {row["name"]: float(row["fitted"]) for row in diagnosis.get("parameters") or ()}
+    effects = _effects_of(diagnosis)
+    trials = (("viscous friction by direction", (DIRECTIONAL,)), ("dry friction", DRY))
     questions = []
-    for words, right, kept in trials:
-        names = named(_diagnose(out, {**known, **kept}))
+    for words, right in trials:
+        kept = {
+            f"{effect}.{name}": value
+            for effect, parameters in effects.items()
+            if effect not in right
+            for name, value in parameters.items()
+        }
+        names = named(_diagnose(out, {**VISCOUS_ONLY, **fitted, **kept}))
         questions.append(
             Question(
                 RIG,

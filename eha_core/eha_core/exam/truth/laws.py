@@ -126,11 +126,14 @@ def stribeck_shape(speed, scale, law):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def dry_friction(speed, direction, hydraulic, p):  # type: ignore[no-untyped-def]
-    """Magnitude of the set-valued friction [N] at a speed >= 0 in a direction; at speed 0 the force of break-away."""
+def dry_friction(speed, direction, across, p):  # type: ignore[no-untyped-def]
+    """Magnitude of the set-valued friction [N] at a speed >= 0 in a direction; at speed 0 the force of break-away.
+
+    `across`: the pressure difference [Pa] that presses the piston's seals.
+    """
     height = p.coulomb_friction_force
     if p.load_friction_coefficient > 0.0:
-        pressed = abs(hydraulic) / p.piston_area
+        pressed = abs(across)
         if p.load_friction_law == 1.0:
             pressed = ELASTIC_PRESSURE ** (1.0 / 3.0) * pressed ** (2.0 / 3.0)
         height += p.load_friction_coefficient * pressed
@@ -232,9 +235,8 @@ def derivatives(time, y, rates, spool, mode, records):  # type: ignore[no-untype
     if mode[MOTION] == 0.0:
         return
     force = smooth_force(y, time, rates, mode, p)
-    hydraulic = p.piston_area * a - p.piston_area_b * b
     rates[POSITION] = v
-    rates[VELOCITY] = (force - mode[DIRECTION] * dry_friction(abs(v), mode[DIRECTION], hydraulic, p)) / p.moving_mass
+    rates[VELOCITY] = (force - mode[DIRECTION] * dry_friction(abs(v), mode[DIRECTION], a - b, p)) / p.moving_mass
 
 
 @njit(cache=True)
@@ -242,9 +244,9 @@ def margins(time, y, mode, records):  # type: ignore[no-untyped-def]
     """Net force at rest and the forces of break-away forward and backward [N]; infinite where a cylinder end holds."""
     p = records[0]
     force = smooth_force(y, time, np.zeros(STATES), mode, p)
-    hydraulic = p.piston_area * y[PRESSURE_A] - p.piston_area_b * y[PRESSURE_B]
-    forward = np.inf if mode[END] > 0.0 else dry_friction(0.0, 1.0, hydraulic, p)
-    backward = np.inf if mode[END] < 0.0 else dry_friction(0.0, -1.0, hydraulic, p)
+    across = y[PRESSURE_A] - y[PRESSURE_B]
+    forward = np.inf if mode[END] > 0.0 else dry_friction(0.0, 1.0, across, p)
+    backward = np.inf if mode[END] < 0.0 else dry_friction(0.0, -1.0, across, p)
     return force, forward, backward
 
 
