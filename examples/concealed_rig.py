@@ -9,6 +9,7 @@ samples left; stamps are its own time, from zero. What it is made of stands in t
 from __future__ import annotations
 
 import sys
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -95,9 +96,14 @@ def _set(stamp: Any, nanoseconds: int) -> None:
     stamp.sec, stamp.nanosec = divmod(nanoseconds, 1_000_000_000)
 
 
-def main() -> None:
-    """Run the rig until a signal ends it."""
-    answer, _ = unseal(Path(sys.argv[1]))
+def main() -> str | None:
+    """Run the rig until a signal ends it; return what is wrong with the sealed file."""
+    if len(sys.argv) < 2:
+        return "usage: python3 examples/concealed_rig.py SEALED_FILE"
+    try:
+        answer, _ = unseal(Path(sys.argv[1]))
+    except (OSError, ValueError, zlib.error):
+        return f"concealed_rig: {sys.argv[1]}: is no sealed file; examples/concealed_demo.py makes one"
     rclpy.init(args=sys.argv)
     try:
         rclpy.spin(ConcealedRig(answer))
@@ -105,7 +111,8 @@ def main() -> None:
         pass
     finally:
         rclpy.try_shutdown()
+    return None
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -18,6 +18,7 @@ import pyarrow.parquet
 from numpy.typing import NDArray
 from scipy.io import savemat
 
+from eha_core.errors import EhaError
 from eha_core.recording import read_recording
 
 EPOCH_MS = 1_726_000_000_000
@@ -157,7 +158,11 @@ def main() -> int:
     if len(sys.argv) != 3:
         print("usage: python examples/log_files.py RECORDING FOLDER", file=sys.stderr)
         return 2
-    table = read_recording(sys.argv[1]).to_dict()
+    try:
+        table = read_recording(sys.argv[1]).to_dict()
+    except EhaError as error:
+        print(f"log_files: {error}", file=sys.stderr)
+        return 1
     run = Run(*(table[name] for name in ("time", "voltage_command", "position", "pressure_a", "pressure_b")))
     folder = Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)

@@ -17,6 +17,7 @@ from eha_core.cli import main
 from eha_core.effects import effects
 from eha_core.errors import EhaError
 from eha_core.recording import read_recording
+from eha_core.report.summary import summarise
 
 COMMAND = "multisine:amplitude=0.12,lowest=0.3,highest=8,count=16,period=20,seed=3"
 RIG = {"coulomb_friction.force": 250.0, "moving_mass": 11.0}
@@ -63,6 +64,11 @@ def test_the_summary_has_the_interval_and_the_errors(found: eha.Results) -> None
     assert "augmented / noise" in text
     assert max(map(len, text.splitlines())) <= 96
     assert "coulomb_friction.force" in found._repr_html_()
+
+
+def test_a_remark_in_the_summary_names_its_channel_in_words(found: eha.Results) -> None:
+    remarked = replace(found.diagnosis, remarks=("pressure_b: 3 outliers were set aside",))
+    assert "Pressure of chamber B: 3 outliers were set aside." in str(summarise(remarked))
 
 
 def test_json_plots_and_files(found: eha.Results, tmp_path: Path) -> None:

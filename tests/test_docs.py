@@ -82,6 +82,11 @@ def test_every_effect_has_a_page_with_all_that_its_docstring_says(effect: object
     assert f"({effect.id}.md)" in effect_pages.table_of_all()
 
 
+def test_the_front_page_counts_the_effects() -> None:
+    (count,) = re.findall(r"internal leakage and (\d+) other\s+effects", (ROOT / "README.md").read_text())
+    assert int(count) == len(effect_pages.named_effects())
+
+
 def test_the_picture_shows_what_the_effect_changes(tmp_path: Path) -> None:
     (friction,) = (effect for effect in effects() if effect.id == "coulomb_friction")
     (tmp_path / "page.png").write_bytes(effect_pages.picture_of(friction))

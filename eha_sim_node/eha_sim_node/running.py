@@ -71,10 +71,10 @@ def run(
 def compile_plant() -> None:
     """Compile the plant, or read its code from the cache, and say how long that took."""
     log = get_logger("eha_plant")
-    log.info("compiling the plant; the next start finds it in the cache")
+    log.info("loading the plant, which the first start on a machine compiles")
     start = time.monotonic()
     Plant().advance(0.0, 1)
-    log.info(f"compiled in {time.monotonic() - start:.1f} s")
+    log.info(f"the plant is ready after {time.monotonic() - start:.1f} s")
 
 
 def _help(make_node: Callable[[], Node], name: str, rows: Sequence[Row]) -> str:

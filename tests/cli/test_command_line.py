@@ -12,6 +12,7 @@ import pytest
 
 import eha_core
 from eha_core.cli import main, verbs
+from eha_core.exam.tiers import MEANINGS
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -28,6 +29,13 @@ def test_the_actuator_s_packages_bear_one_version() -> None:
         assert f"<version>{here}</version>" in path.read_text(), path
     for path in ("eha_sim_node/setup.py", "eha_interfaces/setup.py"):  # rclpy_dds is released on its own
         assert re.search(rf'^\s*version ?= ?"{re.escape(here)}"', (ROOT / path).read_text(), re.MULTILINE), path
+
+
+def test_the_exam_s_help_has_each_tier_as_a_word(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["exam", "--help"])
+    lines = capsys.readouterr().out.split("tiers:\n")[1].splitlines()
+    assert [line.split()[0] for line in lines] == list(MEANINGS)
 
 
 def test_help_names_every_verb_and_imports_nothing_heavy() -> None:

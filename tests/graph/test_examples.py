@@ -106,6 +106,21 @@ def test_a_demonstration_that_fails_says_so_in_one_line(tmp_path: Path) -> None:
     assert done.stderr.startswith("concealed_demo: ") and done.stderr.count("\n") == 1
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["concealed_rig.py"], "usage: "),
+        (["concealed_rig.py", "nowhere"], "concealed_rig: nowhere: is no sealed file"),
+        (["log_files.py", "nowhere", "out"], "log_files: nowhere: "),
+    ],
+)
+def test_an_example_that_was_given_no_file_says_so_in_one_line(tmp_path: Path, words: list[str], told: str) -> None:
+    command = [sys.executable, str(EXAMPLES / words[0]), *words[1:]]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.startswith(told) and done.stderr.count("\n") == 1
+
+
 def test_a_controller_of_ones_own_follows_a_position(rig: Rig) -> None:
     rig.node.destroy_publisher(rig.commands)
     rig.start_sim("time_mode:=lockstep")

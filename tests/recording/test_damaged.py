@@ -82,6 +82,7 @@ def test_a_cut_inside_the_only_chunk_leaves_its_beginning(tmp_path: Path, others
     assert recording is not None and recording.damaged is not None
     values = recording.channels["voltage_command"].values
     assert 2000 < len(values) < 19_000
+    assert recording.damaged.startswith("its end is missing, from within the chunk at byte ")
     np.testing.assert_allclose(values, np.arange(len(values)) * 1e-3)
     assert not recording.remarks
 

@@ -11,6 +11,7 @@ from eha_core.diagnosis.experiment import not_proposed
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.report.experiment_file import experiment_file
 from eha_core.report.files import write_report
+from eha_core.report.stages.next_experiment import stage
 
 
 def test_the_file_holds_the_reference_s_parameters_in_their_own_types(ambiguous: Diagnosis) -> None:
@@ -33,6 +34,15 @@ def test_the_report_s_folder_has_it_while_there_is_one(
     assert (tmp_path / "next_experiment.yaml").is_file()
     assert tmp_path / "next_experiment.yaml" not in write_report(friction, tmp_path)
     assert not (tmp_path / "next_experiment.yaml").exists()
+
+
+def test_the_page_names_the_causes_in_words_and_its_commands_fit_their_lines(ambiguous: Diagnosis) -> None:
+    assert ambiguous.next_experiment is not None
+    statement = "coulomb_friction or stribeck_friction: a sine should tell them apart"
+    experiment = replace(ambiguous.next_experiment, statement=statement)
+    shown = stage(replace(ambiguous, next_experiment=experiment))
+    assert shown.sentences[0] == "Coulomb friction or Stribeck friction: a sine should tell them apart."
+    assert max(map(len, shown.code.splitlines())) <= 130
 
 
 def test_where_no_voltage_drives_the_rig_the_report_says_why_there_is_none(

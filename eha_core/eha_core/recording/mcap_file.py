@@ -161,9 +161,10 @@ def _read_records(stream: IO[bytes], size: int, collector: _Collector) -> RawRec
         if broken_at == size:
             damage.append("its end is missing")
         elif broken_at is not None:
-            if end == size:
-                _add_cut_chunk(stream, broken_at, collector)
-            damage.append(f"{end - broken_at} bytes from byte {broken_at} of {size} could not be read")
+            if end == size and _add_cut_chunk(stream, broken_at, collector):
+                damage.append(f"its end is missing, from within the chunk at byte {broken_at} of {size} on")
+            else:
+                damage.append(f"{end - broken_at} bytes from byte {broken_at} of {size} could not be read")
     if collector.bad_chunks:
         damage.append(f"damaged chunks left out: {collector.bad_chunks}")
     if collector.lost_messages:
@@ -231,18 +232,19 @@ def _add_chunk(chunk: Chunk, collector: _Collector) -> None:
         collector.bad_chunks += 1
 
 
-def _add_cut_chunk(stream: IO[bytes], start: int, collector: _Collector) -> None:
-    """Hand on the whole records at the beginning of a chunk that the file's end cuts off, if one starts there."""
+def _add_cut_chunk(stream: IO[bytes], start: int, collector: _Collector) -> bool:
+    """Hand on the whole records at the beginning of a chunk that the file's end cuts off; False if none is there."""
     stream.seek(start)
     data = stream.read()
     try:
         if data[0] != Opcode.CHUNK:
-            return
+            return False
         chunk = Chunk.read(ReadDataStream(BytesIO(data[RECORD_HEAD.size :])))
         content = unpacked_start(chunk, LARGEST_CHUNK)
     except UNREADABLE:
-        return
-    if len(content) >= chunk.uncompressed_size:
-        return
+        return False
+    if not 0 < len(content) < chunk.uncompressed_size:
+        return False
     collector.ceiling.take(len(content))
     collector.add_content(content, is_cut=True)
+    return True

@@ -29,7 +29,7 @@ def commands(experiment: Experiment, file: str = FILE) -> str:
     """What to type: on the rig, on the simulator instead, and afterwards."""
     launch = f"ros2 launch eha_sim_node next_experiment.launch.yaml file:={file}"
     return (
-        f"{launch}                  # on the rig: {experiment.duration:g} s, recorded to bags/\n"
+        f"{launch}                  # on the rig, {experiment.duration:g} s\n"
         f"{launch} simulate:=true   # on the simulator\n"
         f"eha diagnose FIRST_RECORDING bags/next_experiment.mcap"
     )

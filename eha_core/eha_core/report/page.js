@@ -12,6 +12,13 @@ function inTwoLines(text) {
   return `${text.slice(0, middle)}<br>${text.slice(middle + 1)}`;
 }
 
+// In a table's rows "constant load: force 17" is "force 17", or "constant load 17" where another row is a force too.
+function shortened(name, _, all) {
+  const parameter = (one) => one.replace(/^.*: /, "").replace(/\s*\d+$/, "");
+  const alone = all.filter((other) => parameter(other) === parameter(name)).length === 1;
+  return name.replace(alone ? /^.*: / : /:.*?(?=\s*\d+$)/, "");
+}
+
 function narrowed(layout, table) {
   if (table) table.showscale = false;
   for (const note of layout.annotations || []) if (note.text.length > 28) note.font = { ...note.font, size: 11 };
@@ -19,7 +26,7 @@ function narrowed(layout, table) {
     const axis = layout[key];
     if (key[0] === "y" && axis.ticktext) {
       axis.tickfont = { size: 10 };
-      axis.ticktext = axis.ticktext.map(table ? (name) => name.replace(/^.*: /, "") : inTwoLines);
+      axis.ticktext = axis.ticktext.map(table ? shortened : inTwoLines);
     } else if (key[0] === "y" && axis.title.text.length > 28) {
       axis.title.text = inTwoLines(axis.title.text);
     } else if (key[0] === "x" && axis.title.text.length > 24) {

@@ -14,7 +14,7 @@ from eha_core.quantities import scale_for, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.finding import told_parameters
 from eha_core.report.stage import SURE, Table
-from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, sentence
+from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, plain, sentence
 
 WIDTH = 96
 DIGITS = 5
@@ -117,8 +117,8 @@ def _notes(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"Next experiment: {sentence(diagnosis.next_experiment.statement)}"
     if diagnosis.damaged:
         yield f"Damaged: {diagnosis.damaged}."
-    yield from (sentence(f"Not examined: {one}") for one in diagnosis.not_examined)
-    yield from (sentence(one) for one in diagnosis.remarks)
+    yield from (sentence(plain(f"Not examined: {one}")) for one in diagnosis.not_examined)
+    yield from (sentence(plain(one)) for one in diagnosis.remarks)
 
 
 def _columns(table: Table, rule: str) -> list[str]:

@@ -28,13 +28,16 @@ def stage(diagnosis: Diagnosis) -> Stage:
     reference = experiment.reference
     if not reference:
         return Stage("next", "Next experiment", "No test is proposed", (sentence(experiment.statement),))
+    statement = experiment.statement
+    for one in experiment.separates:
+        statement = statement.replace(one, effect_title(one))
     recorded = listed([channel_title(name) for name in channels_to_record(diagnosis, experiment)])
     return Stage(
         "next",
         "Next experiment",
         f"One more test would tell {' from '.join(effect_title(one) for one in experiment.separates[:2])}",
         (
-            sentence(experiment.statement),
+            sentence(statement),
             f"It lasts {experiment.duration:g} s; record {recorded}.",
             f"{FILE} beside this page holds it for the reference node. Then diagnose both recordings together:",
         ),
