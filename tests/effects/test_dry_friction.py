@@ -54,11 +54,12 @@ STRIBECK = {
 }  # fmt: skip
 
 
-def test_stribeck_friction_brakes_the_more_the_slower() -> None:
+@pytest.mark.parametrize("shape", [1.0, 2.0, 3.5])
+def test_stribeck_friction_brakes_the_more_the_slower(shape: float) -> None:
     def braking(_: float, speed: np.ndarray) -> np.ndarray:
-        return -(100.0 + 150.0 * np.exp(-((speed / 0.05) ** 2))) / 9.0
+        return -(100.0 + 150.0 * np.exp(-((speed / 0.05) ** shape))) / 9.0
 
-    speeds = coast(STRIBECK, 0.3, 1e-5, 1800)
+    speeds = coast(STRIBECK | {"stribeck_friction.shape": shape}, 0.3, 1e-5, 1800)
     expected = solve_ivp(braking, (0.0, 0.02), [0.3], rtol=1e-10, atol=1e-12, t_eval=1e-5 * np.arange(1, 1801)).y[0]
     assert speeds == pytest.approx(expected, abs=2e-4)
 

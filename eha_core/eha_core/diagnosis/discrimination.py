@@ -11,7 +11,7 @@ import numpy as np
 
 from eha_core.diagnosis.refine import NOMINAL_NAMES
 from eha_core.identification.fit import SETTLED, Fit
-from eha_core.identification.freedom import Free
+from eha_core.identification.freedom import Free, coordinates, values_at
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import is_one_of
 from eha_core.plant import COLUMNS, Plant
@@ -85,12 +85,12 @@ class _Test:
     def slopes(self, rival: Fit, free: Sequence[Free], outcome: Array) -> Array:
         """How a rival's outcome moves with the coordinate of each of these parameters: (samples, parameters)."""
         slopes = np.zeros((len(outcome), len(free)))
-        for column, one in enumerate(free):
-            at = one.coordinate(rival.values[one.name])
-            moved = one.value(at + NUDGE)
-            reached = self.outcome({**rival.values, one.name: moved})
-            if one.coordinate(moved) != at and np.all(np.isfinite(reached)):
-                slopes[:, column] = (reached - outcome) / (one.coordinate(moved) - at)
+        at = coordinates(free, rival.values)
+        for column, nudge in enumerate(NUDGE * np.eye(len(free))):
+            values = values_at(rival.values, free, at + nudge)
+            moved, reached = (coordinates(free, values) - at)[column], self.outcome(values)
+            if moved != 0.0 and np.all(np.isfinite(reached)):
+                slopes[:, column] = (reached - outcome) / moved
         return slopes
 
 
@@ -137,13 +137,12 @@ class _Slopes:
 
 def _imitating(target: Array, test: _Test, rival: Fit, slopes: _Slopes, outcome: Array) -> Array:
     """A rival's outcome when its parameters have moved towards another's."""
-    q = np.array([one.coordinate(rival.values[one.name]) for one in slopes.free])
+    q = coordinates(slopes.free, rival.values)
     misfit, damping = slopes.misfit(target - outcome, q), 1e-4
     for _ in range(MOVES if slopes.free else 0):
         moved = q + slopes.towards(target - outcome, q, damping)
-        values = {one.name: one.value(float(at)) for one, at in zip(slopes.free, moved, strict=True)}
-        moved = np.array([one.coordinate(values[one.name]) for one in slopes.free])
-        reached = test.outcome({**rival.values, **values})
+        values = values_at(rival.values, slopes.free, moved)
+        moved, reached = coordinates(slopes.free, values), test.outcome(values)
         left = slopes.misfit(target - reached, moved)
         if not left < misfit:  # a response that ran away leaves no number
             damping *= 100.0

@@ -24,6 +24,11 @@ def effect_freedom(effect: Effect, start: Mapping[str, float]) -> tuple[Free, ..
     free = []
     for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
         value = start[name]
+        if row.above:
+            above = f"{effect.id}.{row.above}"
+            scale, most = max(value - start[above], 0.0) or abs(row.typical), row.upper - row.lower
+            free.append(Free(name, 0.0, False, scale, EFFECT_TRUST, 0.0, most, above=above))
+            continue
         if row.logarithmic and value > 0.0:
             free.append(Free(name, value, True, 0.0, 3.0, row.lower, row.upper))
         else:

@@ -9,6 +9,7 @@ from itertools import product
 from eha_core.diagnosis.facts import Facts
 from eha_core.effects import Effect
 from eha_core.identification.observation import Observation
+from eha_core.parameter import Parameter
 
 SITES_OF_DRIVE = {
     "voltage": ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
@@ -43,4 +44,11 @@ def starts(effect: Effect, facts: Facts) -> tuple[Start, ...]:
         origin, scale = facts.scales.get(row.relative_to, (0.0, row.typical))
         choices.append([min(max(origin + scale * at, row.lower), row.upper) for at in row.starts])
     names = effect.parameter_names()
-    return tuple(Start(effect, dict(zip(names, values, strict=True))) for values in product(*choices))
+    found = [Start(effect, dict(zip(names, values, strict=True))) for values in product(*choices)]
+    return tuple(one for one in found if not any(_is_below(one, row) for row in effect.parameters))
+
+
+def _is_below(start: Start, row: Parameter) -> bool:
+    """Whether a start has a parameter below the one that it cannot be smaller than."""
+    own = start.effect.id
+    return bool(row.above) and start.values[f"{own}.{row.name}"] < start.values[f"{own}.{row.above}"]

@@ -18,7 +18,7 @@ from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages
-from eha_core.identification.freedom import LATE, Free
+from eha_core.identification.freedom import LATE, Free, coordinates
 from eha_core.identification.per_recording import is_one_of
 from eha_core.identification.problem import Problem
 from eha_core.parameters import ACTING, NOMINAL
@@ -73,7 +73,7 @@ def as_given(problem: Problem, calibrated: Fit) -> Fit:
 
 def set_free(held: Fit, free: tuple[Free, ...]) -> Fit:
     """A fit as a point at which all of `free` may move again."""
-    return replace(held, free=free, q=np.array([one.coordinate(held.values[one.name]) for one in free]))
+    return replace(held, free=free, q=coordinates(free, held.values))
 
 
 def keep_better(found: Found, hypothesis: Hypothesis, result: Fit) -> None:

@@ -18,7 +18,7 @@ from eha_core.diagnosis.search.candidates import without_effect
 from eha_core.diagnosis.search.prune import REFITTED
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
-from eha_core.identification.freedom import Free
+from eha_core.identification.freedom import Free, coordinates
 from eha_core.identification.observation import WITH_OIL
 from eha_core.identification.problem import Problem, linearise, normal_equations
 from eha_core.identification.shooting import Shooting
@@ -172,7 +172,7 @@ def _knots_free(effect: Effect, values: Mapping[str, float], facts: Facts) -> tu
 
 def _predicted_gain(problem: Problem, nominal: Fit, values: Mapping[str, float], free: tuple[Free, ...]) -> float:
     """The gain in chi^2 that the linearised problem predicts of the curve."""
-    q = np.array([one.coordinate(values[one.name]) for one in free])
+    q = coordinates(free, values)
     linear = linearise(problem, values, free, q, nominal.states)
     normal, gradient = normal_equations(problem, free, q, nominal.states, linear)
     try:

@@ -53,7 +53,8 @@ EFFECT = Effect(
             typical=300.0,
             switches=True,
             relative_to="force",
-            starts=(0.2,),
+            starts=(0.2, 0.6),
+            above="force",
         ),
         Parameter(
             "stribeck_velocity",

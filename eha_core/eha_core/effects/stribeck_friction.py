@@ -1,8 +1,8 @@
 """Dry friction that is higher at rest than in motion: break-away, then less resistance as a film of oil builds up.
 
 Signature: slow motion goes in jumps (stick-slip); the pressure difference peaks at the start of each motion.
-Equation: - (force + (static_force - force) exp(-(v / stribeck_velocity)^2)) sign(v); at rest up to static_force is
-balanced.
+Equation: - (force + (static_force - force) exp(-|v / stribeck_velocity|^shape)) sign(v); at rest up to static_force
+is balanced. A shape of 2 is a Gaussian, 1 is Tustin's exponential; seals and guides show 0.5 to 2 and more.
 Sign: positive forces oppose motion.
 Validity: friction that follows the speed at once; no presliding displacement.
 Source: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "A survey of models, analysis tools and compensation
@@ -20,7 +20,7 @@ EFFECT = Effect(
     kind="dry friction",
     approximate=True,
     statement="the seals rub and stick: {static_force:4} to break away, {force:4} in motion past {stribeck_velocity}",
-    equation="M_p x_p'' = ... - (force + (static_force - force) exp(-(x_p' / stribeck_velocity)^2)) sign(x_p')",
+    equation="M_p x_p'' = ... - (force + (static_force - force) exp(-|x_p' / stribeck_velocity|^shape)) sign(x_p')",
     parameters=(
         Parameter(
             "force",
@@ -49,6 +49,7 @@ EFFECT = Effect(
             switches=True,
             relative_to="force",
             starts=(0.2, 0.6),
+            above="force",
         ),
         Parameter(
             "stribeck_velocity",
@@ -63,6 +64,18 @@ EFFECT = Effect(
             logarithmic=True,
             relative_to="speed",
             starts=(0.2,),
+        ),
+        Parameter(
+            "shape",
+            "delta",
+            "-",
+            2.0,
+            0.5,
+            4.0,
+            "how the fall begins: 1 at once, 2 and more rounded",
+            "Armstrong-Helouvry, Dupont, Canudas de Wit 1994",
+            typical=2.0,
+            logarithmic=True,
         ),
     ),
 )
@@ -84,7 +97,8 @@ def contribution(
     sliding,
     static,
     stribeck_velocity,
+    shape,
 ):
     """Add the friction of the speed at the step's start; the step itself is too short for it to change much."""
-    share = velocity / stribeck_velocity
-    return force, damping, stiffness, dry_friction + sliding + (static - sliding) * exp(-share * share)
+    share = abs(velocity) / stribeck_velocity
+    return force, damping, stiffness, dry_friction + sliding + (static - sliding) * exp(-(share**shape))

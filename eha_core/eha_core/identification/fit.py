@@ -12,7 +12,7 @@ from enum import Enum
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from eha_core.identification.freedom import LATE, Free
+from eha_core.identification.freedom import LATE, Free, coordinates, values_at
 from eha_core.identification.normal_matrix import NormalMatrix
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name, in_each, is_one_of
@@ -23,7 +23,6 @@ from eha_core.identification.problem import (
     objective_of,
     residuals,
     simulate,
-    values_at,
 )
 from eha_core.identification.shooting import STATE_SIZE, Shooting
 from eha_core.parameters import catalogue
@@ -35,6 +34,17 @@ WORTH = 2e-4
 """Of what is left beside noise: a model that is far off is not worth its last digits."""
 
 HOPE = 4.0
+
+WIDER = (0.03, 0.3)
+"""Steps of derivatives, in each coordinate, of a fit that found no way on with the usual ones although more than
+noise is left. Where friction sticks the objective has a kink at each break-away: a derivative over a small step sees
+the slope between two kinks, one over a large step the valley (tests/identification/test_rugged.py)."""
+
+WORTH_WIDER = 0.01
+"""The same over a wider step: among kinks there is always a little to be gained."""
+
+NOISE = 1.03
+"""Chi^2 a sample; the noise itself is known to 2 %."""
 
 
 class Ending(Enum):
@@ -94,10 +104,20 @@ class Fit:
 
         An instant is known no better than the span over which its derivative is taken.
         """
-        place = [one.name for one in self.free].index(name)
-        one = self.free[place]
-        spread = float(np.sqrt(max(self.covariance[place, place], 0.0)))
-        return float(max(spread, one.resolution / np.sqrt(12.0))) * one.slope(self.values[name])
+        one = next(one for one in self.free if one.name == name)
+        spread = float(np.sqrt(max(self.covariance_of([name])[0, 0], 0.0)))
+        return max(spread, one.resolution / float(np.sqrt(12.0)) * one.slope(self.values[name]))
+
+    def covariance_of(self, names: Sequence[str]) -> Array:
+        """Covariance of fitted parameters' values, from the curvature at the optimum: (names, names)."""
+        places = {one.name: place for place, one in enumerate(self.free)}
+        by_coordinate = np.zeros((len(names), len(self.free)))
+        for row, name in zip(by_coordinate, names, strict=True):
+            for part in filter(None, (name, self.free[places[name]].above)):
+                if part in places:
+                    row[places[part]] = self.free[places[part]].slope(self.values[part])
+        count = len(self.free)
+        return by_coordinate @ self.covariance[:count, :count] @ by_coordinate.T
 
 
 def fit(
@@ -111,38 +131,46 @@ def fit(
 ) -> Fit:
     """Minimise data, links and priors over `free` and the states of the windows in use, from `values`.
 
-    Stops when an iteration gains too little (SETTLED, WORTH), or when ones to come, at HOPE times the last one's gain,
-    would not bring it below `give_up_above`.
+    Stops when an iteration gains too little (SETTLED, WORTH), above the noise with derivatives over WIDER steps too, or
+    when ones to come, at HOPE times the last one's gain, would not bring it below `give_up_above`.
     """
     shooting = problem.shooting
     free, values = in_each(free, values, shooting.per_recording, len(shooting.first_windows))
     states = (shooting.initial_states if states is None else states).copy()
-    q = np.array([one.coordinate(values[one.name]) for one in free])
+    q = coordinates(free, values)
     resolution = np.array([one.resolution for one in free])
-    steps = np.maximum(1e-3, resolution)
+    steps: Array = np.full(len(free), 1e-3)
+    width, wider = 0.0, list(WIDER)
     rows, ends = simulate(shooting, values, free, q, states)
     objective = objective_of(problem, free, q, states, rows, ends)
     damping, ending, done = 1e-6, Ending.ITERATIONS, 0
     normal = _unknowing(len(free), shooting.windows)
     for done in range(1, iterations + 1):
-        linear = linearise(problem, values, free, q, states, steps, (rows, ends))
-        normal, gradient = normal_equations(problem, free, q, states, linear)
-        found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), normal, gradient, damping)
+        over = np.maximum(np.maximum(steps, resolution), width)
+        linear = linearise(problem, values, free, q, states, over, (rows, ends))
+        equations, gradient = normal_equations(problem, free, q, states, linear)
+        normal = equations if width == 0.0 else normal
+        found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), equations, gradient, damping)
         if found is None and problem.slope_step > shooting.step_size:
             problem = exact(problem)
             continue
-        if found is None:
-            ending = Ending.NO_DESCENT
-            break
-        new, move, damping = found
-        gain = objective - new.objective
-        q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
-        ratio = gain / max(float(move @ (2.0 * gradient - normal.times(move))), 1e-300)
-        damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
-        spread = np.sqrt(1.0 / np.maximum(np.diag(normal.parameters), 1e-12))
-        steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
-        if gain < max(SETTLED, WORTH * (objective - problem.count())):
-            ending = Ending.CONVERGED
+        gain = 0.0
+        if found is not None:
+            new, move, damping = found
+            gain = objective - new.objective
+            q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
+            ratio = gain / max(float(move @ (2.0 * gradient - equations.times(move))), 1e-300)
+            damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
+            spread = np.sqrt(1.0 / np.maximum(np.diag(equations.parameters), 1e-12))
+            steps = np.clip(0.3 * spread, 1e-6, 1e-2)
+        left = max(objective - problem.count(), 0.0)
+        if gain >= max(SETTLED, (WORTH_WIDER if width else WORTH) * left):
+            width, wider = 0.0, list(WIDER)
+        elif wider and free and objective > NOISE * problem.count():
+            width, damping = wider.pop(0), 1e-6
+            continue
+        else:
+            ending = Ending.NO_DESCENT if found is None else Ending.CONVERGED
             break
         if done > 2 and objective - HOPE * gain > give_up_above:
             ending = Ending.HOPELESS

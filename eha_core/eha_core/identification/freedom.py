@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import exp, log
 
+import numpy as np
+
+from eha_core.identification.numbers import Array
 from eha_core.identification.observation import WITH_OIL
 from eha_core.parameter import Parameter
 from eha_core.plant import PAPER, Composition
@@ -17,7 +20,8 @@ class Free:
     """One parameter that a fit moves, by q: value = reference exp(q) if logarithmic, else reference + scale q.
 
     The prior says q = 0 with standard deviation `trust`. `lower` and `upper` bound the value. A derivative is taken
-    over no less than `resolution` in q: an instant acts from one step of the simulation to the next.
+    over no less than `resolution` in q: an instant acts from one step of the simulation to the next. Where `above`
+    names a parameter, q and the bounds are of what is above that one.
     """
 
     name: str
@@ -28,6 +32,7 @@ class Free:
     lower: float
     upper: float
     resolution: float = 0.0
+    above: str = ""
 
     @property
     def longest_move(self) -> float:
@@ -35,12 +40,12 @@ class Free:
         return 1.0 if self.logarithmic else 10.0
 
     def value(self, q: float) -> float:
-        """The parameter's value at coordinate q, kept inside its bounds."""
+        """The parameter's value, or what it has more than the one below it, at coordinate q, inside the bounds."""
         value = self.reference * exp(min(max(q, -50.0), 50.0)) if self.logarithmic else self.reference + self.scale * q
         return min(max(value, self.lower), self.upper)
 
     def coordinate(self, value: float) -> float:
-        """The coordinate of a value."""
+        """The coordinate of such a value."""
         if self.logarithmic:
             return log(max(value, self.lower, 1e-300) / self.reference)
         return (value - self.reference) / self.scale
@@ -53,6 +58,21 @@ class Free:
     def slope(self, value: float) -> float:
         """d value / d q, to carry a standard deviation from the coordinate to the value."""
         return value if self.logarithmic else self.scale
+
+
+def coordinates(free: Sequence[Free], values: Mapping[str, float]) -> Array:
+    """The coordinates at which the free parameters have these values."""
+    own = [max(values[one.name] - values[one.above], 0.0) if one.above else values[one.name] for one in free]
+    return np.array([one.coordinate(value) for one, value in zip(free, own, strict=True)])
+
+
+def values_at(values: Mapping[str, float], free: Sequence[Free], q: Array) -> dict[str, float]:
+    """Every parameter's value: `values`, and the free ones at coordinates `q`."""
+    found = {**values, **{one.name: one.value(float(at)) for one, at in zip(free, q, strict=True)}}
+    for one in free:
+        if one.above:
+            found[one.name] += found[one.above]
+    return found
 
 
 @dataclass(frozen=True)

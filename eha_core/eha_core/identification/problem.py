@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from eha_core.compiled import compiled
-from eha_core.identification.freedom import Free
+from eha_core.identification.freedom import Free, values_at
 from eha_core.identification.normal_matrix import NormalMatrix
 from eha_core.identification.numbers import Array, Flags, Integers
 from eha_core.identification.parallel import each, threads
@@ -116,10 +116,6 @@ class Linearised:
 def whole(shooting: Shooting) -> Problem:
     """The problem of fitting every window."""
     return Problem(shooting, np.arange(shooting.windows))
-
-
-def values_at(values: Mapping[str, float], free: Sequence[Free], q: Array) -> dict[str, float]:
-    return {**values, **{one.name: one.value(float(at)) for one, at in zip(free, q, strict=True)}}
 
 
 def simulate(

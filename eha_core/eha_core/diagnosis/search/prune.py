@@ -35,15 +35,14 @@ def wald(result: Fit, effect: Effect) -> float:
     """What dropping an effect would cost in chi^2, as the curvature at the fit has it."""
     off = neutral(effect)
     switches = {f"{effect.id}.{row.name}" for row in effect.parameters if row.switches}
-    places = [place for place, one in enumerate(result.free) if is_one_of(one.name, switches)]
-    if not places:
+    names = [one.name for one in result.free if is_one_of(one.name, switches)]
+    if not names:
         return 0.0
-    away = np.array([result.free[p].slope(result.values[result.free[p].name]) for p in places])
-    distance = (
-        np.array([result.values[result.free[p].name] - off[base_name(result.free[p].name)] for p in places]) / away
-    )
-    block = result.covariance[np.ix_(places, places)]
-    return float(distance @ np.linalg.pinv(block, hermitian=True) @ distance)
+    distance = np.array([result.values[name] - off[base_name(name)] for name in names])
+    block = result.covariance_of(names)
+    scale = np.sqrt(np.maximum(np.diag(block), 1e-300))  # names differ by their unit
+    correlation = np.linalg.pinv(block / np.outer(scale, scale), hermitian=True)
+    return float(distance / scale @ correlation @ (distance / scale))
 
 
 def refit_without(search: Search, candidate: Candidate, member: Member, iterations: int = REFITTED) -> Candidate:
