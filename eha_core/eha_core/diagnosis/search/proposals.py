@@ -8,6 +8,7 @@ which nothing has biased; and with the valve's dynamics held, which would imitat
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from statistics import fmean
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypotheses import Start, starts
@@ -109,14 +110,21 @@ def in_another_form(search: Search, base: Candidate) -> Iterator[Guess]:
 
 def _as_large(start: Start, member: Member, result: Fit) -> dict[str, float]:
     """A start of one form of a law with another form's values where both have the parameter, and its other sizes in
-    proportion to the first size that both have."""
+    proportion to the first size that both have.
+
+    That is the mean of the other form's where it has more sizes: Coulomb's force for Stribeck's at rest and in motion.
+    """
     sizes = [row.name for row in start.effect.parameters if row.switches]
-    common = next((name for name in sizes if f"{member.id}.{name}" in result.values), None)
+    theirs = {row.name: result.values[f"{member.id}.{row.name}"] for row in member.effect.parameters}
+    of_theirs = [row.name for row in member.effect.parameters if row.switches]
+    common = next((name for name in sizes if name in of_theirs), None)
     if common is None:
         return dict(start.values)
-    share = result.values[f"{member.id}.{common}"] / start.values[f"{start.effect.id}.{common}"]
+    if not set(of_theirs) <= set(sizes):
+        theirs[common] = fmean(theirs[name] for name in of_theirs)
+    share = theirs[common] / start.values[f"{start.effect.id}.{common}"]
     found = {}
     for name, value in start.values.items():
         own = name.rsplit(".", 1)[1]
-        found[name] = result.values.get(f"{member.id}.{own}", share * value if own in sizes else value)
+        found[name] = theirs.get(own, share * value if own in sizes else value)
     return found
