@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import StateSpace, lsim
 
+from eha_core.parameters import nominal_values
 from eha_core.plant import Plant, Trajectory
 
 VOLTAGES = 0.05 * np.sin(2.0 * np.pi * 3.0 * 1e-4 * np.arange(8000))
@@ -47,6 +48,20 @@ def test_scale_multiplies_position_and_velocity() -> None:
     found = run({"position_sensor_scale.ratio": 0.03})
     assert found.measured_position == pytest.approx(1.03 * found.position, rel=1e-14)
     assert found.measured_velocity == pytest.approx(1.03 * found.velocity, rel=1e-14)
+
+
+def test_a_scaled_position_is_that_of_another_plant() -> None:
+    """s x obeys the plant's equations with gain, leakage and volumes times s, and mass, damping and spring over s."""
+    s, plant = 1.04, nominal_values()
+    line = plant["line_volume"] / plant["piston_area"]
+    times = {name: s * plant[name] for name in ("valve_gain", "internal_leakage")}
+    over = {name: plant[name] / s for name in ("moving_mass", "damping_coefficient", "spring_stiffness")}
+    stroke = {"actuator_displacement": s * plant["actuator_displacement"] + (s - 1.0) * line}
+    other = Plant({**times, **over, **stroke}, initial_position=s * 0.01).run(VOLTAGES)
+    found = run({"position_sensor_scale.ratio": s - 1.0})
+    assert other.measured_position == pytest.approx(found.measured_position, abs=1e-9)
+    assert other.pressure_a == pytest.approx(found.pressure_a, rel=1e-6)
+    assert other.pressure_b == pytest.approx(found.pressure_b, rel=1e-6)
 
 
 def test_bias_is_added_to_each_pressure() -> None:

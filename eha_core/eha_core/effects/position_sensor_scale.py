@@ -3,7 +3,9 @@
 Signature: measured strokes and speeds are in one proportion too long or too short for the oil that was pressed in.
 Equation: y = (1 + ratio) x_p, and so for the velocity.
 Sign: a positive ratio reads too long.
-Validity: a linear sensor with its zero at the stroke's middle.
+Validity: a linear sensor with its zero at the stroke's middle. What it shows is also shown by a plant whose valve gain,
+leakage and volumes are larger by 1 + ratio and whose mass, damping and spring are smaller: only how well these are
+known tells them apart.
 Source: E. O. Doebelin, Measurement Systems, McGraw-Hill 1966, chapter 3 (static calibration).
 """
 

@@ -22,6 +22,10 @@ from eha_core.exam.truth.record import Effect
 
 Array = NDArray[np.float64]
 
+VOLUMES = ("actuator_displacement",)
+"""What nobody knows of a rig to a per cent either: the oil in hoses and ports, which acts as a longer stroke does. A
+position sensor's scale is imitated by the volumes with the valve's gain, the mass and the damping."""
+
 WINDOW, WINDOWS = 1.0, 3
 """Length [s] and number of the windows."""
 STEP = 1e-3
@@ -64,7 +68,7 @@ def consult(
     Effects that are `kept` stay in the model, each at any size: what is asked is what the others show beside them.
     """
     starts = _telling_windows(case, truth, kept)
-    names = (*UNCERTAIN, *RIG_MISTAKES)
+    names = (*UNCERTAIN, *RIG_MISTAKES, *VOLUMES)
     blocks = [_window(case, truth, first, names, rival, kept) for first in starts]
     marks = np.concatenate([mark for mark, _ in blocks])
     columns = np.concatenate([matrix for _, matrix in blocks])
