@@ -23,8 +23,8 @@ PLANTED = {
     "stribeck_friction.stribeck_velocity": 0.03,
 }
 LOST = {
-    "stribeck_friction.force": 520.0,
-    "stribeck_friction.static_force": 160.0,
+    "stribeck_friction.force": 300.0,
+    "stribeck_friction.static_force": 520.0,
     "stribeck_friction.stribeck_velocity": 0.001,
 }
 

@@ -35,17 +35,6 @@ WORTH = 2e-4
 
 HOPE = 4.0
 
-WIDER = (0.03, 0.3)
-"""Steps of derivatives, in each coordinate, of a fit that found no way on with the usual ones although more than
-noise is left. Where friction sticks the objective has a kink at each break-away: a derivative over a small step sees
-the slope between two kinks, one over a large step the valley (tests/identification/test_rugged.py)."""
-
-WORTH_WIDER = 0.01
-"""The same over a wider step: among kinks there is always a little to be gained."""
-
-NOISE = 1.03
-"""Chi^2 a sample; the noise itself is known to 2 %."""
-
 
 class Ending(Enum):
     """Why a fit ended."""
@@ -131,46 +120,38 @@ def fit(
 ) -> Fit:
     """Minimise data, links and priors over `free` and the states of the windows in use, from `values`.
 
-    Stops when an iteration gains too little (SETTLED, WORTH), above the noise with derivatives over WIDER steps too, or
-    when ones to come, at HOPE times the last one's gain, would not bring it below `give_up_above`.
+    Stops when an iteration gains too little (SETTLED, WORTH), or when ones to come, at HOPE times the last one's gain,
+    would not bring it below `give_up_above`.
     """
     shooting = problem.shooting
     free, values = in_each(free, values, shooting.per_recording, len(shooting.first_windows))
     states = (shooting.initial_states if states is None else states).copy()
     q = coordinates(free, values)
     resolution = np.array([one.resolution for one in free])
-    steps: Array = np.full(len(free), 1e-3)
-    width, wider = 0.0, list(WIDER)
+    steps = np.maximum(1e-3, resolution)
     rows, ends = simulate(shooting, values, free, q, states)
     objective = objective_of(problem, free, q, states, rows, ends)
     damping, ending, done = 1e-6, Ending.ITERATIONS, 0
     normal = _unknowing(len(free), shooting.windows)
     for done in range(1, iterations + 1):
-        over = np.maximum(np.maximum(steps, resolution), width)
-        linear = linearise(problem, values, free, q, states, over, (rows, ends))
-        equations, gradient = normal_equations(problem, free, q, states, linear)
-        normal = equations if width == 0.0 else normal
-        found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), equations, gradient, damping)
+        linear = linearise(problem, values, free, q, states, steps, (rows, ends))
+        normal, gradient = normal_equations(problem, free, q, states, linear)
+        found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), normal, gradient, damping)
         if found is None and problem.slope_step > shooting.step_size:
             problem = exact(problem)
             continue
-        gain = 0.0
-        if found is not None:
-            new, move, damping = found
-            gain = objective - new.objective
-            q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
-            ratio = gain / max(float(move @ (2.0 * gradient - equations.times(move))), 1e-300)
-            damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
-            spread = np.sqrt(1.0 / np.maximum(np.diag(equations.parameters), 1e-12))
-            steps = np.clip(0.3 * spread, 1e-6, 1e-2)
-        left = max(objective - problem.count(), 0.0)
-        if gain >= max(SETTLED, (WORTH_WIDER if width else WORTH) * left):
-            width, wider = 0.0, list(WIDER)
-        elif wider and free and objective > NOISE * problem.count():
-            width, damping = wider.pop(0), 1e-6
-            continue
-        else:
-            ending = Ending.NO_DESCENT if found is None else Ending.CONVERGED
+        if found is None:
+            ending = Ending.NO_DESCENT
+            break
+        new, move, damping = found
+        gain = objective - new.objective
+        q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
+        ratio = gain / max(float(move @ (2.0 * gradient - normal.times(move))), 1e-300)
+        damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
+        spread = np.sqrt(1.0 / np.maximum(np.diag(normal.parameters), 1e-12))
+        steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
+        if gain < max(SETTLED, WORTH * (objective - problem.count())):
+            ending = Ending.CONVERGED
             break
         if done > 2 and objective - HOPE * gain > give_up_above:
             ending = Ending.HOPELESS
