@@ -40,7 +40,7 @@ WORN_RIG = (
     ("supply_pressure_droop", "return_back_pressure"),
     ("constant_load", "hardening_spring", "quadratic_damping"),
     ("position_sensor_lag", "position_sensor_backlash", "position_sensor_scale", "pressure_sensor_bias"),
-    ("turbulent_leakage", "external_leakage", "entrained_air"),
+    ("turbulent_leakage", "external_leakage", "entrained_air", "bore_wear_leakage"),
 )
 """What a worn rig has at once: at most one of each of these."""
 

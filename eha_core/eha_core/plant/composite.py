@@ -135,7 +135,8 @@ def lane_row(site: str, name: str, slot: int) -> str:
     if site == "sensor" and name in SEEN:
         name = f"seen_{name}"
     name = {("spool", "target"): "new_target", ("force", "damping"): "total_damping",
-            ("orifice", "spool_position"): "oil_spool"}.get((site, name), name)  # fmt: skip
+            ("orifice", "spool_position"): "oil_spool",
+            ("chamber", "position"): "oil_position"}.get((site, name), name)  # fmt: skip
     return f"block[{name.upper()} + lane]"
 
 

@@ -103,15 +103,29 @@ def stiffness_of_oil(gauge, p):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def worn_share(position, p):  # type: ignore[no-untyped-def]
+    """Share of the worn bore's highest conductance at a position [m].
+
+    Law 0 is the slope of a hyperbolic tangent, law 1 a Gaussian. Law 2 is laminar flow through a clearance, with its
+    cube: a Gaussian groove that doubles the clearance where it is deepest.
+    """
+    s = (position - p.bore_wear_leakage_centre) / p.bore_wear_leakage_width
+    if p.bore_wear_leakage_law == 0.0:
+        return 1.0 - np.tanh(s) ** 2
+    groove = np.exp(-s * s)
+    return groove if p.bore_wear_leakage_law == 1.0 else ((1.0 + groove) ** 3 - 1.0) / 7.0
+
+
+@njit(cache=True)
 def leakage_flow(difference, position, elapsed, p):  # type: ignore[no-untyped-def]
     """Flow from A to B past the piston [m^3/s]."""
     warmth = 1.0 - np.exp(-elapsed / p.thermal_drift_time_constant)
     conductance = p.internal_leakage * (1.0 + p.thermal_drift_leakage_ratio * warmth)
-    if p.gap_leakage_coefficient > 0.0:
-        conductance += p.gap_leakage_coefficient * np.exp(
-            -(((position - p.gap_leakage_centre) / p.gap_leakage_width) ** 2)
-        )
-    return conductance * difference + p.turbulent_leakage_coefficient * root(difference, p.transition_pressure)
+    if p.bore_wear_leakage_coefficient > 0.0:
+        conductance += p.bore_wear_leakage_coefficient * worn_share(position, p)
+    flow = conductance * difference + p.turbulent_leakage_coefficient * root(difference, p.transition_pressure)
+    lifted = max(p.relief_leakage_direction * difference - p.relief_leakage_opening, 0.0)
+    return flow + p.relief_leakage_direction * p.relief_leakage_coefficient * lifted
 
 
 @njit(cache=True)
