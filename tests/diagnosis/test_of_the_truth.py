@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made import recorded
 
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.result import Diagnosis
@@ -31,7 +32,7 @@ def diagnosed(effect: str, number: int) -> tuple[Case, Diagnosis]:
 
 
 @pytest.mark.timeout(400)
-@pytest.mark.parametrize(("effect", "number"), [("bore_wear_leakage", 3)])
+@pytest.mark.parametrize(("effect", "number"), [("bore_wear_leakage", 3), ("pressure_sensor_lag", 2)])
 def test_it_is_named_with_intervals_that_hold_it(effect: str, number: int) -> None:
     case, result = diagnosed(effect, number)
     assert result.verdict == "missing_physics"
@@ -41,3 +42,15 @@ def test_it_is_named_with_intervals_that_hold_it(effect: str, number: int) -> No
         assert found.std < 0.1 * max(abs(found.value), abs(float(truth[name])))
         assert abs(found.value - float(truth[name])) < 3.0 * found.std, name
     assert max(fit.rmse_after / fit.noise for fit in result.held_out.values()) < 1.1
+
+
+def test_a_pressure_that_was_stamped_late_is_named_as_a_late_sensor() -> None:
+    """A dead time in one channel, of which a lag with the same delay is left at the frequencies of the motion."""
+    recording = recorded({"moving_mass": 10.0})
+    first = recording.channels["pressure_a"]
+    late = {**recording.channels, "pressure_a": replace(first, time=first.time + 6e-3)}
+    result = diagnose(replace(recording, channels=late), nominal_values())
+    assert [one.id for one in result.effects] == ["pressure_sensor_lag"]
+    found = result.effects[0].parameters
+    assert found["time_constant_a"].value == pytest.approx(6e-3, rel=0.15)
+    assert found["time_constant_b"].value < 1e-3

@@ -162,7 +162,7 @@ def test_every_effect_of_the_catalogue_can_be_drawn_or_has_no_law(
         for law in found:
             assert np.all(np.isfinite(law.y)) and np.all(law.low <= law.high)
     no_function = {"command_delay", "spool_hysteresis", "position_sensor_lag", "position_sensor_backlash"}
-    assert without == no_function | {"valve_null_leakage", "unequal_piston_area"}
+    assert without == no_function | {"pressure_sensor_lag", "valve_null_leakage", "unequal_piston_area"}
 
 
 def test_many_effects_have_a_law_each(friction: Diagnosis) -> None:

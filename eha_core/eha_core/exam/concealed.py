@@ -49,6 +49,7 @@ SITES = {
     "relief_leakage": "chamber",
     "flow_saturation": "orifice",
     "bore_wear_leakage": "chamber",
+    "pressure_sensor_lag": "sensor",
 }
 """Site of each effect, the catalogue's and those outside of it."""
 
@@ -68,6 +69,7 @@ OTHER_LAWS: dict[str, tuple[Parameters, ...]] = {
     "valve_deadband": ({"law": "rounded"},),
     "valve_null_leakage": ({"law": "underlap"},),
     "bore_wear_leakage": ({"law": "gaussian"}, {"law": "clearance"}),
+    "pressure_sensor_lag": ({"law": "critically_damped"},),
 }
 """Effects that the literature writes in more than one way, and the ways that the catalogue does not use."""
 
@@ -140,6 +142,13 @@ def _relief(s: Setting, u: Callable[[float, float], float], sign: Callable[[], f
     opening = s.resting_difference + u(0.1, 0.4) * swing
     coefficient = u(0.2, 0.8) * s.flow / (s.pressure_difference - opening)
     return {"coefficient": coefficient, "opening": opening, "direction": direction}
+
+
+def _late(u: Callable[[float, float], float], sign: Callable[[], float]) -> Parameters:
+    """Both pressures late, or, as often, only that of one chamber."""
+    which = sign() + sign()
+    late_a, late_b = u(3e-3, 15e-3), u(3e-3, 15e-3)
+    return {"time_constant_a": late_a if which >= 0.0 else 0.0, "time_constant_b": late_b if which <= 0.0 else 0.0}
 
 
 def _conductance(s: Setting) -> float:
@@ -225,6 +234,7 @@ DRAWS: dict[str, Draw] = {
         "centre": u(-0.4, 0.4) * s.amplitude,
         "width": u(0.15, 0.4) * s.amplitude,
     },
+    "pressure_sensor_lag": lambda s, u, sign: _late(u, sign),
 }
 """Normal sizes, such that each effect matters on its rig (assumed; stated beside the exam's table)."""
 
@@ -264,6 +274,7 @@ SIZES: dict[str, tuple[str, ...]] = {
     "one_sided_spring": ("stiffness",),
     "relief_leakage": ("coefficient",),
     "bore_wear_leakage": ("coefficient",),
+    "pressure_sensor_lag": ("time_constant_a", "time_constant_b"),
 }
 """Parameters that a smaller effect of the same kind has smaller; the others are its shape. A stop has only a shape."""
 

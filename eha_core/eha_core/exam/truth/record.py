@@ -64,6 +64,7 @@ LAWS: dict[str, dict[str, int]] = {
     "load_friction": {"proportional": 0, "elastic": 1},
     "flow_saturation": {"hyperbolic": 0, "in_series": 1},
     "bore_wear_leakage": {"bell": 0, "gaussian": 1, "clearance": 2},
+    "pressure_sensor_lag": {"first_order": 0, "critically_damped": 1},
 }
 """Published forms of one phenomenon. The first of each is the one whose parameters can be scored."""
 
@@ -105,6 +106,7 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "pressure_sensor_scale": {"ratio_a": 0.0, "ratio_b": 0.0},
     "position_sensor_offset": {"offset": 0.0},
     "bore_wear_leakage": {"coefficient": 0.0, "centre": 0.0, "width": 1.0},
+    "pressure_sensor_lag": {"time_constant_a": 0.0, "time_constant_b": 0.0},
 }
 """Neutral values of the catalogue's effects."""
 
