@@ -31,9 +31,11 @@ SIZES = {
 RIGS = {
     "entrained_air": {"supply_pressure": 4e6, "moving_mass": 150.0, "damping_coefficient": 600.0, "valve_gain": 4e-5},
     "load_friction": {"spring_stiffness": 2e5},
+    "pressure_sensor_lag": {"moving_mass": 90.0},
 }
 """Air compresses away at high pressure: it is looked for where pressure is low and a heavy load makes it swing.
-Friction in proportion to a load that is viscous is more viscous friction: it is looked for under a spring."""
+Friction in proportion to a load that is viscous is more viscous friction: it is looked for under a spring.
+Pressures that are both late by T look like those of a load lighter by T times its damping: most of the paper's mass."""
 
 STEPS = {"stribeck_friction": 5e-5, "presliding_friction": 1e-4}
 """s; break-away is a matter of tenths of a millisecond."""

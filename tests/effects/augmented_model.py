@@ -25,6 +25,7 @@ class Laws:
     back: float = 0.0
     line_time: float = 1.0
     turbulent: float = 0.0
+    worn: tuple[float, float, float] = (0.0, 0.0, 1.0)
     outside_a: float = 0.0
     outside_b: float = 0.0
     air: float = 0.0
@@ -88,6 +89,8 @@ def derivatives(time: float, y: np.ndarray, voltage: float, laws: Laws) -> np.nd
     warmth = 1.0 - np.exp(-time / laws.warming)
     leak = (laws.leak_after if time >= laws.onset else 1e-12) * (1.0 + laws.leak_gained * warmth)
     past = leak * (a - b) + laws.turbulent * (a - b) / ((a - b) ** 2 + 1e6) ** 0.25  # rounded below 1 kPa
+    coefficient, centre, width = laws.worn
+    past += coefficient * (a - b) / np.cosh((position - centre) / width) ** 2
     area_b = 645e-6 * laws.area_ratio
     force = 645e-6 * a - area_b * b - 2000.0 * (1.0 - laws.damping_lost * warmth) * velocity - 10.0 * position
     force -= 2000.0 * laws.one_way * abs(velocity)

@@ -27,6 +27,7 @@ CATALOGUE = [
     "quadratic_damping", "constant_load", "hardening_spring", "end_stop", "position_sensor_lag",
     "position_sensor_backlash", "position_sensor_scale", "pressure_sensor_bias", "leakage_onset", "thermal_drift",
     "directional_damping", "load_friction", "flow_saturation", "pressure_sensor_scale", "position_sensor_offset",
+    "bore_wear_leakage", "pressure_sensor_lag",
 ]  # fmt: skip
 """The least that the catalogue must hold."""
 

@@ -30,6 +30,28 @@ def test_lag_is_a_first_order_filter_of_the_position(time_constant: float) -> No
     assert found.measured_velocity[2:-2] == pytest.approx(slope[2:-2], abs=2e-3)
 
 
+@pytest.mark.parametrize(("late_a", "late_b"), [(1e-6, 1e-3), (4e-3, 0.0), (0.02, 1.0)])
+def test_each_pressure_sensor_s_lag_is_a_first_order_filter_of_its_own(late_a: float, late_b: float) -> None:
+    found = run({"pressure_sensor_lag.time_constant_a": late_a, "pressure_sensor_lag.time_constant_b": late_b})
+    for name, time_constant in (("pressure_a", late_a), ("pressure_b", late_b)):
+        pressure = np.concatenate([[1.05e7], getattr(found, name)])
+        expected = pressure
+        if time_constant > 0.0:
+            filter_of_lag = StateSpace([[-1.0 / time_constant]], [[1.0 / time_constant]], [[1.0]], [[0.0]])
+            _, expected, _ = lsim(filter_of_lag, pressure, 1e-4 * np.arange(len(pressure)), X0=[1.05e7])
+        assert getattr(found, f"measured_{name}") == pytest.approx(expected[1:], abs=1.0)
+
+
+def test_a_late_pressure_is_late_with_its_gain_and_offset() -> None:
+    """A linear filter passes both: the filtered pressure is shown scaled and shifted, once the start is past."""
+    lag = {"pressure_sensor_lag.time_constant_a": 5e-3}
+    affine = {"pressure_sensor_scale.ratio_a": 0.1, "pressure_sensor_bias.bias_a": 2e5}
+    plain, found = run(lag), run(lag | affine)
+    late = slice(1000, None)  # 20 time constants
+    expected = 1.1 * plain.measured_pressure_a + 2e5
+    assert found.measured_pressure_a[late] == pytest.approx(expected[late], abs=0.1)
+
+
 def test_play_holds_the_measured_position_until_it_is_taken_up() -> None:
     found = run({"position_sensor_backlash.half_width": 3e-4})
     held, expected = 0.01, []

@@ -21,6 +21,9 @@ CASES = {
     "supply_pressure_droop": ({"resistance": 5e10, "time_constant": 0.05}, Laws(droop=5e10, line_time=0.05)),
     "return_back_pressure": ({"resistance": 3e10, "time_constant": 0.05}, Laws(back=3e10, line_time=0.05)),
     "turbulent_leakage": ({"coefficient": 3e-8}, Laws(turbulent=3e-8)),
+    "bore_wear_leakage": (
+        {"coefficient": 3e-10, "centre": 0.002, "width": 0.0015}, Laws(worn=(3e-10, 0.002, 0.0015))
+    ),
     "external_leakage": ({"coefficient_a": 1e-12, "coefficient_b": 3e-12}, Laws(outside_a=1e-12, outside_b=3e-12)),
     "entrained_air": ({"air_fraction": 0.2}, Laws(air=0.2)),
     "unequal_piston_area": ({"ratio": 0.8}, Laws(area_ratio=0.8)),

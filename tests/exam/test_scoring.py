@@ -115,6 +115,18 @@ def test_a_recovered_curve_is_compared_up_to_what_the_nominal_model_absorbs() ->
     assert curve_agreement(case, "velocity", np.column_stack([x, ripple])) is None
 
 
+def test_a_relief_valve_s_curve_begins_at_its_opening_and_has_one_way() -> None:
+    relief = {"coefficient": 2e-11, "opening": 1e6, "direction": -1.0}
+    case = replace(single(), effects=(("relief_leakage", relief),))
+    d = np.linspace(-4e6, 4e6, 81)
+    flow = np.where(d < -1e6, 2e-11 * (d + 1e6), 0.0)
+    over = "pressure difference"
+    assert curve_agreement(case, over, np.column_stack([d, flow + 3e-6 - 4e-12 * d])) == pytest.approx(1.0)
+    other_way = np.where(d > 1e6, 2e-11 * (d - 1e6), 0.0)
+    assert curve_agreement(case, over, np.column_stack([d, other_way])) < 0.0
+    assert curve_agreement(case, "position", np.column_stack([d, flow])) is None
+
+
 def test_wilson_intervals_as_published() -> None:
     # R. G. Newcombe, Statistics in Medicine 17 (1998), table I, method 3.
     assert wilson(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-5)

@@ -31,6 +31,7 @@ def points(shooting: Shooting) -> list[tuple[dict[str, float], np.ndarray]]:
     changes_of = [
         {}, {"coulomb_friction.force": 210.0}, {"spool_hysteresis.half_width": 1e-4, "moving_mass": 12.0},
         {"position_sensor_lag.time_constant": 0.01, "supply_pressure_droop.resistance": 3e10},
+        {"pressure_sensor_lag.time_constant_a": 0.02, "pressure_sensor_lag.time_constant_b": 0.01},
         {"presliding_friction.force": 150.0, "presliding_friction.static_force": 200.0, "effects_from": 1.234},
         {"position_sensor_backlash.half_width": 1e-4, "effects_until": 0.777},
     ]  # fmt: skip
@@ -45,6 +46,21 @@ def test_rows_and_ends_are_those_of_each_set_alone(shooting: Shooting) -> None:
         expected_rows, expected_ends = shooting.simulate(values, states)
         assert np.ascontiguousarray(rows[:, :, lane]).tobytes() == expected_rows.tobytes()
         assert np.ascontiguousarray(ends[:, :, lane]).tobytes() == expected_ends.tobytes()
+
+
+def test_a_late_sensor_begins_each_window_from_what_it_showed(shooting: Shooting) -> None:
+    """So late that it shows next to nothing of what the pistons do within a window."""
+    late = {"pressure_sensor_lag.time_constant_b": 10.0, "position_sensor_lag.time_constant": 10.0}
+    elsewhere = shooting.initial_states + [0.0, 0.0, 2e6, -2e6]
+    (rows, _), (many, _) = (
+        shooting.simulate(nominal_values() | late, elsewhere),
+        shooting.simulate_many([(nominal_values() | late, elsewhere)]),
+    )
+    first = shooting.edges[:-1] // shooting.every
+    for found in (rows[first], many[first, :, 0]):
+        assert found[:, 0] == pytest.approx(shooting.initial_states[:, 0], abs=1e-6)
+        assert found[:, 3] == pytest.approx(shooting.initial_states[:, 3], abs=1e4)
+        assert np.all(np.abs(found[:, 2] - shooting.initial_states[:, 2]) > 1e5)
 
 
 def test_pistons_driven_by_force_too() -> None:

@@ -92,6 +92,7 @@ def test_refused_parameters_change_nothing() -> None:
     [
         ({"position_sensor_lag.time_constant": 0.02}, "measured_position"),
         ({"position_sensor_backlash.half_width": 1e-4}, "measured_position"),
+        ({"pressure_sensor_lag.time_constant_b": 0.02}, "measured_pressure_b"),
         ({"spool_hysteresis.half_width": 1e-4}, "spool_position"),
         ({"supply_pressure_droop.resistance": 3e10}, "supply_pressure"),
         ({"return_back_pressure.resistance": 3e10}, "return_pressure"),

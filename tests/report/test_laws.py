@@ -11,6 +11,7 @@ import pytest
 
 from eha_core.diagnosis.result import Diagnosis, FittedValue, NamedEffect
 from eha_core.effects import effects
+from eha_core.plant import Plant
 from eha_core.report.laws import Law
 from eha_core.report.laws import laws as laws_by_effect
 
@@ -49,8 +50,6 @@ def test_friction_s_points_are_the_rig_s_and_lie_on_the_fitted_curve(friction: D
 def test_points_come_from_the_data_and_not_from_the_fitted_law(friction: Diagnosis, simulated: SimpleNamespace) -> None:
     """A law that was fitted wrong, with the model of that law, leaves the points where the data have them."""
     wrong = replace(friction.effects[0], parameters={"force": FittedValue(120.0, 1.0, "N")})
-    from eha_core.plant import Plant
-
     run = Plant({"coulomb_friction.force": 120.0}, 1e-4).run(simulated.voltage, 20)
     after = {name: getattr(run, f"measured_{name}") for name in friction.pictures.after}
     values = {**friction.fitted_values, "coulomb_friction.force": 120.0, "moving_mass": 9.0}
@@ -111,6 +110,26 @@ def test_leakage_is_a_flow_over_the_pressure_difference(friction: Diagnosis, sim
     assert len(law.points_x) > 50
 
 
+def test_a_worn_bore_is_a_leakage_over_the_position(friction: Diagnosis, simulated: SimpleNamespace) -> None:
+    """The points come from the data: they lie on the rig's law where the fitted one has half its height."""
+    shape = {"centre": 0.004, "width": 0.006}
+    rows = {}
+    for name, height in (("measured", 4e-10), ("after", 2e-10)):
+        values = {"coefficient": height, **shape}
+        run = Plant({f"bore_wear_leakage.{key}": value for key, value in values.items()}, 1e-4)
+        found = run.run(simulated.voltage, 20)
+        rows[name] = {key: getattr(found, f"measured_{key}") for key in friction.pictures.after}
+    measured = {**friction.pictures.measured, **rows["measured"]}
+    rig = replace(friction, pictures=replace(friction.pictures, measured=measured, after=rows["after"]))
+    law = law_of(rig, named("bore_wear_leakage", {"coefficient": 2e-10, **shape}, std=1e-12))
+    assert (law.across.unit, law.up.unit) == ("m", "m^3/(s Pa)")
+    np.testing.assert_allclose(law.y, 1e-12 + 2e-10 / np.cosh((law.x - 0.004) / 0.006) ** 2, rtol=1e-9)
+    np.testing.assert_allclose(law.nominal, 1e-12)
+    true = 1e-12 + 4e-10 / np.cosh((law.points_x - 0.004) / 0.006) ** 2
+    assert len(law.points_x) > 30
+    assert np.median(np.abs(law.points_y - true)) < 2e-11
+
+
 def test_a_deadband_is_an_opening_over_the_spool(friction: Diagnosis) -> None:
     law = law_of(friction, named("valve_deadband", {"half_width": 5e-5, "rounding": 0.0}))
     expected = np.sign(law.x) * np.maximum(np.abs(law.x) - 5e-5, 0.0)
@@ -143,7 +162,7 @@ def test_every_effect_of_the_catalogue_can_be_drawn_or_has_no_law(
         for law in found:
             assert np.all(np.isfinite(law.y)) and np.all(law.low <= law.high)
     no_function = {"command_delay", "spool_hysteresis", "position_sensor_lag", "position_sensor_backlash"}
-    assert without == no_function | {"valve_null_leakage", "unequal_piston_area"}
+    assert without == no_function | {"pressure_sensor_lag", "valve_null_leakage", "unequal_piston_area"}
 
 
 def test_many_effects_have_a_law_each(friction: Diagnosis) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from eha_core.parameter import Parameter
 from eha_core.quantities import Quantity
 
-MEMORY_STARTS = ("zero", "current", "position", "velocity")
+MEMORY_STARTS = ("zero", "current", "position", "velocity", "pressure_a", "pressure_b")
 """What a memory slot of an effect can hold when the effect begins to act."""
 
 ASSUMED = "assumed: an order of magnitude for a bench actuator"

@@ -72,6 +72,7 @@ def contribution(
     cross_slope,
     leakage_a,
     leakage_b,
+    position,
     pressure_a,
     pressure_b,
     atmospheric_pressure,

@@ -46,8 +46,10 @@ SITES = {
     "load_friction": "force",
     "position_damping": "force",
     "one_sided_spring": "force",
-    "gap_leakage": "chamber",
+    "relief_leakage": "chamber",
     "flow_saturation": "orifice",
+    "bore_wear_leakage": "chamber",
+    "pressure_sensor_lag": "sensor",
 }
 """Site of each effect, the catalogue's and those outside of it."""
 
@@ -66,6 +68,8 @@ OTHER_LAWS: dict[str, tuple[Parameters, ...]] = {
     "flow_saturation": ({"law": "in_series"},),
     "valve_deadband": ({"law": "rounded"},),
     "valve_null_leakage": ({"law": "underlap"},),
+    "bore_wear_leakage": ({"law": "gaussian"}, {"law": "clearance"}),
+    "pressure_sensor_lag": ({"law": "critically_damped"},),
 }
 """Effects that the literature writes in more than one way, and the ways that the catalogue does not use."""
 
@@ -98,10 +102,15 @@ class Setting:
         return self.speed * self.rig.values["piston_area"]
 
     @property
+    def resting_difference(self) -> float:
+        """Pressure across the piston's seal at rest, which a rod makes [Pa]; chamber B's is the higher one."""
+        return abs(1.0 - self.rig.area_ratio) / (1.0 + self.rig.area_ratio) * self.rig.values["supply_pressure"]
+
+    @property
     def pressure_difference(self) -> float:
         """Pressure across the piston's seal at the largest speed: damping, and what a rod's side bears at rest [Pa]."""
-        at_rest = abs(1.0 - self.rig.area_ratio) / (1.0 + self.rig.area_ratio) * self.rig.values["supply_pressure"]
-        return at_rest + self.rig.values["damping_coefficient"] * self.speed / self.rig.values["piston_area"]
+        damped = self.rig.values["damping_coefficient"] * self.speed / self.rig.values["piston_area"]
+        return self.resting_difference + damped
 
 
 Draw = Callable[[Setting, Callable[[float, float], float], Callable[[], float]], Parameters]
@@ -124,6 +133,22 @@ def _stop(s: Setting, u: Callable[[float, float], float]) -> Parameters:
     damping = u(0.1, 0.5) * np.sqrt(stiffness * s.rig.values["moving_mass"])
     limits: Parameters = {"lower": -1.0, "upper": u(0.5, 0.8) * s.amplitude}
     return limits | {"stiffness": stiffness, "damping": float(damping)}
+
+
+def _relief(s: Setting, u: Callable[[float, float], float], sign: Callable[[], float]) -> Parameters:
+    """One way: with a rod, the way in which the pressures lie at rest."""
+    direction = sign() if s.resting_difference == 0.0 else -1.0
+    swing = s.pressure_difference - s.resting_difference
+    opening = s.resting_difference + u(0.1, 0.4) * swing
+    coefficient = u(0.2, 0.8) * s.flow / (s.pressure_difference - opening)
+    return {"coefficient": coefficient, "opening": opening, "direction": direction}
+
+
+def _late(u: Callable[[float, float], float], sign: Callable[[], float]) -> Parameters:
+    """Both pressures late, or, as often, only that of one chamber."""
+    which = sign() + sign()
+    late_a, late_b = u(3e-3, 15e-3), u(3e-3, 15e-3)
+    return {"time_constant_a": late_a if which >= 0.0 else 0.0, "time_constant_b": late_b if which <= 0.0 else 0.0}
 
 
 def _conductance(s: Setting) -> float:
@@ -203,11 +228,13 @@ DRAWS: dict[str, Draw] = {
         "start": u(-0.3, 0.3) * s.amplitude,
         "stiffness": u(0.04, 0.12) * s.force / s.amplitude,
     },
-    "gap_leakage": lambda s, u, sign: {
+    "relief_leakage": _relief,
+    "bore_wear_leakage": lambda s, u, sign: {
         "coefficient": u(0.2, 0.8) * _conductance(s),
         "centre": u(-0.4, 0.4) * s.amplitude,
         "width": u(0.15, 0.4) * s.amplitude,
     },
+    "pressure_sensor_lag": lambda s, u, sign: _late(u, sign),
 }
 """Normal sizes, such that each effect matters on its rig (assumed; stated beside the exam's table)."""
 
@@ -245,7 +272,9 @@ SIZES: dict[str, tuple[str, ...]] = {
     "direction_friction": ("forward", "backward"),
     "position_damping": ("coefficient",),
     "one_sided_spring": ("stiffness",),
-    "gap_leakage": ("coefficient",),
+    "relief_leakage": ("coefficient",),
+    "bore_wear_leakage": ("coefficient",),
+    "pressure_sensor_lag": ("time_constant_a", "time_constant_b"),
 }
 """Parameters that a smaller effect of the same kind has smaller; the others are its shape. A stop has only a shape."""
 

@@ -39,8 +39,14 @@ WORN_RIG = (
     ("valve_deadband", "valve_null_offset", "flow_gain_asymmetry", "valve_null_leakage", "spool_hysteresis"),
     ("supply_pressure_droop", "return_back_pressure"),
     ("constant_load", "hardening_spring", "quadratic_damping"),
-    ("position_sensor_lag", "position_sensor_backlash", "position_sensor_scale", "pressure_sensor_bias"),
-    ("turbulent_leakage", "external_leakage", "entrained_air"),
+    (
+        "position_sensor_lag",
+        "position_sensor_backlash",
+        "position_sensor_scale",
+        "pressure_sensor_bias",
+        "pressure_sensor_lag",
+    ),
+    ("turbulent_leakage", "external_leakage", "entrained_air", "bore_wear_leakage"),
 )
 """What a worn rig has at once: at most one of each of these."""
 

@@ -17,6 +17,10 @@ CURVES: dict[str, tuple[str, Curve]] = {
     "periodic_force": ("time", lambda p, t: p["force"] * np.sin(2.0 * np.pi * p["frequency"] * t)),
     "direction_friction": ("velocity", lambda p, v: -np.where(v > 0.0, p["forward"], -p["backward"])),
     "one_sided_spring": ("position", lambda p, x: -p["stiffness"] * np.maximum(x - p["start"], 0.0)),
+    "relief_leakage": (
+        "pressure difference",
+        lambda p, d: p["direction"] * p["coefficient"] * np.maximum(p["direction"] * d - p["opening"], 0.0),
+    ),
 }
 """Variable and law of each effect outside the catalogue that is a curve of one variable alone."""
 

@@ -18,7 +18,7 @@ from eha_core.identification.per_recording import values_of
 from eha_core.plant import PAPER, Composition
 from eha_core.plant.active_intervals import intervals, span
 from eha_core.plant.composite import compiled_step
-from eha_core.plant.memory import starting_memory
+from eha_core.plant.memory import starting_memory, trailing
 from eha_core.plant.one_by_one import side_by_side
 from eha_core.plant.simulator import LONGEST_DELAY, pack
 from eha_core.plant.state import AT, COLUMNS, PISTON, SEEN, Places
@@ -137,18 +137,18 @@ class Shooting:
         state[AT.supply_pressure], state[AT.return_pressure] = values["supply_pressure"], values["return_pressure"]
         history = np.full(int(LONGEST_DELAY / self.step_size) + 3, first)
         history[-1] = 0
-        memory, sensor_slots = starting_memory(current, states[windows.start])
+        memory = starting_memory(current, states[windows.start])
         for window in windows:
             begin, end = int(self.edges[window]), int(self.edges[window + 1])
             vector, active, valve = packed[float(self.leakage[window])]
             none = (False,) * len(active)
             state[AT.time] = (begin - start) * self.step_size
             state[PISTON] = states[window]
-            memory[sensor_slots] = self.initial_states[window, 0]
+            memory[trailing().slots] = self.initial_states[window, trailing().states]
             inputs, out = self.inputs[:, begin:end], rows[begin // self.every : end // self.every]
             for interval in intervals(begin - start, end - begin, self.every, acting):
                 if interval.acting and begin - start + interval.steps.start == acting[0] > 0:
-                    memory, _ = starting_memory(state[AT.current], state[PISTON])
+                    memory = starting_memory(state[AT.current], state[PISTON])
                 effects_on, piece = active if interval.acting else none, inputs[:, interval.steps]
                 if self.drive == "voltage":
                     step.advance(
@@ -186,7 +186,7 @@ class Shooting:
                 begin, end = int(self.edges[window]), int(self.edges[window + 1])
                 lanes.add_leakage(float(self.leakage[window]))
                 lanes.place(starts[:, window])
-                lanes.start_sensors(float(self.initial_states[window, 0]))
+                lanes.start_sensors(self.initial_states[window])
                 out = rows[begin // self.every : end // self.every]
                 lanes.advance(begin - start, self.inputs[:, begin:end], self.every, out)
                 ends[window] = lanes.states()[: len(sets)].T

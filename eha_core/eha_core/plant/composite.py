@@ -126,16 +126,20 @@ def _write_feed(own: list[str], places: list[str]) -> list[str]:
 SEEN = ("position", "velocity", "pressure_a", "pressure_b")
 
 
-def lane_row(site: str, name: str, slot: int) -> str:
-    """The row of a block, or what all lanes share, that an effect's argument of that name stands for."""
+def lane_row(site: str, name: str, slot: int, slots: int = 1) -> str:
+    """The row of a block, or what all lanes share, that an effect's argument of that name stands for.
+
+    A lane's memory of one effect, `slots` numbers, lies together, as the contribution finds it in a plant alone.
+    """
     if name == "memory":
-        return f"block, MEMORY + {slot} * LANES + lane"
+        return f"block, MEMORY + {slot} * LANES + {slots} * lane"
     if name in ("history", "newest", "step_size", "time"):
         return name
     if site == "sensor" and name in SEEN:
         name = f"seen_{name}"
     name = {("spool", "target"): "new_target", ("force", "damping"): "total_damping",
-            ("orifice", "spool_position"): "oil_spool"}.get((site, name), name)  # fmt: skip
+            ("orifice", "spool_position"): "oil_spool",
+            ("chamber", "position"): "oil_position"}.get((site, name), name)  # fmt: skip
     return f"block[{name.upper()} + lane]"
 
 
@@ -166,7 +170,7 @@ def write_lane_hooks() -> str:
     masks = dict.fromkeys(SITES, 0)
     for index, effect in enumerate(effects()):
         head = list(inspect.signature(getattr(hooks, effect.site)).parameters)[:-2]
-        arguments = [lane_row(effect.site, name, slot) for name in head]
+        arguments = [lane_row(effect.site, name, slot, len(effect.memory)) for name in head]
         kept = arguments[: SITES[effect.site].quantities]
         arguments += [f"block[PARAMETERS + {place + k} * LANES + lane]" for k in range(len(effect.parameters))]
         calls[effect.site] += [

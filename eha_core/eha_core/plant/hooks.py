@@ -11,7 +11,7 @@ them. SI units throughout.
 * orifice: opening, gain, conductance (laminar, supply to port and port to return) / spool_position
 * supply: supply_pressure, return_pressure / supply_flow, return_flow, memory, slot, step_size
 * chamber: area_b, bulk_a, bulk_change_a, bulk_b, bulk_change_b, cross_flow, cross_slope, leakage_a, leakage_b /
-  pressure_a, pressure_b, atmospheric_pressure
+  position, pressure_a, pressure_b, atmospheric_pressure
 * force: force, damping, stiffness, dry_friction / position, velocity, pressure_a, pressure_b, memory, slot, step_size
 * sensor: position, velocity, pressure_a, pressure_b / memory, slot, step_size
 
@@ -63,7 +63,7 @@ def supply(supply_pressure, return_pressure, supply_flow, return_flow, memory, s
 @inlined
 def chamber(
     area_b, bulk_a, bulk_change_a, bulk_b, bulk_change_b, cross_flow, cross_slope, leakage_a, leakage_b,
-    pressure_a, pressure_b, atmospheric_pressure, parameters, active,
+    position, pressure_a, pressure_b, atmospheric_pressure, parameters, active,
 ):
     """What the continuity equations of the chambers are made of."""
     return area_b, bulk_a, bulk_change_a, bulk_b, bulk_change_b, cross_flow, cross_slope, leakage_a, leakage_b

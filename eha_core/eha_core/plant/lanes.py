@@ -109,7 +109,7 @@ def valve(block, lanes, active, voltage, history, newest, tau):
 
 @called
 def oil_conditions(block, lanes, active):
-    """The sites orifice and chamber, with the spool at OIL_SPOOL."""
+    """The sites orifice and chamber, with the spool at OIL_SPOOL and the piston at OIL_POSITION."""
     for lane in range(lanes):
         block[at.OPENING + lane] = block[at.OIL_SPOOL + lane]
         block[at.CROSS_FLOW + lane] = internal_leakage_flow(
@@ -246,6 +246,7 @@ def write_all(block, lanes, active, voltage, row):
     """Fill a row (COLUMNS, lanes) from the state at the end of a step."""
     for lane in range(lanes):
         block[at.OIL_SPOOL + lane] = block[at.SPOOL_POSITION + lane]
+        block[at.OIL_POSITION + lane] = block[at.POSITION + lane]
     oil_conditions(block, lanes, active)
     for lane in range(lanes):
         row[COLUMN.voltage, lane] = voltage

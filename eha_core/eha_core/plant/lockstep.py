@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from eha_core.plant.lane_rows import (
     LANES,
     PARAMETERS,
     POSITION,
+    PRESSURE_A,
     PRESSURE_B,
     PROPAGATOR,
     REGISTER,
@@ -22,6 +23,7 @@ from eha_core.plant.lane_rows import (
     TIME,
     VELOCITY,
 )
+from eha_core.plant.memory import trailing
 from eha_core.plant.simulator import LONGEST_DELAY, Array, pack
 
 
@@ -44,10 +46,8 @@ class LockStep:
         self._acting = [span(values, step_size) for values in filled]
         self._active = np.array([active for _, active, _ in packed])
         self._leakage = np.array([values["internal_leakage"] for values in filled])
-        self._memory = [(effect.site, kind) for effect in effects() for kind in effect.memory]
-        trailing = [slot for slot, one in enumerate(self._memory) if one == ("sensor", "position")]
-        self._trailing = layout().memory // LANES + np.array(trailing, dtype=np.int64)
         self._block = np.zeros(layout().end)
+        self._memory = list(self._memory_rows())
         self._rows = self._block.reshape(-1, LANES)[:, : self.lanes]
         self._fill(PARAMETERS, np.array([vector for vector, _, _ in packed]).T)
         self._fill(PROPAGATOR, np.array([valve for _, _, valve in packed]).T)
@@ -59,6 +59,15 @@ class LockStep:
         self._history = np.full(int(LONGEST_DELAY / step_size) + 3, before)
         self._history[-1] = 0
         self._kernel = compiled_lanes()
+
+    def _memory_rows(self) -> Iterator[tuple[str, Array]]:
+        """What each memory slot starts from, and its values in all lanes: a lane's slots of one effect lie together."""
+        place = layout().memory
+        for effect in effects():
+            size = len(effect.memory) * LANES
+            slots = self._block[place : place + size].reshape(LANES, -1)[: self.lanes]
+            yield from zip(effect.memory, slots.T, strict=True)
+            place += size
 
     def _fill(self, place: int, rows: Array) -> None:
         self._rows[place // LANES : place // LANES + len(rows)] = rows
@@ -79,15 +88,16 @@ class LockStep:
     def start_memory(self, lanes: NDArray[np.bool_] | None = None) -> None:
         """The effects' own states as they are where the effects begin to act: in all lanes, or in these."""
         chosen = np.ones(self.lanes, dtype=np.bool_) if lanes is None else lanes
-        starts = {"zero": None, "current": CURRENT, "position": POSITION, "velocity": VELOCITY}
-        for slot, (_, kind) in enumerate(self._memory):
-            start = starts[kind]
-            row = self._rows[layout().memory // LANES + slot]
-            row[chosen] = 0.0 if start is None else self._rows[start // LANES, chosen]
+        starts = {"current": CURRENT, "position": POSITION, "velocity": VELOCITY, "pressure_a": PRESSURE_A,
+                  "pressure_b": PRESSURE_B}  # fmt: skip
+        for kind, slot in self._memory:
+            slot[chosen] = 0.0 if kind == "zero" else self._rows[starts[kind] // LANES, chosen]
 
-    def start_sensors(self, position: float) -> None:
-        """Sensors that trail the piston begin anew from this position."""
-        self._rows[self._trailing] = position
+    def start_sensors(self, shown: Array) -> None:
+        """Sensors that trail what they measure begin anew from what they showed: position, velocity, pressure A and
+        pressure B."""
+        for slot, state in zip(*trailing(), strict=True):
+            self._memory[slot][1][:] = shown[state]
 
     def advance(self, first: int, inputs: Array, every: int, out: Array) -> None:
         """Take a step for each column of `inputs`, the first of them step `first` of the record.

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,16 +12,29 @@ from eha_core.effects import effects
 
 Array = NDArray[np.float64]
 
+PISTON_STATES = ("position", "velocity", "pressure_a", "pressure_b")
 
-def starting_memory(current: float, piston: Array) -> tuple[Array, NDArray[np.int64]]:
-    """The effects' states at a valve current [A] and a piston's state (position, velocity, ...), and which of them are
-    sensors' that trail the piston."""
-    starts = {"zero": 0.0, "current": current, "position": piston[0], "velocity": piston[1]}
-    memory: list[float] = []
-    sensors: list[int] = []
-    for effect in effects():
-        for kind in effect.memory:
-            if effect.site == "sensor" and kind == "position":
-                sensors.append(len(memory))
-            memory.append(starts[kind])
-    return np.array(memory or [0.0]), np.array(sensors, dtype=np.int64)
+
+def starting_memory(current: float, piston: Array) -> Array:
+    """The effects' states at a valve current [A] and a piston's state (position, velocity, pressure A, pressure B)."""
+    starts = {"zero": 0.0, "current": current, **dict(zip(PISTON_STATES, piston, strict=True))}
+    return np.array([starts[kind] for effect in effects() for kind in effect.memory] or [0.0])
+
+
+class Trailing(NamedTuple):
+    """The memory slots of sensors that trail what they measure, and which of the piston's states each of them trails.
+
+    Where the piston starts anew, such a slot starts from what the sensor showed then, as far as that was recorded.
+    """
+
+    slots: NDArray[np.int64]
+    states: NDArray[np.int64]
+
+
+@cache
+def trailing() -> Trailing:
+    """Those of the whole catalogue."""
+    kinds = [(effect.site, kind) for effect in effects() for kind in effect.memory]
+    found = [(slot, PISTON_STATES.index(kind)) for slot, (site, kind) in enumerate(kinds)
+             if site == "sensor" and kind in PISTON_STATES]  # fmt: skip
+    return Trailing(*np.array(found, dtype=np.int64).reshape(-1, 2).T)

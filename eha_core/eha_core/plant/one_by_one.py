@@ -12,6 +12,7 @@ from eha_core.plant.active_intervals import pieces, span
 from eha_core.plant.composite import compiled_given_step
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.lockstep import LockStep
+from eha_core.plant.memory import trailing
 from eha_core.plant.simulator import Array, pack, step_inputs
 from eha_core.plant.state import AT, PISTON, Places
 
@@ -31,7 +32,7 @@ class OneByOne:
         self._sets = list(sets)
         self._kernel = compiled_given_step()
         self._acting = [span(values, step_size) for values in sets]
-        self._kinds = [(effect.site, kind) for effect in effects() for kind in effect.memory]
+        self._kinds = [kind for effect in effects() for kind in effect.memory]
         self._states = np.zeros((len(sets), len(Places._fields)))
         self._memories = np.zeros((len(sets), max(1, len(self._kinds))))
         self._history = np.zeros(2)  # of voltages, of which there are none
@@ -59,14 +60,12 @@ class OneByOne:
         """As `LockStep.start_memory`."""
         for lane in range(self.lanes):
             if lanes is None or lanes[lane]:
-                for slot, (_, kind) in enumerate(self._kinds):
+                for slot, kind in enumerate(self._kinds):
                     self._memories[lane, slot] = 0.0 if kind == "zero" else self._states[lane, getattr(AT, kind)]
 
-    def start_sensors(self, position: float) -> None:
+    def start_sensors(self, shown: Array) -> None:
         """As `LockStep.start_sensors`."""
-        for slot, kind in enumerate(self._kinds):
-            if kind == ("sensor", "position"):
-                self._memories[:, slot] = position
+        self._memories[:, trailing().slots] = shown[trailing().states]
 
     def advance(self, first: int, inputs: Array, every: int, out: Array) -> None:
         """As `LockStep.advance`, inputs (1 or 2, steps) being those of the source."""

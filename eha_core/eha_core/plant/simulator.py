@@ -19,6 +19,7 @@ from eha_core.plant.active_intervals import intervals, span
 from eha_core.plant.composite import compiled_given_step, compiled_step, given_names, given_sources
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.given import VALVES
+from eha_core.plant.memory import starting_memory
 from eha_core.plant.parts import Source
 from eha_core.plant.state import AT, COLUMNS, PISTON, Places, Row
 
@@ -219,13 +220,9 @@ class Plant:
         self._state[PISTON] = min(max(position, -stroke), stroke), velocity, pressure_a, pressure_b
 
     def _start_memory(self, chosen: Sequence[bool]) -> None:
-        starts = {"zero": 0.0} | {name: self._state[getattr(AT, name)] for name in ("current", "position", "velocity")}
-        slot = 0
-        for effect, take in zip(effects(), chosen, strict=True):
-            for start in effect.memory:
-                if take:
-                    self._memory[slot] = starts[start]
-                slot += 1
+        starting = starting_memory(self._state[AT.current], self._state[PISTON])
+        take = [one for effect, one in zip(effects(), chosen, strict=True) for _ in effect.memory] or [True]
+        self._memory[take] = starting[take]
 
     @property
     def time(self) -> float:

@@ -44,12 +44,12 @@ def ports_of(given, spool_position, pressure_a, pressure_b, supply_pressure, ret
 
 
 @inlined
-def chambers_of(bulk, internal_leakage, outside, pressure_a, pressure_b, parameters, active):
+def chambers_of(bulk, internal_leakage, outside, position, pressure_a, pressure_b, parameters, active):
     """What the continuity equations of the chambers are made of: see `hooks.chamber`."""
     return chamber(
         parameters[PISTON_AREA_B], bulk, 0.0, bulk, 0.0,
         internal_leakage_flow(internal_leakage, pressure_a, pressure_b), internal_leakage, outside, outside,
-        pressure_a, pressure_b, parameters[ATMOSPHERIC_PRESSURE], parameters, active,
+        position, pressure_a, pressure_b, parameters[ATMOSPHERIC_PRESSURE], parameters, active,
     )
 
 
@@ -64,7 +64,7 @@ def oil_half_step(
     the oil's stiffness as the piston feels it.
     """
     chambers = chambers_of(
-        parameters[BULK_MODULUS], internal_leakage, parameters[EXTERNAL_LEAKAGE], pressure_a, pressure_b,
+        parameters[BULK_MODULUS], internal_leakage, parameters[EXTERNAL_LEAKAGE], position, pressure_a, pressure_b,
         parameters, active,
     )
     flows = ports_of(
@@ -133,7 +133,8 @@ def write_row(row, given, state, hydraulic, friction, leakage, seen, parameters,
         given, spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active
     )
     _, _, _, _, _, cross, _, leak_a, leak_b = chambers_of(
-        parameters[BULK_MODULUS], leakage, parameters[EXTERNAL_LEAKAGE], pressure_a, pressure_b, parameters, active
+        parameters[BULK_MODULUS], leakage, parameters[EXTERNAL_LEAKAGE], state[AT.position], pressure_a, pressure_b,
+        parameters, active,
     )
     row[COLUMN.voltage] = voltage_of(given)
     row[COLUMN.current : COLUMN.flow_a] = state[AT.current :]
@@ -256,7 +257,7 @@ def advance_driven(state, memory, parameters, active, pressures_a, pressures_b, 
             parameters[INTERNAL_LEAKAGE], parameters[DAMPING_COEFFICIENT], time + tau, parameters, active
         )
         position += tau * effective_velocity(tau, position, velocity, stroke)
-        area_b = chambers_of(1.0, 0.0, 0.0, pressure_a, pressure_b, parameters, active)[0]
+        area_b = chambers_of(1.0, 0.0, 0.0, position, pressure_a, pressure_b, parameters, active)[0]
         velocity, hydraulic, friction = piston_step(
             step_size, position, velocity, pressure_a, pressure_b, area_b, 0.0, damping, memory, parameters, active
         )

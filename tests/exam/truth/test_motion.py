@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.signal import lsim
 
 from eha_core.errors import EhaError
-from eha_core.exam.truth import PositionController, simulate_truth
+from eha_core.exam.truth import PositionController, resume_truth, simulate_truth
 
 AREA = 645e-6
 SINE = 0.05 * np.sin(2.0 * np.pi * 1.0 * np.arange(2001) / 1000.0)
@@ -110,6 +111,33 @@ def test_a_lagging_sensor_trails_a_ramp_by_its_time_constant() -> None:
     truth = simulate_truth({}, [("position_sensor_lag", {"time_constant": 0.01})], np.full(401, 0.05), 0.4)
     behind = truth["position"][-1] - truth["measured_position"][-1]
     assert behind == pytest.approx(0.01 * truth["velocity"][-1], rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("law", "numerator", "denominator"),
+    [("first_order", [1.0], [0.02, 1.0]), ("critically_damped", [1.0], [1e-4, 0.02, 1.0])],
+)
+def test_a_late_pressure_is_what_its_filter_makes_of_the_pressure(
+    law: str, numerator: list[float], denominator: list[float]
+) -> None:
+    late = ("pressure_sensor_lag", {"time_constant_a": 0.02, "time_constant_b": 0.0, "law": law})
+    command = 0.1 * np.sin(2.0 * np.pi * 8.0 * np.arange(1001) / 1000.0)
+    truth = simulate_truth({}, [late, ("pressure_sensor_bias", {"bias_a": 3e5, "bias_b": 0.0})], command, 1.0)
+    swing = truth["pressure_a"] - truth["pressure_a"][0]
+    _, expected, _ = lsim((numerator, denominator), swing, truth["time"])
+    np.testing.assert_allclose(truth["measured_pressure_a"] - 3e5 - truth["pressure_a"][0], expected, atol=300.0)
+    np.testing.assert_array_equal(truth["measured_pressure_b"], truth["pressure_b"])
+    assert np.max(np.abs(expected - swing)) > 1e5
+
+
+@pytest.mark.parametrize("law", ["first_order", "critically_damped"])
+def test_late_pressures_go_on_where_the_truth_is_resumed(law: str) -> None:
+    late = [("pressure_sensor_lag", {"time_constant_a": 0.01, "time_constant_b": 0.02, "law": law})]
+    truth = simulate_truth({}, late, SINE, 0.5)
+    again, without = resume_truth({}, late, truth, 200, 500), resume_truth({}, [], truth, 200, 500)
+    for name in ("measured_pressure_a", "measured_pressure_b"):
+        np.testing.assert_allclose(again[name], truth[name][200:501], atol=50.0)
+        np.testing.assert_array_equal(without[name], without[name.removeprefix("measured_")])
 
 
 def test_a_controller_closes_the_loop_on_the_measured_position() -> None:

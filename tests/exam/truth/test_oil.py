@@ -47,6 +47,41 @@ def test_internal_leakage_levels_the_chambers() -> None:
     np.testing.assert_allclose(difference, difference[0] * np.exp(-rate * truth["time"]), rtol=1e-6, atol=5.0)
 
 
+@pytest.mark.parametrize(
+    ("law", "share"),
+    [
+        ({}, 1.0 / np.cosh(0.6) ** 2),
+        ({"law": "gaussian"}, np.exp(-0.36)),
+        ({"law": "clearance"}, ((1.0 + np.exp(-0.36)) ** 3 - 1.0) / 7.0),
+    ],
+    ids=["bell", "gaussian", "clearance"],
+)
+def test_a_worn_bore_levels_the_chambers_as_fast_as_it_is_worn_where_the_piston_stands(
+    law: dict[str, str], share: float
+) -> None:
+    """Piston at 14 mm, 0.6 widths from the centre; the friction holds it there."""
+    wear = ("bore_wear_leakage", {"coefficient": 1e-12, "centre": 0.02, "width": 0.01, **law})
+    plant = {"internal_leakage": 2e-13, "piston_area_b": 0.5 * AREA}
+    truth = simulate_truth(plant, [CLAMPED, wear], still(501), 0.5, initial_position=0.014)
+    volume_a, volume_b = LINE + AREA * (STROKE + 0.014), LINE + 0.5 * AREA * (STROKE - 0.014)
+    rate = BULK * (2e-13 + 1e-12 * share) * (1.0 / volume_a + 1.0 / volume_b)
+    difference = truth["pressure_a"] - truth["pressure_b"]
+    np.testing.assert_allclose(difference, difference[0] * np.exp(-rate * truth["time"]), rtol=1e-6, atol=5.0)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_a_relief_valve_across_the_piston_leaks_one_way_and_above_its_opening(direction: float) -> None:
+    """The difference falls to the opening as the charge of a capacitor, or stays where it was."""
+    relief = ("relief_leakage", {"coefficient": 1e-12, "opening": 1e6, "direction": direction})
+    plant = {"internal_leakage": 0.0, "piston_area_b": 0.5 * AREA}
+    truth = simulate_truth(plant, [CLAMPED, relief], still(501), 0.5)
+    rate = BULK * 1e-12 * (1.0 / (LINE + AREA * STROKE) + 1.0 / (LINE + 0.5 * AREA * STROKE))
+    difference = truth["pressure_a"] - truth["pressure_b"]
+    assert difference[0] == pytest.approx(-7e6)
+    fallen = -1e6 - 6e6 * np.exp(-rate * truth["time"])
+    np.testing.assert_allclose(difference, fallen if direction < 0.0 else -7e6, rtol=1e-6)
+
+
 def test_the_oil_that_flows_in_is_swept_or_compressed() -> None:
     rate = 10000.0
     command = 0.1 * np.sin(2.0 * np.pi * 2.0 * np.arange(5001) / rate)

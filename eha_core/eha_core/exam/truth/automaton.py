@@ -23,7 +23,7 @@ from eha_core.exam.truth.laws import (
 )
 from eha_core.exam.truth.valve import Valve, evaluate
 
-ABSOLUTE_TOLERANCE = np.array([1e-11, 1e-9, 1.0, 1.0, 1.0, 1.0, 1e-11, 1e-12, 1e-12, 1e-12, 1e-12])
+ABSOLUTE_TOLERANCE = np.array([1e-11, 1e-9, 1.0, 1.0, 1.0, 1.0, 1e-11, 1e-12, 1e-12, 1e-12, 1e-12] + [1.0] * 4)
 RELATIVE_TOLERANCE = 1e-8
 EVENTS = 5
 ROOT_FOUND = 2
@@ -70,7 +70,7 @@ class Automaton:
             _rates,
             method="Adams",
             rtol=RELATIVE_TOLERANCE,
-            atol=ABSOLUTE_TOLERANCE,
+            atol=ABSOLUTE_TOLERANCE[: len(state)],
             max_num_steps=100_000,
             eventsfn=_events,
             num_events=EVENTS,

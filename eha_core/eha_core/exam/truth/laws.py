@@ -1,7 +1,8 @@
 """The truth's equations of motion, compiled, in one file so that a cached copy is never older than a law it calls.
 
 State: position, velocity, pressure A, pressure B (gauge), loss of supply pressure (under a pump, of its line's), rise
-of return pressure, position as a lagging sensor sees it, and four bristles. SI throughout. `p` is the record of
+of return pressure, position as a lagging sensor sees it, and four bristles; where pressure sensors lag, what they see,
+of each chamber a stage and the one that follows it. SI throughout. `p` is the record of
 record.py, `records` an array of that one (which a call from the integrator hands over ten times as fast), `mode` the
 automaton's: motion 0 rests and 1 slips; direction of slip -1 or 1; contact with a soft stop -1, 0, 1; held by an end
 -1, 0, 1.
@@ -14,6 +15,8 @@ from numba import njit
 
 POSITION, VELOCITY, PRESSURE_A, PRESSURE_B, SUPPLY_LOSS, RETURN_RISE, SENSED_POSITION, BRISTLE = range(8)
 STATES = BRISTLE + 4
+SENSED_PRESSURE = STATES
+WITH_LATE_PRESSURES = STATES + 4
 MOTION, DIRECTION, CONTACT, END = range(4)
 
 REVERSAL_SPEED = 1e-9
@@ -103,15 +106,29 @@ def stiffness_of_oil(gauge, p):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def worn_share(position, p):  # type: ignore[no-untyped-def]
+    """Share of the worn bore's highest conductance at a position [m].
+
+    Law 0 is the slope of a hyperbolic tangent, law 1 a Gaussian. Law 2 is laminar flow through a clearance, with its
+    cube: a Gaussian groove that doubles the clearance where it is deepest.
+    """
+    s = (position - p.bore_wear_leakage_centre) / p.bore_wear_leakage_width
+    if p.bore_wear_leakage_law == 0.0:
+        return 1.0 - np.tanh(s) ** 2
+    groove = np.exp(-s * s)
+    return groove if p.bore_wear_leakage_law == 1.0 else ((1.0 + groove) ** 3 - 1.0) / 7.0
+
+
+@njit(cache=True)
 def leakage_flow(difference, position, elapsed, p):  # type: ignore[no-untyped-def]
     """Flow from A to B past the piston [m^3/s]."""
     warmth = 1.0 - np.exp(-elapsed / p.thermal_drift_time_constant)
     conductance = p.internal_leakage * (1.0 + p.thermal_drift_leakage_ratio * warmth)
-    if p.gap_leakage_coefficient > 0.0:
-        conductance += p.gap_leakage_coefficient * np.exp(
-            -(((position - p.gap_leakage_centre) / p.gap_leakage_width) ** 2)
-        )
-    return conductance * difference + p.turbulent_leakage_coefficient * root(difference, p.transition_pressure)
+    if p.bore_wear_leakage_coefficient > 0.0:
+        conductance += p.bore_wear_leakage_coefficient * worn_share(position, p)
+    flow = conductance * difference + p.turbulent_leakage_coefficient * root(difference, p.transition_pressure)
+    lifted = max(p.relief_leakage_direction * difference - p.relief_leakage_opening, 0.0)
+    return flow + p.relief_leakage_direction * p.relief_leakage_coefficient * lifted
 
 
 @njit(cache=True)
@@ -206,6 +223,15 @@ def smooth_force(y, elapsed, rates, mode, p):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def trail(y, rates, place, pressure, time_constant, law):  # type: ignore[no-untyped-def]
+    """Rates [Pa/s] of a lagging pressure sensor's two stages: one of first order, or two alike with the same delay."""
+    if time_constant > 0.0:
+        stage = time_constant if law == 0.0 else 0.5 * time_constant
+        rates[place] = (pressure - y[place]) / stage
+        rates[place + 1] = (y[place] - y[place + 1]) / stage
+
+
+@njit(cache=True)
 def derivatives(time, y, rates, spool, mode, records):  # type: ignore[no-untyped-def]
     """Fill the rates of all states at a time [s] and spool position [A]."""
     p = records[0]
@@ -232,6 +258,10 @@ def derivatives(time, y, rates, spool, mode, records):  # type: ignore[no-untype
     rates[PRESSURE_B] = stiffness_of_oil(b, p) / volume_b * (p.piston_area_b * v - out_of_b + past - lost_b)
     if p.position_sensor_lag_time_constant > 0.0:
         rates[SENSED_POSITION] = (x - y[SENSED_POSITION]) / p.position_sensor_lag_time_constant
+    if len(y) == WITH_LATE_PRESSURES:
+        law = p.pressure_sensor_lag_law
+        trail(y, rates, SENSED_PRESSURE, a, p.pressure_sensor_lag_time_constant_a, law)
+        trail(y, rates, SENSED_PRESSURE + 2, b, p.pressure_sensor_lag_time_constant_b, law)
     if mode[MOTION] == 0.0:
         return
     force = smooth_force(y, time, rates, mode, p)

@@ -63,6 +63,8 @@ LAWS: dict[str, dict[str, int]] = {
     "end_stop": {"kelvin_voigt": 0, "hunt_crossley": 1},
     "load_friction": {"proportional": 0, "elastic": 1},
     "flow_saturation": {"hyperbolic": 0, "in_series": 1},
+    "bore_wear_leakage": {"bell": 0, "gaussian": 1, "clearance": 2},
+    "pressure_sensor_lag": {"first_order": 0, "critically_damped": 1},
 }
 """Published forms of one phenomenon. The first of each is the one whose parameters can be scored."""
 
@@ -103,6 +105,8 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "flow_saturation": {"curvature": 0.0},
     "pressure_sensor_scale": {"ratio_a": 0.0, "ratio_b": 0.0},
     "position_sensor_offset": {"offset": 0.0},
+    "bore_wear_leakage": {"coefficient": 0.0, "centre": 0.0, "width": 1.0},
+    "pressure_sensor_lag": {"time_constant_a": 0.0, "time_constant_b": 0.0},
 }
 """Neutral values of the catalogue's effects."""
 
@@ -112,13 +116,14 @@ OUTSIDE: dict[str, dict[str, float]] = {
     "direction_friction": {"forward": 0.0, "backward": 0.0},
     "position_damping": {"coefficient": 0.0},
     "one_sided_spring": {"start": 0.0, "stiffness": 0.0},
-    "gap_leakage": {"coefficient": 0.0, "centre": 0.0, "width": 1.0},
+    "relief_leakage": {"coefficient": 0.0, "opening": 0.0, "direction": 1.0},
 }
 """Neutral values of the effects that the catalogue does not know.
 
 position_ripple: force sin(2 pi x / pitch + phase); periodic_force: force sin(2 pi f t); direction_friction: Coulomb of
 another height each way; position_damping: damping coefficient x^2 [N s/m^3]; one_sided_spring: stiffness past
-x = start; gap_leakage: internal leakage added where the bore is worn, a Gaussian bump of x.
+x = start; relief_leakage: a relief valve across the piston that leaks one way, from A to B where direction is 1 and
+from B to A where it is -1: coefficient [m^3/(s Pa)] times what the pressure difference is above opening [Pa].
 """
 
 EFFECTS = CATALOGUE | OUTSIDE

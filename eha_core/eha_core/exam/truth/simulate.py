@@ -17,6 +17,7 @@ from eha_core.exam.truth.laws import (
     PRESSURE_B,
     RETURN_RISE,
     SENSED_POSITION,
+    SENSED_PRESSURE,
     STATES,
     SUPPLY_LOSS,
     VELOCITY,
@@ -52,7 +53,12 @@ COLUMNS = (
     "bristle_3",
     "bristle_4",
     "pump_speed",
+    "sensed_pressure_a",
+    "following_pressure_a",
+    "sensed_pressure_b",
+    "following_pressure_b",
 )
+CHAMBERS = (("a", PRESSURE_A, SENSED_PRESSURE), ("b", PRESSURE_B, SENSED_PRESSURE + 2))
 
 
 def simulate_truth(
@@ -112,7 +118,10 @@ class SteppedTruth:
         delay = float(records[0]["command_delay_delay"])
         if delay > 0.0:
             valve.command(0.0, delay, 0.0, records)
-        automaton = Automaton(valve, records, _initial_state(records[0], initial_position))
+        state = _initial_state(records[0], initial_position)
+        if _any_lags(plan):
+            state = np.append(state, np.repeat(state[[PRESSURE_A, PRESSURE_B]], 2))
+        automaton = Automaton(valve, records, state)
         self._begin(automaton, plan, rate, 0, initial_position)
 
     @classmethod
@@ -147,9 +156,8 @@ class SteppedTruth:
         record, state = self._automaton.record, self._automaton.state
         self._sensed = _sensed_position(state, record, self._sensed)
         position = _read_position(self._sensed, record)
-        pressure_a = _read_pressure(state[PRESSURE_A], record, "a")
-        pressure_b = _read_pressure(state[PRESSURE_B], record, "b")
-        return float(position), float(state[VELOCITY]), float(pressure_a), float(pressure_b)
+        pressure_a, pressure_b = (_read_pressure(state, record, *chamber) for chamber in CHAMBERS)
+        return float(position), float(state[VELOCITY]), pressure_a, pressure_b
 
     def hold(self, voltage: float, pump_speed: float = 0.0) -> tuple[float, ...]:
         """Hold a voltage [V], and the pump's speed [rad/s], until the next sample; returns the row of this one, in the
@@ -197,7 +205,10 @@ def resume_truth(
         begin, end = k / rate + delay, (k + 1) / rate + delay
         if end > start:
             valve.command(max(begin, start), end, float(truth["voltage"][k]), records)
-    automaton = Automaton(valve, records, _resumed_state(record, row), start)
+    state = _resumed_state(record, row)
+    if _any_lags(plan):
+        state = np.append(state, [row[name] for name in COLUMNS[-4:]])
+    automaton = Automaton(valve, records, state, start)
     resumed = SteppedTruth.resumed(automaton, plan, rate, first, row["sensed_position"])
     return _run(resumed, truth["voltage"][first:], last + 1 - first, truth["pump_speed"][first:])
 
@@ -255,7 +266,7 @@ def _resumed_state(record: np.void, row: Mapping[str, float]) -> Array:
     if record["return_back_pressure_resistance"] > 0.0:
         state[RETURN_RISE] = row["return_pressure"] - record["return_pressure"]
     if record["presliding_friction_stiffness"] > 0.0:
-        state[BRISTLE:] = [row[f"bristle_{i}"] for i in (1, 2, 3, 4)]
+        state[BRISTLE:STATES] = [row[f"bristle_{i}"] for i in (1, 2, 3, 4)]
     return state
 
 
@@ -281,10 +292,28 @@ def _read_position(sensed: float, record: np.void) -> float:
     return float(sensed * (1.0 + record["position_sensor_scale_ratio"]) + record["position_sensor_offset_offset"])
 
 
-def _read_pressure(pressure: float, record: np.void, chamber: str) -> float:
-    """What a chamber's sensor shows [Pa]: its gain, then its zero."""
+def _any_lags(plan: Sequence[tuple[float, NDArray[np.void]]]) -> bool:
+    """Whether a pressure sensor lags at any time, so that the truth needs states for them."""
+    constants = ("pressure_sensor_lag_time_constant_a", "pressure_sensor_lag_time_constant_b")
+    return any(records[0][name] > 0.0 for _, records in plan for name in constants)
+
+
+def _read_pressure(state: Array, record: np.void, chamber: str, place: int, sensed: int) -> float:
+    """What a chamber's sensor shows [Pa]: its lag, its gain, then its zero."""
+    pressure = state[place]
+    if record[f"pressure_sensor_lag_time_constant_{chamber}"] > 0.0:
+        pressure = state[sensed + int(record["pressure_sensor_lag_law"])]
     gain = 1.0 + record[f"pressure_sensor_scale_ratio_{chamber}"]
     return float(gain * pressure + record[f"pressure_sensor_bias_bias_{chamber}"])
+
+
+def _sensed_pressures(y: Array, record: np.void) -> Array:
+    """Both stages of both pressure sensors [Pa]: the pressures themselves where a sensor does not lag."""
+    stages = np.repeat(y[[PRESSURE_A, PRESSURE_B]], 2)
+    for chamber, _, sensed in CHAMBERS:
+        if record[f"pressure_sensor_lag_time_constant_{chamber}"] > 0.0:
+            stages[sensed - SENSED_PRESSURE : sensed - SENSED_PRESSURE + 2] = y[sensed : sensed + 2]
+    return np.asarray(stages)
 
 
 def _row(automaton: Automaton, time: float, voltage: float, sensed: float, measured: float) -> tuple[float, ...]:
@@ -307,11 +336,11 @@ def _row(automaton: Automaton, time: float, voltage: float, sensed: float, measu
         supply,
         back,
         measured,
-        _read_pressure(y[PRESSURE_A], record, "a"),
-        _read_pressure(y[PRESSURE_B], record, "b"),
+        *(_read_pressure(y, record, *chamber) for chamber in CHAMBERS),
         spool_rate,
         target,
         sensed,
-        *y[BRISTLE:],
+        *y[BRISTLE:STATES],
         record["pump_speed"],
+        *_sensed_pressures(y, record),
     )

@@ -16,12 +16,14 @@ from eha_core.weak_form.balance import Bumps
 
 DIFFERENCE = Axis("pressure difference A − B", "Pa")
 PRESSURE = Axis("chamber pressure", "Pa")
-BULK_A, CROSS, LEAK_A = 1, 5, 7
+POSITION = Axis("piston position", "m")
+BULK_A, CROSS, CONDUCTANCE, LEAK_A = 1, 5, 6, 7
 """Where these stand among what a contribution returns; see `eha_core.plant.hooks`."""
 
 
 def law(models: Models, effect: NamedEffect) -> Law | None:
-    """The flow over the pressure that drives it, or the bulk modulus over the pressure."""
+    """The flow over the pressure that drives it, the bulk modulus over the pressure, or the leakage over the
+    position."""
     a, b = models.state("pressure_a"), models.state("pressure_b")
     if not len(a):
         return None
@@ -34,16 +36,27 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
         return _bulk(models, effect, title, span_of(np.append(a, b), False))
     if changed[LEAK_A] != without[LEAK_A]:
         return _outside(models, effect, title, span_of(a, False), middle)
+    places = span_of(models.state("position"), False)
+    there = quantities(models, effect, values, 0.0 * places, 0.0 * places, places)[CONDUCTANCE]
+    if np.ptp(there) > 0.0:
+        return _along(models, effect, title, places)
     return _across(models, effect, title, span_of(a - b), middle)
 
 
 def quantities(
-    models: Models, effect: NamedEffect | None, values: Mapping[str, float], a: Array, b: Array
+    models: Models,
+    effect: NamedEffect | None,
+    values: Mapping[str, float],
+    a: Array,
+    b: Array,
+    places: Array | None = None,
 ) -> list[Array]:
-    """What the continuity equations are made of at these pressures, with one effect or none."""
+    """What the continuity equations are made of at these pressures, with one effect or none, in the middle of the
+    stroke or at these places."""
     p = models.fitted
     rows = []
-    for one, other in zip(a.tolist(), b.tolist(), strict=True):
+    places = 0.0 * a if places is None else places
+    for one, other, place in zip(a.tolist(), b.tolist(), places.tolist(), strict=True):
         flow = p["internal_leakage"] * (one - other)
         head = [
             p["piston_area_b"], p["bulk_modulus"], 0.0, p["bulk_modulus"], 0.0, flow, p["internal_leakage"],
@@ -51,7 +64,7 @@ def quantities(
         ]  # fmt: skip
         if effect is not None:
             call = contribution(effect)[0]
-            head = list(call(*head, one, other, p["atmospheric_pressure"], *in_order(effect, values)))
+            head = list(call(*head, place, one, other, p["atmospheric_pressure"], *in_order(effect, values)))
         rows.append(head)
     return list(np.array(rows, dtype=np.float64).T)
 
@@ -71,6 +84,26 @@ def _across(models: Models, effect: NamedEffect, title: str, x: Array, middle: f
         lost = [one / models.grid.area for one in lost_flows(models, models.grid)]
         points_y = np.interp(points_x, x, y) + 0.5 * (lost[0] - lost[1])
     return Law(title, DIFFERENCE, Axis("Flow from A to B", "m^3/s"), x, y, low, high, nominal, points_x, points_y)
+
+
+def _along(models: Models, effect: NamedEffect, title: str, x: Array) -> Law:
+    def evaluate(values: Mapping[str, float]) -> Array:
+        return quantities(models, effect, values, 0.0 * x, 0.0 * x, x)[CONDUCTANCE]
+
+    y, low, high = band(effect, evaluate, SURE * models.deviation("internal_leakage"))
+    points_x, points_y = NOTHING, NOTHING
+    if models.grid is not None and models.spool is not None:
+        place, _, a, b = models.modelled
+        flow = models.grid.average(np.interp(place, x, y) * (a - b))
+        lost = [one / models.grid.area for one in lost_flows(models, models.grid)]
+        place, a, b = models.on_grid(models.diagnosis.pictures.measured)
+        driving = models.grid.average(a - b)
+        strong = np.abs(driving) > np.median(np.abs(driving))  # where little drives the flow, little is known of it
+        points_x = models.grid.average(place)[strong]
+        points_y = ((flow + 0.5 * (lost[0] - lost[1])) / driving)[strong]
+    nominal = 0.0 * x + models.nominal["internal_leakage"]
+    up = Axis("Leakage from A to B", "m^3/(s Pa)")
+    return Law(title, POSITION, up, x, y, low, high, nominal, points_x, points_y)
 
 
 def _outside(models: Models, effect: NamedEffect, title: str, x: Array, middle: float) -> Law:

@@ -1,0 +1,93 @@
+"""Internal leakage that depends on position: a stretch of the bore that is worn.
+
+Signature: the piston loses speed under load in one part of the stroke, as with a larger internal leakage there alone.
+Equation: q12 += coefficient sech^2((x_p - centre) / width) (P1 - P2).
+Sign: positive from chamber A to B where A's pressure is higher.
+Validity: laminar flow; one stretch, alike on both sides of its middle. The flow is 42 % of its highest at one width
+from the centre and 7 % at two. A stretch much wider than the travel is more internal leakage, and is not seen.
+Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 3 (laminar flow past a piston, with the cube of
+the clearance). The bell over the position is assumed: it lies between a Gaussian and what a clearance with a Gaussian
+groove lets through.
+"""
+
+from math import exp
+
+from eha_core.compiled import inlined
+from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.parameter import Parameter
+
+EFFECT = Effect(
+    site="chamber",
+    approximate=True,
+    statement="the bore is worn near {centre:4}: oil passes the piston there, {coefficient} at most, less than half "
+    "of it {width} away",
+    equation="q12 += coefficient sech^2((x_p - centre)/width) (P1 - P2)",
+    parameters=(
+        Parameter(
+            "coefficient",
+            "K_w",
+            "m^3/(s Pa)",
+            0.0,
+            0.0,
+            1e-7,
+            "internal leakage added at the centre",
+            ASSUMED,
+            typical=1e-10,
+            switches=True,
+            relative_to="leakage_flow",
+            starts=(0.3,),
+        ),
+        Parameter(
+            "centre",
+            "x_w",
+            "m",
+            0.0,
+            -10.0,
+            10.0,
+            "position at which the bore is worn most",
+            ASSUMED,
+            typical=0.005,
+            relative_to="position",
+            starts=(-0.6, 0.0, 0.6),
+        ),
+        Parameter(
+            "width",
+            "w_w",
+            "m",
+            0.01,
+            1e-5,
+            10.0,
+            "distance from the centre at which 42 % of it is left",
+            ASSUMED,
+            typical=0.01,
+            logarithmic=True,
+        ),
+    ),
+)
+
+
+@inlined
+def contribution(
+    area_b,
+    bulk_a,
+    bulk_change_a,
+    bulk_b,
+    bulk_change_b,
+    cross_flow,
+    cross_slope,
+    leakage_a,
+    leakage_b,
+    position,
+    pressure_a,
+    pressure_b,
+    atmospheric_pressure,
+    coefficient,
+    centre,
+    width,
+):
+    """Add a conductance that depends on where the piston is."""
+    fallen = exp(-2.0 * abs((position - centre) / width))
+    conductance = coefficient * 4.0 * fallen / ((1.0 + fallen) * (1.0 + fallen))
+    cross_flow += conductance * (pressure_a - pressure_b)
+    cross_slope += conductance
+    return area_b, bulk_a, bulk_change_a, bulk_b, bulk_change_b, cross_flow, cross_slope, leakage_a, leakage_b
