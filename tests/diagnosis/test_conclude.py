@@ -91,6 +91,7 @@ BALANCED = UnknownLaw("force", "velocity, times the load", "", 0.7, ())
     ("site", "share", "named", "found"),
     [
         ("force", 0.71, False, "velocity"),
+        ("force", 0.69, False, BALANCED.function_of),
         ("force", 0.70, False, BALANCED.function_of),  # the balances stand where the curve explains no more
         ("chamber", 0.99, False, BALANCED.function_of),  # another site's curve only makes up for the law
         ("force", 0.60, True, "velocity"),  # the balances lack what is named, too
@@ -131,7 +132,8 @@ def test_a_curve_that_is_not_the_law_is_taken_out_of_the_model():
     evidence = SimpleNamespace(decision=decision, recovery=recovery, comparison=ModelComparison(nominal, (), (), 1.0))
     same = UnknownLaw("force", "velocity", "", 0.9, ())
     assert conclude._without_another_curve(evidence, same) is decision
-    for other in (None, replace(same, site="chamber"), replace(same, function_of="position")):
+    elsewhere = [replace(same, site=site) for site in ("chamber", "valve")]
+    for other in (None, *elsewhere, replace(same, function_of="position")):
         found = conclude._without_another_curve(evidence, other)
         assert (found.verdict, found.winner) == ("unknown_physics", nominal)
         assert found.judged_winner is found.judged_nominal is judged[0]

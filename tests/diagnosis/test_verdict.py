@@ -225,7 +225,7 @@ def test_unexplained_is_what_exceeds_noise():
     assert verdict.unexplained(replace(fit(3.0), count=0)) == pytest.approx(2.0)
 
 
-@pytest.mark.parametrize(("share", "found"), [(0.49, "missing_physics"), (0.51, "unknown_physics")])
+@pytest.mark.parametrize(("share", "found"), [(0.49, "missing_physics"), (0.5, "unknown_physics")])
 def test_a_curve_beside_a_named_effect_must_be_a_law_of_what_that_leaves(share, found):
     named = entry(500.0, "constant_load", of=fit(2.0 * COUNT, objective=1e6))
     decision = decide(named, recovery=recovered(600.0, objective=0.0, beside=("constant_load",), share=share))
