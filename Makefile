@@ -11,12 +11,16 @@ PYTHON_OF_RCLPY ?= python3.12
 # How long each trial of `make hostile` goes on, and what it is drawn from.
 HOSTILE_SECONDS := 20
 HOSTILE_SEED := 1
+# How many places of each group `make mutants` changes, what they are drawn from, and after how long each group ends.
+MUTANTS := 60
+MUTANTS_SEED := 1
+MUTANTS_MINUTES := 20
 # What the diagnosis scored in the small exam when its answers last changed: raise it with the score.
 EXAM_MARK := 0.9
 TYPED := eha_core/eha_core eha_sim_node/eha_sim_node rclpy_dds/rclpy_dds tools
 
 .DEFAULT_GOAL := help
-.PHONY: help env test lint demo demo-realtime controllers contract bench docs wheels exam hostile
+.PHONY: help env test lint demo demo-realtime controllers contract bench docs wheels exam hostile mutants
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 24
@@ -68,3 +72,7 @@ exam: env  ## a small fixed exam of the diagnosis, which fails when fewer cases 
 
 hostile: env  ## mutated files, killed recorders, hostile commands and nodes under attack; fails where one does harm
 	$(WITH_PATH) $(RUN)/python -m tools.hostile --seconds $(HOSTILE_SECONDS) --seed $(HOSTILE_SEED)
+
+mutants: env  ## whether quick tests notice small changes in plant, recording, verdict; GROUPS="plant" for some
+	$(RUN)/pip install --quiet --disable-pip-version-check --requirement requirements/mutants.txt
+	$(WITH_PATH) $(RUN)/python -m tools.mutants --places $(MUTANTS) --seed $(MUTANTS_SEED) --minutes $(MUTANTS_MINUTES) $(GROUPS)

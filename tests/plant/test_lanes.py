@@ -70,6 +70,17 @@ def test_an_effect_acts_in_its_lanes_and_in_no_other(effect: Effect) -> None:
     assert together(sets, voltages, 3, 4).tobytes() == seen.tobytes()
 
 
+def test_every_effect_over_a_few_steps() -> None:
+    """The whole catalogue, some effects a lane, in few enough steps for the interpreter."""
+    every = effects()
+    sets = [{}]
+    for first in range(0, len(every), 8):
+        sets.append({name: value for one in every[first : first + 8] for name, value in sizes(one)[0].items()})
+    voltages = np.where(np.arange(160) < 100, 8.0, -3.0)
+    expected = alone(sets, voltages, 5)
+    assert together(sets, voltages, 5, len(COLUMNS)).tobytes() == expected.tobytes()
+
+
 @pytest.mark.parametrize("count", [1, 4, 5, LANES])
 def test_any_number_of_sets(count: int) -> None:
     generator = np.random.default_rng(count)

@@ -77,6 +77,18 @@ def test_what_held_when_a_block_began_holds_in_it(path: Path) -> None:
     np.testing.assert_allclose(command.values, [0.01, 0.08])
 
 
+@pytest.mark.parametrize("length", [4.99, 7.0])
+def test_every_sample_is_in_one_block(path: Path, length: float) -> None:
+    """Blocks that begin between two samples, and with a change of the command."""
+    whole, read = read_recording(path), recordings_of(BlocksOfFile(path, None, length))
+    for name in ("position", "pressure_a"):
+        values = np.concatenate([one.channels[name].values for one in read])
+        np.testing.assert_array_equal(values, whole.channels[name].values)
+    for one in read:
+        assert one.channels["voltage_command"].time[0] == pytest.approx(0.0, abs=1e-9)
+        assert np.all(np.diff(one.channels["voltage_command"].time) > 0.0)
+
+
 def test_the_leakage_counts_from_the_record_and_not_from_the_block() -> None:
     changes = ((0.0, 1e-12), (12.0, 5e-12), (21.0, 9e-12))
     assert leakage_within((), 3.0, 8.0) == ()
