@@ -34,9 +34,11 @@ def test_a_deadband_with_sharp_edges_has_no_rounding_to_pay_for(rounding, used):
 def test_a_law_whose_shape_cannot_be_told_pays_for_it_all_the_same():
     values = {
         "stribeck_friction.force": 250.0,
-        "stribeck_friction.static_force": 226.0,
+        "stribeck_friction.static_force": 260.0,
         "stribeck_friction.stribeck_velocity": 5e-5,
+        "stribeck_friction.shape": 2.0,
     }
     deviations = {"stribeck_friction.force": 1.0, "stribeck_friction.static_force": 400.0,
-                  "stribeck_friction.stribeck_velocity": 1e-2}  # fmt: skip
-    assert freedom_used(fitted(values, deviations)) == 3
+                  "stribeck_friction.stribeck_velocity": 1e-2,
+                  "stribeck_friction.shape": 1.0}  # fmt: skip
+    assert freedom_used(fitted(values, deviations)) == 4

@@ -7,7 +7,7 @@ from eha_core.identification.fit import Ending, Fit
 from eha_core.identification.freedom import Free, coordinates, values_at
 
 SLIDING = Free("sliding", 100.0, False, 100.0, 30.0, 0.0, 1e5)
-STATIC = Free("static", 0.0, False, 50.0, 30.0, 0.0, 1e5, above="sliding")
+STATIC = Free("static", 0.0, False, 1.0, 30.0, 0.0, 3.0, above="sliding")
 MASS = Free("mass", 9.0, True, 0.0, 0.7, 2.0, 40.0)
 FREE = (STATIC, SLIDING, MASS)
 
@@ -21,11 +21,13 @@ def test_what_is_above_another_goes_along_with_it_and_never_below():
     values = {"static": 230.0, "sliding": 170.0, "mass": 11.0}
     q = coordinates(FREE, values)
     raised = values_at(values, FREE, q + [0.0, 0.5, 0.0])
-    assert (raised["sliding"], raised["static"]) == pytest.approx((220.0, 280.0))
+    assert (raised["sliding"], raised["static"]) == pytest.approx((220.0, 220.0 * 230.0 / 170.0))
     below = values_at(values, FREE, coordinates(FREE, {**values, "static": 90.0}))
     assert below["static"] == below["sliding"] == pytest.approx(170.0)
     lowest = values_at(values, FREE, q - [1e3, 0.0, 0.0])
     assert lowest["static"] == pytest.approx(170.0)
+    highest = values_at(values, FREE, q + [1e3, 0.0, 0.0])
+    assert highest["static"] == pytest.approx(4.0 * 170.0)
 
 
 def test_deviations_are_those_of_the_values():

@@ -15,6 +15,10 @@ EFFECT_TRUST = 30.0
 """An effect's parameter may move by this many times its starting size, or by e^3 where it moves by factors."""
 
 
+MOST_ABOVE = 3.0
+"""Share by which friction at rest may exceed that in motion. Seals show up to twice as much (assumed); without a bound
+friction that vanishes in motion stands for Coulomb's with damping that grows with the speed."""
+
 SHORTEST_INSTANT = 0.01
 """s; over this much an instant is moved to see what that changes."""
 
@@ -26,8 +30,7 @@ def effect_freedom(effect: Effect, start: Mapping[str, float]) -> tuple[Free, ..
         value = start[name]
         if row.above:
             above = f"{effect.id}.{row.above}"
-            scale, most = max(value - start[above], 0.0) or abs(row.typical), row.upper - row.lower
-            free.append(Free(name, 0.0, False, scale, EFFECT_TRUST, 0.0, most, above=above))
+            free.append(Free(name, 0.0, False, 1.0, EFFECT_TRUST, 0.0, MOST_ABOVE, above=above))
             continue
         if row.logarithmic and value > 0.0:
             free.append(Free(name, value, True, 0.0, 3.0, row.lower, row.upper))

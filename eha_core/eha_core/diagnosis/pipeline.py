@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from eha_core.diagnosis.attribution import attribute
 from eha_core.diagnosis.calibrate import calibrate_but_for_the_ends
 from eha_core.diagnosis.conclude import conclude
-from eha_core.diagnosis.criteria import chance_gain
+from eha_core.diagnosis.criteria import NEAR_NOISE, chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.facts import gather
 from eha_core.diagnosis.hypotheses import candidates
@@ -19,7 +19,7 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.sets import with_sets
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
-from eha_core.identification.fit import fit
+from eha_core.identification.fit import Fit, fit
 from eha_core.identification.freedom import not_believed
 from eha_core.identification.observation import observe, reaching
 from eha_core.identification.parallel import side_by_side
@@ -32,7 +32,10 @@ from eha_core.weak_form.balance import balances, least
 Progress = Callable[[str], None]
 
 BEYOND = 20
-"""Iterations of the model found without the bounds that it rests on, before all else is asked again without them."""
+"""Iterations of a model without the bounds that it rests on, before all else is asked again without them."""
+
+RIVALS = 5
+"""How many of the best are asked whether they would lead without the bounds that they rest on."""
 
 
 def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
@@ -42,8 +45,8 @@ def examine(recordings: Sequence[Recording], model: NominalModel, progress: Prog
     cannot be used.
     """
     evidence = _examine(recordings, model, progress)
-    bounds = evidence.decision.winner.fit.held_by_belief() - model.unknown
-    if not bounds or not _gains_without(evidence, bounds):
+    bounds = _holding_back(evidence) - model.unknown
+    if not bounds:
         return evidence
     progress(f"once more: {', '.join(sorted(bounds))} went as far as believed of it")
     again = _examine(recordings, replace(model, unknown=model.unknown | bounds), progress)
@@ -52,15 +55,28 @@ def examine(recordings: Sequence[Recording], model: NominalModel, progress: Prog
     return again if gain > needed else evidence
 
 
-def _gains_without(evidence: Evidence, bounds: frozenset[str]) -> bool:
-    """Whether the model found would explain more without these bounds: else they held nothing back."""
-    problem, found = evidence.calibration.problem, evidence.decision.winner.fit
+def _holding_back(evidence: Evidence) -> frozenset[str]:
+    """The bounds of belief without which the model found would explain more, or a rival more than it.
+
+    Rivals are asked where more than noise is left: what rests on no bound may lead because another form of its law took
+    up what the others may not.
+    """
+    problem, winner = evidence.calibration.problem, evidence.decision.winner.fit
+    rivals = evidence.comparison.entries[:RIVALS] if winner.data > NEAR_NOISE * winner.count else []
+    needed = chance_gain(problem.count(), evidence.comparison.residual_variance)
+    found: frozenset[str] = frozenset()
+    for at in (winner, *(one.fit for one in rivals if one.fit is not winner)):
+        bounds = at.held_by_belief()
+        if bounds and winner.objective - _without(evidence, at, bounds).objective > needed:
+            found |= bounds
+    return found
+
+
+def _without(evidence: Evidence, at: Fit, bounds: frozenset[str]) -> Fit:
+    """A model fitted further without these bounds."""
     rows = evidence.observation.composition.place_rows
-    free = [
-        not_believed(one, rows[base_name(one.name)]) if base_name(one.name) in bounds else one for one in found.free
-    ]
-    beyond = fit(problem, found.values, free, found.states, iterations=BEYOND)
-    return found.objective - beyond.objective > chance_gain(problem.count(), evidence.comparison.residual_variance)
+    free = [not_believed(one, rows[base_name(one.name)]) if base_name(one.name) in bounds else one for one in at.free]
+    return fit(evidence.calibration.problem, at.values, free, at.states, iterations=BEYOND)
 
 
 def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:

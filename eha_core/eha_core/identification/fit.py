@@ -102,9 +102,12 @@ class Fit:
         places = {one.name: place for place, one in enumerate(self.free)}
         by_coordinate = np.zeros((len(names), len(self.free)))
         for row, name in zip(by_coordinate, names, strict=True):
-            for part in filter(None, (name, self.free[places[name]].above)):
-                if part in places:
-                    row[places[part]] = self.free[places[part]].slope(self.values[part])
+            one = self.free[places[name]]
+            row[places[name]] = one.slope(self.values[name]) * (self.values[one.above] if one.above else 1.0)
+            if one.above in places:
+                below = self.values[one.above]
+                times = self.values[name] / below if below > 0.0 else 1.0
+                row[places[one.above]] = times * self.free[places[one.above]].slope(below)
         count = len(self.free)
         return by_coordinate @ self.covariance[:count, :count] @ by_coordinate.T
 

@@ -21,7 +21,7 @@ class Free:
 
     The prior says q = 0 with standard deviation `trust`. `lower` and `upper` bound the value. A derivative is taken
     over no less than `resolution` in q: an instant acts from one step of the simulation to the next. Where `above`
-    names a parameter, q and the bounds are of what is above that one.
+    names a parameter, q and the bounds are of the share by which this one exceeds that.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Free:
         return 1.0 if self.logarithmic else 10.0
 
     def value(self, q: float) -> float:
-        """The parameter's value, or what it has more than the one below it, at coordinate q, inside the bounds."""
+        """The parameter's value, or the share by which it exceeds another's, at coordinate q, inside the bounds."""
         value = self.reference * exp(min(max(q, -50.0), 50.0)) if self.logarithmic else self.reference + self.scale * q
         return min(max(value, self.lower), self.upper)
 
@@ -62,8 +62,13 @@ class Free:
 
 def coordinates(free: Sequence[Free], values: Mapping[str, float]) -> Array:
     """The coordinates at which the free parameters have these values."""
-    own = [max(values[one.name] - values[one.above], 0.0) if one.above else values[one.name] for one in free]
-    return np.array([one.coordinate(value) for one, value in zip(free, own, strict=True)])
+    return np.array([one.coordinate(_own(one, values)) for one in free])
+
+
+def _own(one: Free, values: Mapping[str, float]) -> float:
+    if not one.above:
+        return values[one.name]
+    return max(values[one.name] / max(values[one.above], 1e-300) - 1.0, 0.0) if values[one.name] > 0.0 else 0.0
 
 
 def values_at(values: Mapping[str, float], free: Sequence[Free], q: Array) -> dict[str, float]:
@@ -71,7 +76,7 @@ def values_at(values: Mapping[str, float], free: Sequence[Free], q: Array) -> di
     found = {**values, **{one.name: one.value(float(at)) for one, at in zip(free, q, strict=True)}}
     for one in free:
         if one.above:
-            found[one.name] += found[one.above]
+            found[one.name] = found[one.above] * (1.0 + found[one.name])
     return found
 
 
