@@ -56,8 +56,9 @@ def test_without_pressures_dry_friction_over_leakage_comes_near_an_overlap():
     opening meanwhile: a dead zone like the overlap's, but for a supply pressure that hardly anybody would believe."""
     result = diagnosed({"valve_deadband.half_width": 2e-4}, channels=("voltage_command", "position"))
     (first, score), (second, near) = result.rivals[:2]
-    assert (first, second) == (("valve_deadband",), ("coulomb_friction",))
-    assert score - near < 1e-4 * score  # the valley is flat: where a fit rests in it differs by hundreds
+    assert first == ("valve_deadband",)
+    assert second in {("coulomb_friction",), ("stribeck_friction",)}  # of which the first is a special case
+    assert score - near < 1e-5 * score
     stated = {tuple(one.id for one in result.effects), *(one.effects for one in result.alternatives)}
     assert stated == ({first, second} if score - near < TIE else {first})
 

@@ -132,11 +132,11 @@ def leakage_flow(difference, position, elapsed, p):  # type: ignore[no-untyped-d
 
 
 @njit(cache=True)
-def stribeck_shape(speed, scale, law):  # type: ignore[no-untyped-def]
-    """Share of the static excess that is left at a speed: Gaussian, Tustin's exponential, or Hess and Soom's."""
+def stribeck_shape(speed, scale, law, exponent):  # type: ignore[no-untyped-def]
+    """Share of the static excess left at a speed: with an exponent (2: Gaussian), Tustin's, or Hess and Soom's."""
     s = speed / scale
     if law == 0.0:
-        return np.exp(-s * s)
+        return np.exp(-(s**exponent))
     if law == 1.0:
         return np.exp(-s)
     return 1.0 / (1.0 + s * s)
@@ -156,7 +156,9 @@ def dry_friction(speed, direction, across, p):  # type: ignore[no-untyped-def]
         height += p.load_friction_coefficient * pressed
     height += p.direction_friction_forward if direction > 0.0 else p.direction_friction_backward
     excess = p.stribeck_friction_static_force - p.stribeck_friction_force
-    shape = stribeck_shape(speed, p.stribeck_friction_stribeck_velocity, p.stribeck_friction_law)
+    shape = stribeck_shape(
+        speed, p.stribeck_friction_stribeck_velocity, p.stribeck_friction_law, p.stribeck_friction_shape
+    )
     return height + p.stribeck_friction_force + excess * shape
 
 
@@ -169,7 +171,7 @@ def bristle_force(y, velocity, rates, p):  # type: ignore[no-untyped-def]
     law = p.presliding_friction_law
     kinetic = p.presliding_friction_force
     excess = p.presliding_friction_static_force - kinetic
-    shape = stribeck_shape(abs(velocity), p.presliding_friction_stribeck_velocity, 1.0 if law == 1.0 else 0.0)
+    shape = stribeck_shape(abs(velocity), p.presliding_friction_stribeck_velocity, 1.0 if law == 1.0 else 0.0, 2.0)
     level = kinetic + excess * shape
     if law == 3.0:
         # Bouc and Wen's with n = 2: the bend turns over more sharply than a bristle's

@@ -82,7 +82,7 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "entrained_air": {"air_fraction": 0.0},
     "unequal_piston_area": {"ratio": 1.0},
     "coulomb_friction": {"force": 0.0},
-    "stribeck_friction": {"force": 0.0, "static_force": 0.0, "stribeck_velocity": 1.0},
+    "stribeck_friction": {"force": 0.0, "static_force": 0.0, "stribeck_velocity": 1.0, "shape": 2.0},
     "presliding_friction": {
         "force": 0.0,
         "static_force": 0.0,
