@@ -50,6 +50,6 @@ def test_forms_that_share_a_parameter_begin_with_its_value():
 
 
 @pytest.mark.parametrize("law", ["presliding_friction", "stribeck_friction"])
-def test_no_start_has_less_friction_at_rest_than_in_motion(law):
+def test_every_start_has_one_to_four_times_as_much_friction_at_rest_as_in_motion(law):
     pairs = {(one.values[f"{law}.force"], one.values[f"{law}.static_force"]) for one in starts(LAWS[law], FACTS)}
-    assert pairs == {(100.0, 200.0), (100.0, 600.0), (400.0, 600.0)}
+    assert pairs == {(100.0, 200.0), (400.0, 600.0)}

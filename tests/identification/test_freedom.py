@@ -30,6 +30,14 @@ def test_what_is_above_another_goes_along_with_it_and_never_below():
     assert highest["static"] == pytest.approx(4.0 * 170.0)
 
 
+def test_what_begins_past_its_share_begins_at_the_bound():
+    """From past it, neither a step up nor one down would change anything."""
+    values = {"static": 600.0, "sliding": 100.0, "mass": 11.0}
+    q = coordinates(FREE, values)
+    assert values_at(values, FREE, q)["static"] == pytest.approx(400.0)
+    assert values_at(values, FREE, q - [0.1, 0.0, 0.0])["static"] == pytest.approx(390.0)
+
+
 def test_deviations_are_those_of_the_values():
     """Against draws of the coordinates."""
     generator = np.random.default_rng(4)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from eha_core.diagnosis.effect_freedom import MOST_ABOVE
 from eha_core.diagnosis.facts import Facts
 from eha_core.effects import Effect
 from eha_core.identification.observation import Observation
@@ -45,10 +46,13 @@ def starts(effect: Effect, facts: Facts) -> tuple[Start, ...]:
         choices.append([min(max(origin + scale * at, row.lower), row.upper) for at in row.starts])
     names = effect.parameter_names()
     found = [Start(effect, dict(zip(names, values, strict=True))) for values in product(*choices)]
-    return tuple(one for one in found if not any(_is_below(one, row) for row in effect.parameters))
+    return tuple(one for one in found if all(_may_be(one, row) for row in effect.parameters))
 
 
-def _is_below(start: Start, row: Parameter) -> bool:
-    """Whether a start has a parameter below the one that it cannot be smaller than."""
+def _may_be(start: Start, row: Parameter) -> bool:
+    """Whether a start has a parameter as far above another as a fit lets it be."""
     own = start.effect.id
-    return bool(row.above) and start.values[f"{own}.{row.name}"] < start.values[f"{own}.{row.above}"]
+    if not row.above:
+        return True
+    share = start.values[f"{own}.{row.name}"] / start.values[f"{own}.{row.above}"] - 1.0
+    return 0.0 <= share <= MOST_ABOVE

@@ -66,9 +66,11 @@ def coordinates(free: Sequence[Free], values: Mapping[str, float]) -> Array:
 
 
 def _own(one: Free, values: Mapping[str, float]) -> float:
+    """What the coordinate is of: the value, or the share above another, inside its bounds: past one is no slope."""
     if not one.above:
         return values[one.name]
-    return max(values[one.name] / max(values[one.above], 1e-300) - 1.0, 0.0) if values[one.name] > 0.0 else 0.0
+    share = values[one.name] / values[one.above] - 1.0 if values[one.above] > 0.0 else 0.0
+    return min(max(share, one.lower), one.upper)
 
 
 def values_at(values: Mapping[str, float], free: Sequence[Free], q: Array) -> dict[str, float]:
