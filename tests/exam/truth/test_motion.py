@@ -84,6 +84,18 @@ def test_an_effect_with_a_window_acts_only_there() -> None:
     assert not np.allclose(always["position"], never["position"], atol=1e-5)
 
 
+@pytest.mark.parametrize("begins", [0.2505, 0.7505, 1.2505, 1.7505])
+def test_friction_opposes_the_motion_in_which_it_begins_to_act(begins: float) -> None:
+    """Whichever way the piston has turned before: it was free to do so without an event."""
+    friction = [("coulomb_friction", {"force": 300.0})]
+    truth = simulate_truth({}, friction, SINE, 2.0, windows={"coulomb_friction": (begins, 10.0)})
+    free = simulate_truth({}, [], SINE, 2.0)
+    at = slice(round(1000.0 * begins) + 20, round(1000.0 * begins) + 80)
+    pressed = truth["pressure_a"] - truth["pressure_b"] - (free["pressure_a"] - free["pressure_b"])
+    assert np.min(np.abs(truth["velocity"][at])) > 0.01
+    assert AREA * np.mean(pressed[at]) == pytest.approx(300.0 * np.sign(truth["velocity"][at][0]), rel=0.1)
+
+
 def test_leakage_sets_in_at_its_time() -> None:
     onset = [("leakage_onset", {"time": 1.0, "internal_leakage": 2e-10})]
     truth, tight = simulate_truth({}, onset, SINE, 2.0), simulate_truth({}, [], SINE, 2.0)

@@ -16,6 +16,7 @@ from eha_core.exam.truth.laws import (
     END,
     MOTION,
     POSITION,
+    REVERSAL_SPEED,
     VELOCITY,
     derivatives,
     events,
@@ -87,6 +88,10 @@ class Automaton:
     def change_record(self, records: NDArray[np.void]) -> None:
         """Put other parameters in force from now on."""
         self.records = records
+        speed = float(self.state[VELOCITY])
+        if self.mode[MOTION] == 1.0 and abs(speed) > REVERSAL_SPEED:
+            # without dry friction the piston may have turned round unnoticed
+            self.mode[DIRECTION] = np.sign(speed)
         self._settle()
 
     def advance(self, stop: float) -> None:
