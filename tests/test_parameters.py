@@ -32,7 +32,9 @@ def test_nominal_values_are_those_of_table_1() -> None:
 
 def test_the_catalogue_holds_the_nominal_rows_then_each_effects_then_when_they_act() -> None:
     of_effects = [name for effect in effects() for name in effect.parameter_names()]
-    assert list(catalogue()) == [row.name for row in NOMINAL] + of_effects + ["effects_from", "effects_until"]
+    when = [name for effect in effects() for name in effect.acting_names()]
+    assert list(catalogue()) == [row.name for row in NOMINAL] + of_effects + ["effects_from", "effects_until", *when]
+    assert "coulomb_friction.acts_from" in when
 
 
 @pytest.mark.parametrize("name", list(catalogue()))

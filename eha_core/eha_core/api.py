@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.nominal import NominalModel, load_nominal, nominal_of
-from eha_core.parameters import ACTING
+from eha_core.parameters import effect_names
 from eha_core.plant import Composition, composition_of
 from eha_core.recording import Recording, read_recording
 from eha_core.recording.simulated import Experiment
@@ -166,8 +166,7 @@ def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     if told is not None:
         return told
     composition = composition_of(recording.parts)
-    of_effects = {name for effect in effects() for name in effect.parameter_names()} | {row.name for row in ACTING}
-    kept = {name: value for name, value in recording.parameters.items() if name not in of_effects}
+    kept = {name: value for name, value in recording.parameters.items() if name not in effect_names()}
     known = {name: value for name, value in kept.items() if name in composition.rows}
     return nominal_of(known, composition=composition)
 

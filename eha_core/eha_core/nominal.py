@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.node_parameters import from_node
-from eha_core.parameters import ACTING, PER_RECORDING, UNKNOWN, is_unknown, read_section, split_parts
+from eha_core.parameters import PER_RECORDING, UNKNOWN, effect_names, is_unknown, read_section, split_parts
 from eha_core.plant import PAPER, Composition, composition_of
 
 
@@ -62,7 +61,7 @@ def nominal_of(
     unknown = [name for name, value in given.items() if is_unknown(value)]
     for name in unknown:
         composition.require(name)
-        if name in _of_effects():
+        if name in effect_names():
             raise ParameterError(
                 f"{name} is {UNKNOWN}, which a diagnosis of effects finds out by itself; leave it out, or give a value"
             )
@@ -82,7 +81,3 @@ def _names(listed: object, composition: Composition) -> tuple[str, ...]:
     for name in names:
         composition.require(name, f"{PER_RECORDING}: ")
     return tuple(place for name in names for place in composition.stands_for(name))
-
-
-def _of_effects() -> set[str]:
-    return {row.name for row in ACTING} | {name for effect in effects() for name in effect.parameter_names()}

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
-from eha_core.effects import effects
+from eha_core.effects import Effect, effects
 from eha_core.errors import ParameterError, remedy
 from eha_core.node_parameters import from_node, to_node
 from eha_core.parameter import Parameter
@@ -61,16 +61,41 @@ ACTING: tuple[Parameter, ...] = (
 )
 """The span of time in which whatever effects are switched on act: by their nominal values always."""
 
+_ACTS = (
+    _row("acts_from", "t_from", "s", 0.0, (0.0, 1e9), "time from which the effect acts", "assumed", logarithmic=False),
+    _row("acts_until", "t_until", "s", 1e9, (0.0, 1e9), "time from which it no longer acts", "assumed",
+         logarithmic=False),
+)
+
+
+def acting_rows(effect: Effect) -> dict[str, Parameter]:
+    """When an effect acts of that in which all may: by their nominal values always."""
+    return dict(zip(effect.acting_names(), _ACTS, strict=False))
+
 
 @cache
-def catalogue() -> Mapping[str, Parameter]:
-    """Every parameter of the plant by its full name: the nominal rows, each effect's as `<effect id>.<name>`, and the
-    span of time in which the effects act."""
+def step_rows() -> Mapping[str, Parameter]:
+    """The parameters that the compiled step takes, in its order: the nominal rows, and each effect's own."""
     rows = {row.name: row for row in NOMINAL}
     for effect in effects():
         rows.update(zip(effect.parameter_names(), effect.parameters, strict=True))
-    rows.update((row.name, row) for row in ACTING)
     return MappingProxyType(rows)
+
+
+@cache
+def catalogue() -> Mapping[str, Parameter]:
+    """Every parameter of the plant by its full name: the nominal rows, each effect's as `<effect id>.<name>`, the span
+    of time in which the effects act, and that of each."""
+    rows = {**step_rows(), **{row.name: row for row in ACTING}}
+    for effect in effects():
+        rows.update(acting_rows(effect))
+    return MappingProxyType(rows)
+
+
+@cache
+def effect_names() -> frozenset[str]:
+    """The parameters that are of effects, and of when they act."""
+    return frozenset(catalogue()) - {row.name for row in NOMINAL}
 
 
 def nominal_values() -> dict[str, float]:

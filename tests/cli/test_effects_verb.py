@@ -28,7 +28,8 @@ def test_lists_parameters_with_unit_value_range_and_source(capsys: pytest.Captur
     assert main(["effects", "--parameters"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert "moving_mass [kg] = 9, 0.01 to 100000: mass of piston and load (Table 1)" in lines
-    of_effects = sum(len(effect.parameters) for effect in effects() if effect.named)
+    assert "coulomb_friction.acts_from [s] = 0, 0 to 1e+09: time from which the effect acts (assumed)" in lines
+    of_effects = sum(len(effect.parameters) + len(effect.acting_names()) for effect in effects() if effect.named)
     assert len(lines) == len(NOMINAL) + of_effects + len(ACTING)
 
 

@@ -34,6 +34,8 @@ def points(shooting: Shooting) -> list[tuple[dict[str, float], np.ndarray]]:
         {"pressure_sensor_lag.time_constant_a": 0.02, "pressure_sensor_lag.time_constant_b": 0.01},
         {"presliding_friction.force": 150.0, "presliding_friction.static_force": 200.0, "effects_from": 1.234},
         {"position_sensor_backlash.half_width": 1e-4, "effects_until": 0.777},
+        {"coulomb_friction.force": 210.0, "coulomb_friction.acts_from": 0.888, "coulomb_friction.acts_until": 2.3,
+         "position_sensor_lag.time_constant": 0.01, "position_sensor_lag.acts_from": 1.111},
     ]  # fmt: skip
     sets = [nominal_values() | change for change in changes_of]
     return [(values, shooting.initial_states + k * STATE_STEP) for k, values in enumerate(sets)]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eha_core.plant import Plant
-from eha_core.plant.active_intervals import intervals
+from eha_core.plant.active_intervals import instants, intervals
 
 FRICTION = {"coulomb_friction.force": 300.0}
 SPAN = {"effects_from": 0.0503, "effects_until": 0.1201}
@@ -26,6 +26,24 @@ def test_an_effect_of_a_span_is_one_switched_on_and_off_by_hand() -> None:
     assert np.array_equal(whole, np.concatenate(by_hand))
 
 
+def test_each_effect_acts_in_its_own_span_of_that_of_all() -> None:
+    """A lag from 30 ms on, friction from 50.3 to 90 ms, a load to 120.1 ms, all between 20 and 150 ms."""
+    voltages = sine(2000)
+    switched = {"coulomb_friction.force": 300.0, "constant_load.force": 200.0,
+                "position_sensor_lag.time_constant": 0.02}  # fmt: skip
+    acts = {"coulomb_friction.acts_from": 0.0503, "coulomb_friction.acts_until": 0.09,
+            "constant_load.acts_until": 0.1201, "position_sensor_lag.acts_from": 0.03,
+            "effects_from": 0.02, "effects_until": 0.15}  # fmt: skip
+    whole = Plant(switched | acts).run(voltages).values
+    plant, off = Plant(), dict.fromkeys(switched, 0.0)
+    by_hand = []
+    for until, on in ((200, ""), (300, "constant"), (503, "constant position"), (900, "constant position coulomb"),
+                      (1201, "constant position"), (1500, "position"), (2000, "")):  # fmt: skip
+        plant.set_parameters(off | {name: value for name, value in switched.items() if name.split("_")[0] in on})
+        by_hand.append(plant.run(voltages[plant.step_count : until]).values)
+    assert np.array_equal(whole, np.concatenate(by_hand))
+
+
 @pytest.mark.parametrize("every", [1, 7, 100, 698, 1500])
 def test_rows_lie_as_they_would_without_a_span(every: int) -> None:
     thinned, whole = (Plant(FRICTION | SPAN).run(sine(2000), each).values for each in (every, 1))
@@ -42,15 +60,23 @@ def test_a_lag_begins_from_the_position_when_it_begins_to_act() -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "count", "every", "acting"), [(0, 30, 4, (10, 23)), (5, 17, 5, (6, 7)), (3, 9, 100, (4, 8))]
+    ("first", "count", "every", "spans"),
+    [(0, 30, 4, ((10, 23), (0, 0))), (5, 17, 5, ((6, 7), (0, 20))), (3, 9, 100, ((4, 8), (7, 900), (8, 5)))],
 )
-def test_every_step_and_every_row_comes_once(first: int, count: int, every: int, acting: tuple[int, int]) -> None:
+def test_every_step_and_every_row_comes_once(first, count, every, spans) -> None:
     steps, rows = [], []
-    for interval in intervals(first, count, every, acting):
+    for interval in intervals(first, count, every, spans):
         here = range(interval.steps.start, interval.steps.stop)
         steps += here
         rows += range(interval.rows.start, interval.rows.stop)
         assert len(here) // interval.every == interval.rows.stop - interval.rows.start
-        assert {acting[0] <= first + step < acting[1] for step in here} == {interval.acting}
+        for step in here:
+            assert interval.acting == tuple(begin <= first + step < end for begin, end in spans)
+        begins = [first + here[0] == begin > 0 and begin < end for begin, end in spans]
+        assert interval.beginning == tuple(begins)
     assert steps == list(range(count))
     assert rows == list(range(count // every))
+
+
+def test_what_is_off_cuts_nothing() -> None:
+    assert instants([(0, 0), (8, 5), (4, 9)]) == {4, 9}

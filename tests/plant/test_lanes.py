@@ -97,6 +97,8 @@ def test_every_lane_has_a_span_of_its_own() -> None:
     friction = {"coulomb_friction.force": 300.0, "position_sensor_lag.time_constant": 0.02}
     spans = [(0.0, 1e9), (0.0503, 0.1201), (0.1, 0.2), (0.1201, 1e9)]
     sets = [{**friction, "effects_from": start, "effects_until": stop} for start, stop in spans]
+    sets += [{**friction, "coulomb_friction.acts_from": start, "position_sensor_lag.acts_until": stop}
+             for start, stop in spans]  # fmt: skip
     voltages = command(0.15)
     assert together(sets, voltages, 7, len(COLUMNS)).tobytes() == alone(sets, voltages, 7).tobytes()
 

@@ -9,7 +9,7 @@ from importlib import import_module
 from eha_core.effects import SITES, Effect, effects
 from eha_core.errors import ParameterError, remedy
 from eha_core.parameter import Parameter
-from eha_core.parameters import catalogue
+from eha_core.parameters import acting_rows, catalogue
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -46,9 +46,9 @@ def _listing() -> str:
 
 
 def _one(effect: Effect) -> str:
-    rows = zip(effect.parameter_names(), effect.parameters, strict=True)
+    rows = {**dict(zip(effect.parameter_names(), effect.parameters, strict=True)), **acting_rows(effect)}
     lines = [f"{effect.id} ({effect.site})", "", _docstring(effect), "", effect.equation, ""]
-    return "\n".join([*lines, *(_row(name, row) for name, row in rows)])
+    return "\n".join([*lines, *(_row(name, row) for name, row in rows.items())])
 
 
 def _row(name: str, row: Parameter) -> str:

@@ -11,6 +11,9 @@ from eha_core.quantities import Quantity
 MEMORY_STARTS = ("zero", "current", "position", "velocity", "pressure_a", "pressure_b")
 """What a memory slot of an effect can hold when the effect begins to act."""
 
+ACTS = ("acts_from", "acts_until")
+"""What follows an effect's id in the names of when it begins and ceases to act."""
+
 ASSUMED = "assumed: an order of magnitude for a bench actuator"
 
 
@@ -45,6 +48,10 @@ class Effect:
     def parameter_names(self) -> tuple[str, ...]:
         """Full names, `<effect id>.<parameter>`, as ROS and parameter files carry them."""
         return tuple(f"{self.id}.{row.name}" for row in self.parameters)
+
+    def acting_names(self) -> tuple[str, ...]:
+        """Full names of when it begins and ceases to act [s]; none of a curve's, which always acts."""
+        return tuple(f"{self.id}.{name}" for name in ACTS) if self.named else ()
 
     def is_active(self, values: Mapping[str, float]) -> bool:
         """True unless every parameter that switches the effect stands at its neutral, that is nominal, value."""

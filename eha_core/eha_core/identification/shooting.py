@@ -16,9 +16,9 @@ import numpy as np
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.per_recording import values_of
 from eha_core.plant import PAPER, Composition
-from eha_core.plant.active_intervals import intervals, span
+from eha_core.plant.active_intervals import intervals, spans
 from eha_core.plant.composite import compiled_step
-from eha_core.plant.memory import starting_memory, trailing
+from eha_core.plant.memory import start_memory, starting_memory, trailing
 from eha_core.plant.one_by_one import side_by_side
 from eha_core.plant.simulator import LONGEST_DELAY, pack
 from eha_core.plant.state import AT, COLUMNS, PISTON, SEEN, Places
@@ -126,7 +126,7 @@ class Shooting:
             change: pack({**values, "internal_leakage": values["internal_leakage"] + change}, self.step_size)
             for change in changes
         }
-        acting = span(values, self.step_size)
+        acting = spans(values, next(iter(packed.values()))[1], self.step_size)
         start = int(self.edges[windows.start])
         first = self.inputs[0, start]
         current = min(
@@ -140,24 +140,23 @@ class Shooting:
         memory = starting_memory(current, states[windows.start])
         for window in windows:
             begin, end = int(self.edges[window]), int(self.edges[window + 1])
-            vector, active, valve = packed[float(self.leakage[window])]
-            none = (False,) * len(active)
+            vector, _, valve = packed[float(self.leakage[window])]
             state[AT.time] = (begin - start) * self.step_size
             state[PISTON] = states[window]
             memory[trailing().slots] = self.initial_states[window, trailing().states]
             inputs, out = self.inputs[:, begin:end], rows[begin // self.every : end // self.every]
             for interval in intervals(begin - start, end - begin, self.every, acting):
-                if interval.acting and begin - start + interval.steps.start == acting[0] > 0:
-                    memory = starting_memory(state[AT.current], state[PISTON])
-                effects_on, piece = active if interval.acting else none, inputs[:, interval.steps]
+                if any(interval.beginning):
+                    start_memory(memory, interval.beginning, state[AT.current], state[PISTON])
+                piece = inputs[:, interval.steps]
                 if self.drive == "voltage":
                     step.advance(
-                        state, memory, history, vector, effects_on, valve, piece[0], self.step_size, interval.every,
-                        out[interval.rows],
+                        state, memory, history, vector, interval.acting, valve, piece[0], self.step_size,
+                        interval.every, out[interval.rows],
                     )  # fmt: skip
                 else:
                     step.advance_driven(
-                        state, memory, vector, effects_on, piece[0], piece[1], self.step_size, interval.every,
+                        state, memory, vector, interval.acting, piece[0], piece[1], self.step_size, interval.every,
                         out[interval.rows],
                     )  # fmt: skip
             ends[window] = state[PISTON]

@@ -1,24 +1,45 @@
-"""The time in which the catalogue's effects act, and steps cut where it begins and ends."""
+"""The time in which each of the catalogue's effects acts, and steps cut where one begins or ceases to."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+from eha_core.effects import effects
+
+NEVER = (0, 0)
+
+Spans = tuple[tuple[int, int], ...]
+"""Of each effect, in the catalogue's order: the first step in which it acts, and the first in which it no longer does.
+One that is switched off never acts."""
+
 
 class Interval(NamedTuple):
-    """Steps in a row that the effects act in, or do not: which steps, how many make a row, and which rows they fill."""
+    """Steps in a row in which the same effects act: which steps, how many make a row, which rows they fill, whether
+    each effect acts, and whether it begins to with the first of them."""
 
     steps: slice
     every: int
     rows: slice
-    acting: bool
+    acting: tuple[bool, ...]
+    beginning: tuple[bool, ...]
 
 
-def span(values: Mapping[str, float], step_size: float) -> tuple[int, int]:
-    """The first step in which the effects act, and the first in which they no longer do."""
-    return round(values["effects_from"] / step_size), round(values["effects_until"] / step_size)
+def spans(values: Mapping[str, float], active: Sequence[bool], step_size: float) -> Spans:
+    """When each effect acts, of those that are switched on (`active`, in the catalogue's order)."""
+    since, until = values["effects_from"], values["effects_until"]
+    found = []
+    for effect, switched_on in zip(effects(), active, strict=True):
+        own = [values[name] for name in effect.acting_names()] if switched_on else []
+        begin, end = (max(since, own[0]), min(until, own[1])) if own else (since, until)
+        found.append((round(begin / step_size), round(end / step_size)) if switched_on else NEVER)
+    return tuple(found)
+
+
+def instants(found: Iterable[tuple[int, int]]) -> set[int]:
+    """The steps with which some effect begins or ceases to act."""
+    return {step for begin, end in found if begin < end for step in (begin, end)}
 
 
 class Piece(NamedTuple):
@@ -29,12 +50,12 @@ class Piece(NamedTuple):
     rows: slice
 
 
-def pieces(first: int, count: int, every: int, instants: Iterable[int]) -> Iterator[Piece]:
+def pieces(first: int, count: int, every: int, cut_at: Iterable[int]) -> Iterator[Piece]:
     """Cut `count` steps, the first of them step `first` of the record, at these steps of the record.
 
     Steps and rows are counted from the first. Every `every`-th step fills a row, wherever the cuts lie.
     """
-    cuts = sorted({0, count, *(instant - first for instant in instants if 0 < instant - first < count)})
+    cuts = sorted({0, count, *(instant - first for instant in cut_at if 0 < instant - first < count)})
     for begin, end in pairwise(cuts):
         whole = min(-(-begin // every) * every, end)
         if begin < whole:  # the row that the last piece began
@@ -45,7 +66,10 @@ def pieces(first: int, count: int, every: int, instants: Iterable[int]) -> Itera
             yield Piece(slice(whole, end), every, slice(whole // every, end // every))
 
 
-def intervals(first: int, count: int, every: int, acting: tuple[int, int]) -> Iterator[Interval]:
-    """Cut steps, as `pieces` does, where the effects begin and cease to act."""
-    for piece in pieces(first, count, every, acting):
-        yield Interval(*piece, acting[0] <= first + piece.steps.start < acting[1])
+def intervals(first: int, count: int, every: int, found: Spans) -> Iterator[Interval]:
+    """Cut steps, as `pieces` does, where an effect begins or ceases to act."""
+    for piece in pieces(first, count, every, instants(found)):
+        at = first + piece.steps.start
+        acting = tuple(begin <= at < end for begin, end in found)
+        beginning = tuple(0 < begin == at < end for begin, end in found)
+        yield Interval(*piece, acting, beginning)

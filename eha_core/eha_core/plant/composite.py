@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numba
 
 from eha_core.effects import SITES, effects
-from eha_core.parameters import NOMINAL, catalogue
+from eha_core.parameters import NOMINAL, step_rows
 from eha_core.plant import hooks, lane_hooks
 from eha_core.plant.lane_rows import LANES, PARAMETERS
 from eha_core.plant.parts import Source, parts
@@ -95,7 +95,7 @@ def write_source() -> str:
         arguments = ", ".join([full, *(f"{source.id}_{row.name}" for row in source.own)])
         lines += [f"    if number == {number}.0:"] if number < last else []
         lines += [f"{'        ' if number < last else '    '}return {source.id}({arguments})"]
-    places = [f"parameters[{len(catalogue()) + k}]" for k in range(len(own))]
+    places = [f"parameters[{len(step_rows()) + k}]" for k in range(len(own))]
     lines += ["", "", "@inlined", f"def ports(given, {head.format('')}, parameters):"]
     lines += [f"    return delivered({', '.join(['parameters[-1]', head.format('given[0], given[1], '), *places])})"]
     return "\n".join([*lines, *_write_feed(own, places)]) + "\n"
@@ -154,7 +154,7 @@ class Layout(NamedTuple):
 @cache
 def layout() -> Layout:
     """The block of the lock-step with every effect of the catalogue."""
-    memory = PARAMETERS + len(catalogue()) * LANES
+    memory = PARAMETERS + len(step_rows()) * LANES
     acts = memory + sum(len(effect.memory) for effect in effects()) * LANES
     return Layout(memory, acts, acts + len(effects()) * LANES)
 

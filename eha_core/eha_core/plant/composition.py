@@ -9,7 +9,7 @@ from functools import cache, cached_property
 from eha_core.effects import Effect, effects
 from eha_core.errors import ParameterError, remedy
 from eha_core.parameter import Parameter
-from eha_core.parameters import ACTING, NOMINAL, PAPER_PARTS, catalogue, changed, check_supply
+from eha_core.parameters import ACTING, NOMINAL, PAPER_PARTS, acting_rows, catalogue, changed, check_supply
 from eha_core.plant.parts import FOLDERS, Cylinder, Load, Part, Source, part, parts
 
 TURNING = {
@@ -66,7 +66,10 @@ class Composition:
         found = {name: mine[name] for name in (*order, *(name for name in mine if name not in order))}
         for effect in self.effects:
             found.update(zip(effect.parameter_names(), effect.parameters, strict=True))
-        return found | {row.name: row for row in ACTING}
+        found |= {row.name: row for row in ACTING}
+        for effect in self.effects:
+            found |= acting_rows(effect)
+        return found
 
     def _rows_of_parts(self) -> dict[str, Parameter]:
         nominal = {row.name: row for row in NOMINAL}

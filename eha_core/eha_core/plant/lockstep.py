@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.effects import effects
-from eha_core.plant.active_intervals import pieces, span
+from eha_core.plant.active_intervals import instants, pieces, spans
 from eha_core.plant.composite import compiled_lanes, layout
 from eha_core.plant.lane_rows import (
     CURRENT,
@@ -43,8 +43,9 @@ class LockStep:
         self.step_size = step_size
         filled = [*sets, *[sets[-1]] * (self.lanes - len(sets))]
         packed = [pack(values, step_size) for values in filled]
-        self._acting = [span(values, step_size) for values in filled]
-        self._active = np.array([active for _, active, _ in packed])
+        pairs = zip(filled, packed, strict=True)
+        self._spans = np.array([spans(values, active, step_size) for values, (_, active, _) in pairs])
+        self._instants = instants(map(tuple, self._spans.reshape(-1, 2).tolist()))
         self._leakage = np.array([values["internal_leakage"] for values in filled])
         self._block = np.zeros(layout().end)
         self._memory = list(self._memory_rows())
@@ -60,13 +61,14 @@ class LockStep:
         self._history[-1] = 0
         self._kernel = compiled_lanes()
 
-    def _memory_rows(self) -> Iterator[tuple[str, Array]]:
-        """What each memory slot starts from, and its values in all lanes: a lane's slots of one effect lie together."""
+    def _memory_rows(self) -> Iterator[tuple[int, str, Array]]:
+        """Which effect each memory slot is of, what it starts from, and its values in all lanes: a lane's slots of one
+        effect lie together."""
         place = layout().memory
-        for effect in effects():
+        for number, effect in enumerate(effects()):
             size = len(effect.memory) * LANES
             slots = self._block[place : place + size].reshape(LANES, -1)[: self.lanes]
-            yield from zip(effect.memory, slots.T, strict=True)
+            yield from ((number, *slot) for slot in zip(effect.memory, slots.T, strict=True))
             place += size
 
     def _fill(self, place: int, rows: Array) -> None:
@@ -85,19 +87,20 @@ class LockStep:
         """From now on the internal leakage coefficient is `change` above that of the parameters."""
         self._fill(STATED_LEAKAGE, self._leakage[None] + change)
 
-    def start_memory(self, lanes: NDArray[np.bool_] | None = None) -> None:
-        """The effects' own states as they are where the effects begin to act: in all lanes, or in these."""
-        chosen = np.ones(self.lanes, dtype=np.bool_) if lanes is None else lanes
+    def start_memory(self, beginning: NDArray[np.bool_] | None = None) -> None:
+        """The effects' own states as they are where the effects begin to act: all of them, or these (lanes,
+        effects)."""
         starts = {"current": CURRENT, "position": POSITION, "velocity": VELOCITY, "pressure_a": PRESSURE_A,
                   "pressure_b": PRESSURE_B}  # fmt: skip
-        for kind, slot in self._memory:
+        for number, kind, slot in self._memory:
+            chosen = slice(None) if beginning is None else beginning[:, number]
             slot[chosen] = 0.0 if kind == "zero" else self._rows[starts[kind] // LANES, chosen]
 
     def start_sensors(self, shown: Array) -> None:
         """Sensors that trail what they measure begin anew from what they showed: position, velocity, pressure A and
         pressure B."""
         for slot, state in zip(*trailing(), strict=True):
-            self._memory[slot][1][:] = shown[state]
+            self._memory[slot][2][:] = shown[state]
 
     def advance(self, first: int, inputs: Array, every: int, out: Array) -> None:
         """Take a step for each column of `inputs`, the first of them step `first` of the record.
@@ -106,12 +109,13 @@ class LockStep:
         columns, lanes), columns either four (what the sensors say) or, under a voltage, all of COLUMNS.
         """
         self._rows[TIME // LANES] = first * self.step_size
-        for piece in pieces(first, inputs.shape[1], every, {instant for pair in self._acting for instant in pair}):
-            begin = first + piece.steps.start
-            starting = np.array([begin == start > 0 for start, _ in self._acting])
-            if starting.any():
-                self.start_memory(starting)
-            acts = self._active.T & np.array([start <= begin < stop for start, stop in self._acting])
+        starts, stops = self._spans[:, :, 0], self._spans[:, :, 1]
+        for piece in pieces(first, inputs.shape[1], every, self._instants):
+            at = first + piece.steps.start
+            beginning = (starts == at) & (starts > 0) & (starts < stops)
+            if beginning.any():
+                self.start_memory(beginning)
+            acts = ((starts <= at) & (at < stops)).T
             self._fill(layout().acts, acts.astype(np.float64))
             active = sum(1 << index for index in np.flatnonzero(acts.any(axis=1)).tolist())
             given, rows = inputs[:, piece.steps], out[piece.rows]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -19,6 +20,13 @@ def starting_memory(current: float, piston: Array) -> Array:
     """The effects' states at a valve current [A] and a piston's state (position, velocity, pressure A, pressure B)."""
     starts = {"zero": 0.0, "current": current, **dict(zip(PISTON_STATES, piston, strict=True))}
     return np.array([starts[kind] for effect in effects() for kind in effect.memory] or [0.0])
+
+
+def start_memory(memory: Array, chosen: Sequence[bool], current: float, piston: Array) -> None:
+    """Put the states of the chosen effects (catalogue order) where they are when an effect begins to act."""
+    starting = starting_memory(current, piston)
+    take = [one for effect, one in zip(effects(), chosen, strict=True) for _ in effect.memory] or [True]
+    memory[take] = starting[take]
 
 
 class Trailing(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.effects import effects
-from eha_core.plant.active_intervals import pieces, span
+from eha_core.plant.active_intervals import instants, pieces, spans
 from eha_core.plant.composite import compiled_given_step
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.lockstep import LockStep
@@ -31,8 +31,7 @@ class OneByOne:
         self._composition = composition
         self._sets = list(sets)
         self._kernel = compiled_given_step()
-        self._acting = [span(values, step_size) for values in sets]
-        self._kinds = [kind for effect in effects() for kind in effect.memory]
+        self._kinds = [(number, kind) for number, effect in enumerate(effects()) for kind in effect.memory]
         self._states = np.zeros((len(sets), len(Places._fields)))
         self._memories = np.zeros((len(sets), max(1, len(self._kinds))))
         self._history = np.zeros(2)  # of voltages, of which there are none
@@ -42,6 +41,8 @@ class OneByOne:
             rests = "return_pressure" if composition.source.line else "supply_pressure"
             state[AT.supply_pressure], state[AT.return_pressure] = values[rests], values["return_pressure"]
         self.add_leakage(0.0)
+        pairs = zip(sets, self._packed, strict=True)
+        self._spans = np.array([spans(values, active, step_size) for values, (_, active, _) in pairs])
 
     def place(self, states: Array) -> None:
         """As `LockStep.place`."""
@@ -56,11 +57,11 @@ class OneByOne:
         leaking = [{**values, "internal_leakage": values["internal_leakage"] + change} for values in self._sets]
         self._packed = [pack(values, self.step_size, self._composition) for values in leaking]
 
-    def start_memory(self, lanes: NDArray[np.bool_] | None = None) -> None:
+    def start_memory(self, beginning: NDArray[np.bool_] | None = None) -> None:
         """As `LockStep.start_memory`."""
         for lane in range(self.lanes):
-            if lanes is None or lanes[lane]:
-                for slot, kind in enumerate(self._kinds):
+            for slot, (number, kind) in enumerate(self._kinds):
+                if beginning is None or beginning[lane, number]:
                     self._memories[lane, slot] = 0.0 if kind == "zero" else self._states[lane, getattr(AT, kind)]
 
     def start_sensors(self, shown: Array) -> None:
@@ -71,17 +72,18 @@ class OneByOne:
         """As `LockStep.advance`, inputs (1 or 2, steps) being those of the source."""
         given = step_inputs(inputs.T, self._composition.source)
         self._states[:, AT.time] = first * self.step_size
-        for piece in pieces(first, len(given), every, {instant for pair in self._acting for instant in pair}):
-            begin = first + piece.steps.start
-            starting = np.array([begin == start > 0 for start, _ in self._acting])
-            if starting.any():
-                self.start_memory(starting)
-            for lane, (vector, active, valve) in enumerate(self._packed):
-                acts = self._acting[lane][0] <= begin < self._acting[lane][1]
+        starts, stops = self._spans[:, :, 0], self._spans[:, :, 1]
+        for piece in pieces(first, len(given), every, instants(map(tuple, self._spans.reshape(-1, 2).tolist()))):
+            at = first + piece.steps.start
+            beginning = (starts == at) & (starts > 0) & (starts < stops)
+            if beginning.any():
+                self.start_memory(beginning)
+            acting = (starts <= at) & (at < stops)
+            for lane, (vector, _, valve) in enumerate(self._packed):
                 rows = np.empty(out[piece.rows].shape[:2])
                 self._kernel.advance(
                     self._states[lane], self._memories[lane], self._history, vector,
-                    active if acts else (False,) * len(active), valve, given[piece.steps], self.step_size,
+                    tuple(acting[lane].tolist()), valve, given[piece.steps], self.step_size,
                     piece.every, rows,
                 )  # fmt: skip
                 out[piece.rows, :, lane] = rows

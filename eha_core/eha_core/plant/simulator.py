@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from math import expm1, isfinite
+from math import expm1, inf, isfinite
 from types import MappingProxyType, ModuleType
 
 import numpy as np
@@ -14,12 +14,12 @@ from scipy.linalg import expm
 
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
-from eha_core.parameters import catalogue
-from eha_core.plant.active_intervals import intervals, span
+from eha_core.parameters import step_rows
+from eha_core.plant.active_intervals import intervals, spans
 from eha_core.plant.composite import compiled_given_step, compiled_step, given_names, given_sources
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.given import VALVES
-from eha_core.plant.memory import starting_memory
+from eha_core.plant.memory import start_memory
 from eha_core.plant.parts import Source
 from eha_core.plant.state import AT, COLUMNS, PISTON, Places, Row
 
@@ -91,19 +91,20 @@ def pack(values: Mapping[str, float], step_size: float, composition: Composition
     follow those of the catalogue.
     """
     active = tuple(effect.is_active(values) for effect in effects())
+    vector = tuple(values[name] for name in step_rows())
     source = composition.source
     if source.valve == "coil" or source.given:
         valve = propagator(
             values["coil_resistance"], values["coil_inductance"], values["valve_damping_ratio"],
             values["valve_natural_frequency"], step_size,
         )  # fmt: skip
-        return tuple(values.values()), active, valve
+        return vector, active, valve
     spool = source.switched or ("valve_damping_ratio", "valve_natural_frequency")
     valve = held_propagator(values[spool[0]], values[spool[1]], step_size)
     own = [values.get(name.partition(".")[2], 0.0) for name in given_names()[:-3]]
     number = [one.id for one in given_sources()].index(source.id)
     last = (float(source.line), VALVES["sign" if source.switched else source.valve], float(number))
-    return (*(values[name] for name in catalogue()), *own, *last), active, valve
+    return (*vector, *own, *last), active, valve
 
 
 def check_step_size(step_size: float) -> None:
@@ -161,7 +162,6 @@ class Plant:
         self._kernel = _kernel(composition.source)
         self._hidden = [COLUMNS.index(name) for name in composition.source.hides]
         self._take(composition.changed(composition.nominal_values(), parameters or {}))
-        self._none = (False,) * len(self._active)
         self._row = np.zeros((1, len(COLUMNS)))
         self._held = np.empty(0)  # the voltages of a tick, kept from one to the next
         self.reset(initial_position)
@@ -175,7 +175,9 @@ class Plant:
         """Put these values in force."""
         self._values, self._places = values, self.composition.places(values)
         self._vector, self._active, self._propagator = pack(self._places, self.step_size, self.composition)
-        self._span = span(self._places, self.step_size)
+        self._spans = spans(self._places, self._active, self.step_size)
+        on = [span for span, switched_on in zip(self._spans, self._active, strict=True) if switched_on]
+        self._all_act = max((begin for begin, _ in on), default=0), min((end for _, end in on), default=inf)
 
     def set_parameters(self, changes: Mapping[str, float]) -> None:
         """Apply `changes` from the next step on, all of them or, raising ParameterError, none."""
@@ -220,9 +222,7 @@ class Plant:
         self._state[PISTON] = min(max(position, -stroke), stroke), velocity, pressure_a, pressure_b
 
     def _start_memory(self, chosen: Sequence[bool]) -> None:
-        starting = starting_memory(self._state[AT.current], self._state[PISTON])
-        take = [one for effect, one in zip(effects(), chosen, strict=True) for _ in effect.memory] or [True]
-        self._memory[take] = starting[take]
+        start_memory(self._memory, chosen, self._state[AT.current], self._state[PISTON])
 
     @property
     def time(self) -> float:
@@ -246,7 +246,7 @@ class Plant:
     def _quickly(self, given: float | Sequence[float], steps: int) -> bool:
         """A simulator's tick under a voltage: what is checked and cut for whole records would cost it more than the
         steps do. Whether it could be taken."""
-        begin, end = self._span
+        begin, end = self._all_act
         if not isinstance(given, float | int) or not isfinite(given) or begin > 0 or self.step_count + steps > end:
             return False
         if len(self._held) != steps:
@@ -273,11 +273,10 @@ class Plant:
 
     def _run(self, inputs: Array, every: int, rows: Array) -> None:
         self._state[AT.time] = self.time
-        for interval in intervals(self.step_count, len(inputs), every, self._span):
-            if interval.acting and self.step_count + interval.steps.start == self._span[0] > 0:
-                self._start_memory([True] * len(effects()))
-            active = self._active if interval.acting else self._none
-            self._steps(inputs[interval.steps], interval.every, rows[interval.rows], active)
+        for interval in intervals(self.step_count, len(inputs), every, self._spans):
+            if any(interval.beginning):
+                self._start_memory(interval.beginning)
+            self._steps(inputs[interval.steps], interval.every, rows[interval.rows], interval.acting)
         self.step_count += len(inputs)
         if self._hidden:
             rows[:, self._hidden] = np.nan
