@@ -10,6 +10,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -163,6 +164,16 @@ def test_axes_of_one_unit_have_one_scale() -> None:
     assert (panel.x_label, panel.y_label) == ("spool position [mA]", "Opening [mA]")
     (line,) = (mark for mark in panel.marks if isinstance(mark, Line))
     assert np.allclose([*line.x, *line.y], [-1.2, 0.0, 1.2, -0.9, 0.0, 0.9])
+
+
+def test_points_are_explained_where_there_are_some() -> None:
+    x = np.array([-0.1, 0.1])
+    law = Law("Constant load", Axis("velocity", "m/s"), Axis("Force", "N"), x, x, x, x)
+    diagnosis: Any = None  # not asked, where its laws are given
+    for one, told in ((law, False), (replace(law, points_x=x, points_y=x), True)):
+        picture = law_picture(diagnosis, {"constant_load": one})
+        assert picture is not None
+        assert ("Points:" in picture.caption) == told
 
 
 def test_a_per_cent_sign_stands_apart_from_its_number(friction: Diagnosis) -> None:

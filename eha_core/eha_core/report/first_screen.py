@@ -55,9 +55,13 @@ def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) ->
     columns = (1,) * min(ABREAST, len(found))
     caption = (
         "Solid: the law as fitted, with the 95 % band of its parameters (which may be narrower than the line). Dashed:"
-        " the nominal model. Points: the law as the measured channels give it by the law's equation, without any"
-        " simulation; of a force, where the piston neither stops nor reverses."
+        " the nominal model."
     )
+    if any(len(one.points_x) for one in found.values()):
+        caption += (
+            " Points: the law as the measured channels give it by the law's equation, without any simulation; of a"
+            " force, where the piston neither stops nor reverses."
+        )
     return Picture(
         "0-laws", tuple(Group((law_panel(one),)) for one in found.values()), columns, "The missing physics", caption
     )
