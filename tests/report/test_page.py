@@ -208,6 +208,20 @@ def test_hypotheses_whose_fits_stopped_short_are_said_to_have(friction: Diagnosi
     assert "left before" not in caption(-12.0)  # what parameters cost
 
 
+def test_where_nothing_is_named_no_hypothesis_has_the_colour_of_a_name(unknown: Diagnosis, friction: Diagnosis) -> None:
+    def told(diagnosis: Diagnosis) -> tuple[set[str], str]:
+        picture = evidence_picture(diagnosis)
+        (bars,) = (mark for mark in picture.groups[0].panels[0].marks if isinstance(mark, Bars))
+        return set(bars.roles), picture.caption
+
+    scored = replace(unknown, rivals=((("quadratic_damping",), 2e4), (("coulomb_friction",), 1e4)))
+    roles, caption = told(scored)
+    assert roles == {"other"}
+    assert "None of these explains enough" in caption and "what was named" not in caption
+    roles, caption = told(friction)
+    assert "after" in roles and "what was named" in caption
+
+
 def test_an_unknown_law_is_drawn_and_written(unknown: Diagnosis) -> None:
     stage = {one.name: one for one in story(unknown)}["model"]
     assert stage.code == "250 tanh(20 v)"

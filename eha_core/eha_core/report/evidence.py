@@ -24,6 +24,8 @@ STOPPED_SHORT = 100.0
 """How far behind the model that adds nothing a hypothesis is only where its fit was not taken to its end: what its
 parameters cost is less than that (assumed)."""
 
+COLOURED = "Teal: what was named; ochre: what cannot be told from it."
+UNNAMED = "None of these explains enough of what is missing to be named."
 STOPPED = " What is further behind than the model that adds nothing was left before its fit had come to its end."
 
 MILLION = 1e6
@@ -63,8 +65,10 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
     top = max(best, 0.0)
     behind = np.array([top - score for _, _, score in ranked])
     tied = [set(one.effects) for one in diagnosis.alternatives]
+    unnamed = diagnosis.verdict == "unknown_physics" and not chosen
     roles = tuple(
-        "after" if effects == chosen else "calibrated" if effects in tied else "other" for _, effects, _ in ranked
+        "after" if effects == chosen and not unnamed else "calibrated" if effects in tied else "other"
+        for _, effects, _ in ranked
     )
     texts = tuple(behind_in_words(one) for one in behind)
     short = min(score for _, _, score in ranked) < -STOPPED_SHORT
@@ -80,8 +84,8 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
     )
     caption = (
         "Evidence is the gain in χ² less what the parameters added cost; shown is how far each hypothesis is behind the"
-        " best. Left of the dotted line the recording cannot tell the two apart. Teal: what was named; ochre: what"
-        f" cannot be told from it.{STOPPED if short else ''} {_screened(diagnosis)}"
+        f" best. Left of the dotted line the recording cannot tell the two apart. {UNNAMED if unnamed else COLOURED}"
+        f"{STOPPED if short else ''} {_screened(diagnosis)}"
     )
     return Picture(name, (Group((panel,)),), title=title, caption=caption)
 
