@@ -11,6 +11,12 @@ import numpy as np
 
 mpl.use("Agg")
 SHOWN = 2.0  # s of error drawn
+LINEAR = 10.0  # µm; errors beyond that are drawn on a logarithmic scale
+
+
+def titled(rig: str) -> str:
+    """A rig with the unit of its leakage."""
+    return f"{rig} m³/(s Pa)" if rig.startswith("leakage") else rig
 
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
@@ -26,8 +32,8 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
             time, error = np.array(row["errors"]).T
             inside = time <= time[0] + SHOWN
             axes.plot(time[inside], 1e6 * error[inside], color=colours[row["controller"]], lw=1)
-        axes.set(title=rig, xlabel="time [s]", ylabel="position error [µm]")
-        axes.set_yscale("symlog", linthresh=10)
+        axes.set(title=titled(rig), xlabel="time [s]", ylabel=f"position error [µm], linear within {LINEAR:g}")
+        axes.set_yscale("symlog", linthresh=LINEAR)
         axes.grid(alpha=0.3)
     width = 0.8 / len(names)
     for number, name in enumerate(names):
@@ -35,7 +41,7 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
         places = [rigs.index(rig) + number * width - 0.4 + width / 2 for rig in found]
         right.bar(places, list(found.values()), width, color=colours[name], label=name)
     right.set_xticks(range(len(rigs)), rigs, rotation=20)
-    right.set(yscale="log", ylabel="RMSE of the position [µm]", title="every rig")
+    right.set(yscale="log", ylabel="RMSE of the position [µm]", title="every rig, leakage in m³/(s Pa)")
     right.grid(alpha=0.3, axis="y")
     figure.legend(loc="outside lower center", ncols=len(names))
     figure.savefig(path, dpi=110)

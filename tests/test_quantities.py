@@ -17,6 +17,8 @@ from eha_core.quantities import Quantity, quantity, unit_text, with_deviation
         (2.1e7, "Pa", "21.0 MPa"),
         (1.4e9, "Pa", "1.40 GPa"),
         (-0.4, "V", "-400 mV"),
+        (9.997e3, "Pa", "10.0 kPa"),
+        (9.994e3, "Pa", "9.99 kPa"),
         (0.48, "-", "0.480"),
         (1e-12, "m^3/(s Pa)", "60.0 ml/min per MPa"),  # 1e-6 m^3/s at 1 MPa
         (3e10, "Pa s/m^3", "500 kPa per l/min"),  # a litre a minute is 1/60000 m^3/s

@@ -15,7 +15,7 @@ from eha_core.twin import Comparison, Settings, Twin
 NANOSECONDS = 1_000_000_000
 PERIOD = 0.002
 MULTISINE = {"amplitude": 0.12, "lowest": 0.3, "highest": 8.0, "count": 16, "period": 20.0, "seed": 5}
-CHAMBERS = {"chamber a", "chamber b"}
+CHAMBERS = {"chamber A", "chamber B"}
 
 
 def rig(seconds: float, noise: float = 1.0, **options: Any) -> Simulated:

@@ -19,7 +19,7 @@ from eha_core.plant import Trajectory
 Array = NDArray[np.float64]
 
 CHANNELS = ("position", "pressure_a", "pressure_b")
-EQUATIONS = ("force balance", "chamber a", "chamber b")
+EQUATIONS = ("force balance", "chamber A", "chamber B")
 
 _HALF_WIDTH = 0.06  # s of the bumps: averages noise, and is short against the time between two reversals
 _LOWEST_DROP = 1e5  # Pa over an orifice below which its flow is not corrected for the measured pressure
@@ -61,11 +61,11 @@ def equation_residuals(
     inertia = mass * curvature - damping * slope + spring * bump
     terms = {
         "force balance": ((bump, area_a * a - area_b * b), (-inertia, x)),
-        "chamber a": (
+        "chamber A": (
             (bump, more_a - leak * (a - b) - outside * a + area_a / bulk * model.velocity * a),
             (slope, area_a * x + volume_a / bulk * a),
         ),
-        "chamber b": (
+        "chamber B": (
             (bump, -more_b + leak * (a - b) - outside * b - area_b / bulk * model.velocity * b),
             (slope, -area_b * x + volume_b / bulk * b),
         ),
@@ -73,8 +73,8 @@ def equation_residuals(
     of_x, of_a, of_b = (noises[name] for name in CHANNELS)
     variances = {
         "force balance": _power(bump, (area_a * of_a) ** 2 + (area_b * of_b) ** 2) + _power(inertia, of_x**2),
-        "chamber a": _power(slope, (area_a * of_x) ** 2 + (float(np.mean(volume_a)) / bulk * of_a) ** 2),
-        "chamber b": _power(slope, (area_b * of_x) ** 2 + (float(np.mean(volume_b)) / bulk * of_b) ** 2),
+        "chamber A": _power(slope, (area_a * of_x) ** 2 + (float(np.mean(volume_a)) / bulk * of_a) ** 2),
+        "chamber B": _power(slope, (area_b * of_x) ** 2 + (float(np.mean(volume_b)) / bulk * of_b) ** 2),
     }
     return {
         name: sum(np.correlate(values, weight, mode="valid") for weight, values in parts) / np.sqrt(variances[name])

@@ -133,4 +133,5 @@ def short(value: float) -> str:
 def _rounded(value: float, digits: int) -> str:
     if value == 0.0 or not isfinite(value):
         return "0" if value == 0.0 else "-"
-    return f"{value:.{max(0, digits - 1 - floor(log10(abs(value))))}f}"
+    size = float(f"{abs(value):.{digits - 1}e}")  # rounded first, so that 9.997 is shown as 10.0 and not as 10.00
+    return f"{value:.{max(0, digits - 1 - floor(log10(size)))}f}"

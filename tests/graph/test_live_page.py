@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+import time
 import urllib.error
 import urllib.request
 from pathlib import Path
@@ -70,9 +71,13 @@ def test_a_browser_shows_position_pressures_and_the_twin_s_departure(rig: Rig, t
     url = serve(rig)
     joints = rig.node.create_publisher(JointState, "joint_states", 10)
     diagnostics = rig.node.create_publisher(DiagnosticArray, "/diagnostics", 10)
-    departure = "chamber a departs by 107 times the noise since 12.5 s"
+    departure = "chamber A departs by 107 times the noise since 12.5 s"
+    other, stamp = "; chamber B departs by 9 times the noise since", 1795256025.443
     status = DiagnosticStatus(
-        name="eha_twin", hardware_id=f"{rig.namespace}/eha_twin", level=DiagnosticStatus.WARN, message=departure
+        name="eha_twin",
+        hardware_id=f"{rig.namespace}/eha_twin",
+        level=DiagnosticStatus.WARN,
+        message=f"{departure}{other} {stamp} s",
     )
     joint = JointState(name=["piston"], position=[0.0321], velocity=[0.01], effort=[123.4])
     joint.header.stamp.sec = 12
@@ -95,4 +100,6 @@ def test_a_browser_shows_position_pressures_and_the_twin_s_departure(rig: Rig, t
     assert '<dd id="position">32.100 mm</dd>' in page
     assert '<dd id="force">123.4 N</dd>' in page
     assert re.search(r'transform="translate\((32\.1|32\.0999\d*)\)"', page)
-    assert f"twin: {departure}" in page and 'class="departs"' in page
+    time_of_day = time.strftime("%H:%M:%S", time.localtime(stamp))
+    assert f"twin: {departure}{other} {time_of_day}.4<" in page and 'class="departs"' in page
+    assert '<dd id="time">12.00 s</dd>' in page

@@ -40,7 +40,7 @@ def test_the_twin_names_the_equation_and_the_stamp(rig: Rig, tmp_path: Path) -> 
     warned = reports[-1]
     assert warned["level"] == str(b"\x01")
     assert warned["message"].startswith("chamber ") and "times the noise since" in warned["message"]
-    assert float(warned["departs since: chamber a"]) == pytest.approx(4.0, abs=0.1)
+    assert float(warned["departs since: chamber A"]) == pytest.approx(4.0, abs=0.1)
     assert float(warned["window_end"]) == pytest.approx(5.1, abs=0.01)
 
 

@@ -50,6 +50,9 @@ def hold_against(page: str, document: Document) -> None:
     answers = key_answers(page)
     if "How much better?" in answers:
         _better(document, *answers["How much better?"])
+    assert ("How close is the model?" in answers) == (document["verdict"] == "consistent" and bool(judged(document)))
+    if "How close is the model?" in answers:
+        _close(document, *answers["How close is the model?"])
     if "What is left?" in answers:
         _rest(document, re.fullmatch("(.*)", answers["What is left?"][0]))
         _ratios(document, answers["What is left?"][1])
@@ -219,6 +222,13 @@ def _better(document: Document, answer: str, basis: str) -> None:
     told = [float(one.replace(",", "")) * SCALES[unit] for one, unit in shown]
     assert np.allclose(told, [fit["rmse_before"], fit["rmse_after"], fit["noise"]], rtol=6e-3)
     assert ("kept from the fit" in basis) == bool(document["fit"]["held_out"])
+
+
+def _close(document: Document, answer: str, basis: str) -> None:
+    shown = re.findall(r"([\d.,]+) (\S+)", f"{answer} {basis.rpartition('noise is ')[2].rstrip('.')}")
+    name = "position" if "position" in judged(document) else next(iter(judged(document)))
+    told = [float(one.replace(",", "")) * SCALES[unit] for one, unit in shown]
+    assert np.allclose(told, [judged(document)[name][one] for one in ("rmse_before", "noise")], rtol=6e-3)
 
 
 def _sure(document: Document, answer: str, basis: str) -> None:

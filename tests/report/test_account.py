@@ -71,3 +71,24 @@ def test_stays_on_one_screen_however_much_there_is_to_say(ambiguous: Diagnosis) 
     assert len(lines) <= 25 + 4 * 6  # four more for each of the eight effects that can be named beyond the second
     assert len(account(replace(wordy, effects=ambiguous.effects[:2]), WRITTEN).splitlines()) <= 25
     assert max(map(len, lines)) <= 100
+
+
+def test_what_does_not_fit_ends_with_whole_items_and_their_number(friction: Diagnosis) -> None:
+    (mass,) = (one for one in friction.parameters if one.name == "moving_mass")
+    many = replace(friction, parameters=(mass,) * 7, remarks=("pressure_a: 3 outliers were set aside", "word " * 60))
+    lines = account(many).splitlines()
+    text = " ".join(" ".join(lines).split())
+    assert "(nominal 9.00 kg); moving_mass 10.946 ± 0.069 kg (nominal 9.00 kg); and 4 more RMSE" in text
+    assert "pressure_a: 3 outliers were set aside; and 1 more" in text
+    (cut,) = (line for line in account(replace(friction, summary="word " * 200)).splitlines() if line.endswith("…"))
+    assert cut.endswith("word …")
+
+
+def test_without_added_physics_there_is_no_column_for_it(friction: Diagnosis, consistent: Diagnosis) -> None:
+    def heading(diagnosis: Diagnosis) -> list[str]:
+        return next(line for line in account(diagnosis).splitlines() if line.startswith("RMSE")).split()
+
+    assert heading(friction)[-4:] == ["nominal", "recalibrated", "augmented", "noise"]
+    assert heading(consistent)[-3:] == ["nominal", "recalibrated", "noise"]
+    rows = (line for line in account(consistent).splitlines() if line.startswith("  p"))
+    assert {len(row.partition("]")[2].split()) for row in rows} == {3}

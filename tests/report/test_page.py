@@ -10,6 +10,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,12 +20,15 @@ import eha_core
 from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis, Pictures
 from eha_core.quantities import quantity
+from eha_core.report.evidence import evidence_picture
 from eha_core.report.figures import write_figures
-from eha_core.report.first_screen import law_picture, pictures
+from eha_core.report.first_screen import law_panel, law_picture, pictures
 from eha_core.report.html import page
-from eha_core.report.picture import Bars, Upright
+from eha_core.report.laws.law import Axis, Law
+from eha_core.report.picture import Bars, Line, Upright
 from eha_core.report.provenance import with_provenance
 from eha_core.report.stages import story
+from eha_core.report.wording import words
 
 ORDER = ["read", "calibrate", "locate", "name", "model", "show", "next"]
 
@@ -150,6 +154,72 @@ def test_numbers_on_the_page_are_those_of_the_diagnosis(friction: Diagnosis) -> 
 def test_headlines(kind: str, stage: str, headline: str, request: pytest.FixtureRequest) -> None:
     found = {one.name: one for one in story(request.getfixturevalue(kind))}
     assert found[stage].headline == headline
+
+
+def test_axes_of_one_unit_have_one_scale() -> None:
+    amperes = np.array([-1.2e-3, 0.0, 1.2e-3])
+    overlap = np.sign(amperes) * np.maximum(np.abs(amperes) - 3e-4, 0.0)
+    law = Law("Valve deadband", Axis("spool position", "A"), Axis("Opening", "A"), amperes, overlap, overlap, overlap)
+    panel = law_panel(law)
+    assert (panel.x_label, panel.y_label) == ("spool position [mA]", "Opening [mA]")
+    (line,) = (mark for mark in panel.marks if isinstance(mark, Line))
+    assert np.allclose([*line.x, *line.y], [-1.2, 0.0, 1.2, -0.9, 0.0, 0.9])
+
+
+def test_points_are_explained_where_there_are_some() -> None:
+    x = np.array([-0.1, 0.1])
+    law = Law("Constant load", Axis("velocity", "m/s"), Axis("Force", "N"), x, x, x, x)
+    diagnosis: Any = None  # not asked, where its laws are given
+    for one, told in ((law, False), (replace(law, points_x=x, points_y=x), True)):
+        picture = law_picture(diagnosis, {"constant_load": one})
+        assert picture is not None
+        assert ("Points:" in picture.caption) == told
+
+
+def test_a_per_cent_sign_stands_apart_from_its_number(friction: Diagnosis) -> None:
+    words = "".join(_read(page(friction)).words)
+    assert "93\N{NO-BREAK SPACE}% sits in the force balance" in words
+    assert not re.search(r"\d%", words)
+
+
+def test_parameters_that_are_hardly_told_are_as_many_as_the_sentence_says(friction: Diagnosis) -> None:
+    def said(*names: str) -> str:
+        told = tuple(replace(one, note="held" if one.name in names else "") for one in friction.parameters)
+        stage = {one.name: one for one in story(replace(friction, parameters=told))}["calibrate"]
+        return " ".join(stage.sentences)
+
+    first, second = (one.name for one in friction.parameters[:2])
+    assert f"{words(first)}; it stays near its nominal value." in said(first)
+    assert f"{words(second)}; they stay near their nominal values." in said(first, second)
+    assert "says little" not in said()
+
+
+def test_without_added_physics_no_model_is_called_augmented(consistent: Diagnosis) -> None:
+    text = "".join(_read(page(consistent)).words)
+    assert "recalibrated / noise" in text
+    assert "augmented" not in text.replace("augmented model and residuals", "")
+
+
+def test_hypotheses_whose_fits_stopped_short_are_said_to_have(friction: Diagnosis) -> None:
+    def caption(score: float) -> str:
+        return evidence_picture(replace(friction, rivals=(*friction.rivals, (("end_stop",), score)))).caption
+
+    assert "left before its fit had come to its end" in caption(-4.6e6)
+    assert "left before" not in caption(-12.0)  # what parameters cost
+
+
+def test_where_nothing_is_named_no_hypothesis_has_the_colour_of_a_name(unknown: Diagnosis, friction: Diagnosis) -> None:
+    def told(diagnosis: Diagnosis) -> tuple[set[str], str]:
+        picture = evidence_picture(diagnosis)
+        (bars,) = (mark for mark in picture.groups[0].panels[0].marks if isinstance(mark, Bars))
+        return set(bars.roles), picture.caption
+
+    scored = replace(unknown, rivals=((("quadratic_damping",), 2e4), (("coulomb_friction",), 1e4)))
+    roles, caption = told(scored)
+    assert roles == {"other"}
+    assert "None of these explains enough" in caption and "what was named" not in caption
+    roles, caption = told(friction)
+    assert "after" in roles and "what was named" in caption
 
 
 def test_an_unknown_law_is_drawn_and_written(unknown: Diagnosis) -> None:

@@ -11,11 +11,13 @@ from eha_core.quantities import quantity, scale_for, short, within
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.each_recording import each_recording
 from eha_core.report.finding import told_parameters
+from eha_core.report.stage import errors_told, models_told
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
 _INDENT = 13
 _LONGEST = {
     "Recording": 2, "Verdict": 3, "Whole": 5, "Located": 2, "Named": 2, "Recovered": 2, "Parameters": 2, "Next test": 3,
+    "Note": 2,
 }  # fmt: skip
 _MOST_EFFECTS = 8
 
@@ -54,7 +56,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         expression = f": {law.expression}" if law.expression else ""
         yield "Recovered", f"a law over {law.function_of}{expression} (R² {law.r_squared:.3f})"
     changed = "; ".join(_changed(one) for one in diagnosis.parameters if one.changed)
-    yield "Parameters", f"{changed}: biased, it may be, by what is missing" if changed and diagnosis.bent else changed
+    yield "Parameters", f"biased, it may be, by what is missing: {changed}" if changed and diagnosis.bent else changed
     rivals = [f"{' + '.join(one.effects)} (evidence {one.evidence_gap:.1f} less)" for one in diagnosis.alternatives]
     yield "Not told", f"from {', nor from '.join(rivals)}" if rivals else ""
 
@@ -79,9 +81,9 @@ def _improvement(diagnosis: Diagnosis) -> list[str]:
     if not fits:
         return []
     heading = f"{'RMSE on held-out data' if diagnosis.held_out else 'RMSE':30}"
-    lines = [heading + "".join(f"{column:>13}" for column in ("nominal", "recalibrated", "augmented", "noise"))]
+    lines = [heading + "".join(f"{column:>13}" for column in (*models_told(diagnosis), "noise"))]
     for name, fit in list(fits.items())[:4]:
-        values = (fit.rmse_before, fit.rmse_calibrated, fit.rmse_after, fit.noise)
+        values = (*errors_told(diagnosis, fit), fit.noise)
         scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
         title = f"{channel_title(name)} [{scale.unit}]"
         lines.append(f"  {title:28}" + "".join(f"{short(value / scale.factor):>13}" for value in values))
@@ -100,11 +102,19 @@ def _section(label: str, text: str, width: int, more: int = 0) -> list[str]:
     lines `more` than usual."""
     if not text:
         return []
-    wrapped = wrap(text, width - _INDENT)
-    longest = _LONGEST.get(label or "Named", 1) + more
-    if len(wrapped) > longest:
-        wrapped = [*wrapped[: longest - 1], wrapped[longest - 1][: width - _INDENT - 2] + " …"]
+    wrapped = _cut(text, width - _INDENT, _LONGEST.get(label or "Named", 1) + more)
     return [f"{'' if row else label:{_INDENT}}{line}" for row, line in enumerate(wrapped)]
+
+
+def _cut(text: str, width: int, longest: int) -> list[str]:
+    """So many lines at most: as many whole items of a list as fit, with how many are left out; else whole words."""
+    items = text.split("; ")
+    lines = wrap(text, width)
+    for kept in range(len(items) - 1, 0, -1):
+        if len(lines) <= longest:
+            break
+        lines = wrap(f"{'; '.join(items[:kept])}; and {len(items) - kept} more", width)
+    return lines if len(lines) <= longest else wrap(text, width, max_lines=longest, placeholder=" …")
 
 
 def _written(written: Sequence[Path]) -> list[str]:

@@ -93,9 +93,12 @@ def improvement(diagnosis: Diagnosis) -> str:
     where = "On data kept from the fit, the" if diagnosis.held_out else "The"
     before, after = quantity(fit.rmse_before, unit), quantity(fit.rmse_after, unit)
     noise = quantity(fit.noise, unit)
-    direction = "falls" if fit.rmse_after < fit.rmse_before else "goes"
+    if before == after:
+        change = f"is {after}, as before"
+    else:
+        change = f"{'falls' if fit.rmse_after < fit.rmse_before else 'goes'} from {before} to {after}"
     ending = ": that is its noise" if _at_noise(diagnosis, name, fit) else f"; its noise is {noise}"
-    return f"{where} {channel_title(name)}'s RMS error {direction} from {before} to {after}{ending}."
+    return f"{where} {channel_title(name)}'s RMS error {change}{ending}."
 
 
 def _at_noise(diagnosis: Diagnosis, name: str, fit: ChannelFit) -> bool:

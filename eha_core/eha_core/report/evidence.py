@@ -20,6 +20,14 @@ IN_FULL = 2
 STUB = 1.6
 """How long the bar of what is not behind at all is drawn, as a factor on the logarithmic axis."""
 
+STOPPED_SHORT = 100.0
+"""How far behind the model that adds nothing a hypothesis is only where its fit was not taken to its end: what its
+parameters cost is less than that (assumed)."""
+
+COLOURED = "Teal: what was named; ochre: what cannot be told from it."
+UNNAMED = "None of these explains enough of what is missing to be named."
+STOPPED = " What is further behind than the model that adds nothing was left before its fit had come to its end."
+
 MILLION = 1e6
 
 NULL = "nothing added (recalibrated model)"
@@ -57,10 +65,13 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
     top = max(best, 0.0)
     behind = np.array([top - score for _, _, score in ranked])
     tied = [set(one.effects) for one in diagnosis.alternatives]
+    unnamed = diagnosis.verdict == "unknown_physics" and not chosen
     roles = tuple(
-        "after" if effects == chosen else "calibrated" if effects in tied else "other" for _, effects, _ in ranked
+        "after" if effects == chosen and not unnamed else "calibrated" if effects in tied else "other"
+        for _, effects, _ in ranked
     )
     texts = tuple(behind_in_words(one) for one in behind)
+    short = min(score for _, _, score in ranked) < -STOPPED_SHORT
     rungs = Bars(tuple(name for name, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
     decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
     ticks = tuple((exponent + np.log10(STUB), _decade(exponent)) for exponent in decades)
@@ -73,8 +84,8 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
     )
     caption = (
         "Evidence is the gain in χ² less what the parameters added cost; shown is how far each hypothesis is behind the"
-        " best. Left of the dotted line the recording cannot tell the two apart. Teal: what was named; ochre: what"
-        f" cannot be told from it. {_screened(diagnosis)}"
+        f" best. Left of the dotted line the recording cannot tell the two apart. {UNNAMED if unnamed else COLOURED}"
+        f"{STOPPED if short else ''} {_screened(diagnosis)}"
     )
     return Picture(name, (Group((panel,)),), title=title, caption=caption)
 

@@ -55,9 +55,13 @@ def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) ->
     columns = (1,) * min(ABREAST, len(found))
     caption = (
         "Solid: the law as fitted, with the 95 % band of its parameters (which may be narrower than the line). Dashed:"
-        " the nominal model. Points: the law as the measured channels give it by the law's equation, without any"
-        " simulation; of a force, where the piston neither stops nor reverses."
+        " the nominal model."
     )
+    if any(len(one.points_x) for one in found.values()):
+        caption += (
+            " Points: the law as the measured channels give it by the law's equation, without any simulation; of a"
+            " force, where the piston neither stops nor reverses."
+        )
     return Picture(
         "0-laws", tuple(Group((law_panel(one),)) for one in found.values()), columns, "The missing physics", caption
     )
@@ -66,7 +70,9 @@ def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) ->
 def law_panel(law: Law, height: int = 250) -> Panel:
     """The law with its band, its points and what the nominal model has in its place."""
     across = scale_for(law.across.unit, float(np.abs(law.x).max(initial=0.0)))
-    up = scale_for(law.up.unit, float(np.abs(law.y).max(initial=0.0)))
+    # two axes of one unit are of one scale, so that a slope of one is seen as one
+    same = law.up.unit == law.across.unit
+    up = across if same else scale_for(law.up.unit, float(np.abs(law.y).max(initial=0.0)))
     x, marks = law.x / across.factor, list[Mark]()
     if len(law.nominal):
         marks.append(Line(x, law.nominal / up.factor, "before", LABELS["before"], 2.0, dashed=True))
@@ -94,8 +100,8 @@ def residual_picture(diagnosis: Diagnosis) -> Picture:
     names = list(diagnosis.pictures.after)[:ABREAST]
     groups = tuple(_residuals(diagnosis, name) for name in names)
     caption = (
-        "The upper and lower plots have different scales. Both models start from fitted states in each window of the"
-        " fit. Grey: two standard deviations of the noise."
+        "The upper and lower plots each have a scale of their own. Both models start from fitted states in each window"
+        " of the fit. Grey: two standard deviations of the noise."
     )
     columns = (1,) * max(1, len(names))
     title = "Residuals, measured less modelled: nominal model and final model"

@@ -61,8 +61,8 @@ def write_page(diagnosis: Diagnosis, path: Path, contents: Contents | None = Non
     path.write_text(page(diagnosis, contents), encoding="utf-8")
 
 
-UNIT_BEHIND = re.compile(r"(?<=\d) (?=[%°µ×±A-Za-z])|(?<=±) ")
-"""The space between a number and what it counts."""
+UNIT_BEHIND = re.compile(r"(?<=\d)(?: (?=[%°µ×±A-Za-z])|(?=%))|(?<=±) ")
+"""The space between a number and what it counts, which a per cent sign may lack."""
 
 FILES = {
     "fitted.yaml": "starts the simulator with what was found",

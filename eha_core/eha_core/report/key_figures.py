@@ -51,11 +51,15 @@ def _better(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
         return
     fit, unit = judged(diagnosis)[name], CHANNEL_KINDS[name].unit
     where = "on data kept from the fit" if diagnosis.held_out else "on the data of the fit"
+    noise = f"{where}; the sensor's noise is {quantity(fit.noise, unit)}."
+    if diagnosis.verdict == "consistent":  # there is no better model to hold beside the nominal one
+        error = f"RMS error of the {channel_title(name)}, nominal model, {noise}"
+        yield KeyFigure("How close is the model?", quantity(fit.rmse_before, unit), error)
+        return
     yield KeyFigure(
         "How much better?",
         f"{quantity(fit.rmse_before, unit)} → {quantity(fit.rmse_after, unit)}",
-        f"RMS error of the {channel_title(name)}, nominal model and final model, {where}; the sensor's noise is"
-        f" {quantity(fit.noise, unit)}.",
+        f"RMS error of the {channel_title(name)}, nominal model and final model, {noise}",
     )
 
 
@@ -90,6 +94,6 @@ def _sure(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
     yield KeyFigure(
         "How sure?",
         f"Next explanation {behind_in_words(own - score)}",
-        f"In evidence; {TIE:g} is enough to tell two apart. Next: {rung(nearest, chosen)}."
+        f"In χ² less the cost of parameters; {TIE:g} tells two apart. Next: {rung(nearest, chosen)}."
         f" Nothing added: {behind_in_words(own)}.",
     )

@@ -2,6 +2,8 @@
 // Draws each plot from the data beside it, lets the legend switch series, and fits the plots to the paper.
 const touch = window.matchMedia("(pointer: coarse)").matches;
 const plots = [...document.querySelectorAll(".plot")];
+// Pixels of a plot below which rows and axes need shorter labels; beside others on a wide page it has short ones.
+const narrow = window.matchMedia("(max-width: 760px)").matches ? 480 : 360;
 
 // On a narrow plot, long names of rows and axes take two lines.
 function inTwoLines(text) {
@@ -51,7 +53,7 @@ function barsNarrowed(bars, layout) {
 for (const place of plots) {
   const { data, layout } = JSON.parse(place.querySelector("script").textContent);
   layout.autosize = true;
-  if (place.clientWidth < 360) {
+  if (place.clientWidth < narrow) {
     narrowed(layout, data.find((trace) => trace.type === "heatmap"));
     for (const bars of data.filter((trace) => trace.type === "bar")) barsNarrowed(bars, layout);
   }

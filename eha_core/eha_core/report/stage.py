@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eha_core.diagnosis.result import Diagnosis
+from eha_core.diagnosis.result import ChannelFit, Diagnosis
 from eha_core.report.picture import Picture, Spans
 
 MOST_OF_IT = 0.9
@@ -49,6 +49,16 @@ class Stage:
 def adds_physics(diagnosis: Diagnosis) -> bool:
     """Whether the final model has more than the nominal equations."""
     return bool(diagnosis.effects or diagnosis.unknown)
+
+
+def models_told(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """The models that have errors of their own: without added physics, the recalibrated one is the final one."""
+    return ("nominal", "recalibrated", "augmented")[: 3 if adds_physics(diagnosis) else 2]
+
+
+def errors_told(diagnosis: Diagnosis, fit: ChannelFit) -> tuple[float, ...]:
+    """The RMSE of each of `models_told` in a channel."""
+    return (fit.rmse_before, fit.rmse_calibrated, fit.rmse_after)[: len(models_told(diagnosis))]
 
 
 def judged_spans(diagnosis: Diagnosis) -> tuple[tuple[float, float], ...]:

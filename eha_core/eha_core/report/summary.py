@@ -13,7 +13,7 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import scale_for, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.finding import told_parameters
-from eha_core.report.stage import SURE, Table
+from eha_core.report.stage import SURE, Table, errors_told, models_told
 from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, plain, sentence
 
 WIDTH = 96
@@ -102,12 +102,12 @@ def _errors(diagnosis: Diagnosis) -> Table:
     rows = []
     for name, fit in (diagnosis.held_out or diagnosis.training).items():
         scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
-        values = (fit.rmse_before, fit.rmse_calibrated, fit.rmse_after, fit.noise)
+        values = (*errors_told(diagnosis, fit), fit.noise)
         cells = [short(value / scale.factor) for value in values]
         rows.append((channel_title(name), *cells, scale.unit, short(fit.rmse_after / fit.noise)))
     title = "RMSE on held-out data" if diagnosis.held_out else "RMSE"
-    headings = (title, "nominal", "recalibrated", "augmented", "noise", "unit", "augmented / noise")
-    return Table(headings, tuple(rows), title)
+    models = models_told(diagnosis)
+    return Table((title, *models, "noise", "unit", f"{models[-1]} / noise"), tuple(rows), title)
 
 
 def _notes(diagnosis: Diagnosis) -> Iterator[str]:

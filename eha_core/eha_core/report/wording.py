@@ -105,13 +105,19 @@ def plain(text: str) -> str:
 
 
 def words(name: str) -> str:
-    """An identifier as words."""
-    return name.replace("_", " ").replace(".", ": ").replace("@", ", recording ")
+    """An identifier as words; chambers and their sides in capitals."""
+    spaced = name.replace("_", " ").replace(".", ": ").replace("@", ", recording ")
+    return re.sub(r" ([ab])\b", lambda chamber: chamber[0].upper(), spaced)
 
 
 def listed(items: Sequence[str]) -> str:
     """Items as a sentence lists them: "a, b and c"."""
     return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}" if items else ""
+
+
+def percent(share: float) -> str:
+    """A share in whole per cent."""
+    return f"{100.0 * share:.0f} %"
 
 
 def span(seconds: tuple[float, float]) -> str:

@@ -20,6 +20,9 @@ ROLES = {NOMINAL: "before", RECALIBRATED: "calibrated"}
 STUB = 0.012
 """Of the axis; what is at the noise would have no bar at all."""
 
+LEAST_DECADES = 2
+"""Of the axis; on a shorter one the numbers of what is at the noise stand on the dotted line."""
+
 BESIDE = 3 * "\N{EN SPACE}"
 
 ROW, FRAME = 30, 56
@@ -55,7 +58,7 @@ def ladder_picture(diagnosis: Diagnosis) -> Picture | None:
 
 def _bars(rows: Sequence[tuple[str, Residual, str]], top: float, title: str) -> Panel:
     values = np.array([one.overall for _, one, _ in rows])
-    decades = int(np.ceil(np.log10(max(top, 10.0))))
+    decades = max(LEAST_DECADES, int(np.ceil(np.log10(top))))
     end = 1.16 * decades
     lengths = np.maximum(np.log10(np.maximum(values, 1e-3)), STUB * end)
     # beside the dotted line, not on it
@@ -84,7 +87,7 @@ def effect_table(diagnosis: Diagnosis) -> Table:
         rows.append(tuple(row))
     headings: tuple[str, ...] = ("missing effect", "value (95 % interval)", "where")
     if diagnosis.without:
-        headings += ("left with it [× noise]", "left without it [× noise]")
+        headings += ("left with it [×\N{NO-BREAK SPACE}noise]", "left without it [×\N{NO-BREAK SPACE}noise]")
     return Table(headings, tuple(rows), "What is missing, what explains most first")
 
 

@@ -35,10 +35,8 @@ def stage(diagnosis: Diagnosis) -> Stage:
     ]
     held = [one for one in diagnosis.parameters if one.note]
     if held:
-        sentences.append(
-            f"This recording says little about {listed([words(one.name) for one in held])};"
-            " these stay near their nominal values."
-        )
+        stay = "it stays near its nominal value" if len(held) == 1 else "they stay near their nominal values"
+        sentences.append(f"This recording says little about {listed([words(one.name) for one in held])}; {stay}.")
     if diagnosis.bent and changed:
         sentences.append("What is missing may have biased these values: do not take them for the rig's.")
     picture = _picture(diagnosis.parameters)
@@ -66,6 +64,7 @@ def _picture(parameters: tuple[FittedParameter, ...]) -> Picture | None:
     panel = Panel(marks, "departure from the nominal value [%]", height=60 + 24 * len(shown), x_range=(-limit, limit))
     caption = (
         "Fitted parameters of the final model as departures from nominal, with 95 % intervals; changed ones in colour."
+        " An interval that ends at the plot's edge goes on beyond it."
     )
     return Picture("2-calibrate", (Group((panel,)),), caption=caption)
 

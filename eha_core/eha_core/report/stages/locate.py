@@ -21,6 +21,7 @@ from eha_core.report.wording import (
     capital,
     channel_title,
     listed,
+    percent,
     span,
     variable_title,
     words,
@@ -58,9 +59,8 @@ def stage(diagnosis: Diagnosis) -> Stage:
 
 def _others(diagnosis: Diagnosis) -> str:
     """What effects of other sites could take away: the sites overlap, so the shares do not add up to one."""
-    others = [
-        f"{SITES[one.site].words} ({one.share:.0%})" for one in diagnosis.location[1:] if one.share > MENTIONED_SHARE
-    ]
+    weighty = [one for one in diagnosis.location[1:] if one.share > MENTIONED_SHARE]
+    others = [f"{SITES[one.site].words} ({percent(one.share)})" for one in weighty]
     if not others:
         return ""
     return f"Sites overlap in what they could explain: an effect {listed(others)} would take some away, too."
@@ -94,7 +94,7 @@ def _picture(name: str, title: str, diagnosis: Diagnosis, rows: Iterator[tuple[s
         if diagnosis.pictures.variables
         else "how often each value occurs"
     )
-    caption = f"Left: over time. Right: {right}."
+    caption = f"Each over time, and beside or below it {right}."
     return Picture(name, tuple(groups), (3, 2), title, caption)
 
 
@@ -115,12 +115,12 @@ def _against(diagnosis: Diagnosis, time: Array, residual: Array, title: str) -> 
     )
     name = variable_title(dependence.variable)
     label = f"{name} [{scale.unit}]"
-    explained = f"{dependence.share:.0%} explained"
+    explained = f"{percent(dependence.share)} explained"
     return Panel(marks, label, "", explained if dependence.share > SIGNIFICANT_SHARE else "No dependence found", 210)
 
 
 def _tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    rows = tuple((one.site, f"{one.share:.0%}", one.where, _times(one.when)) for one in diagnosis.location)
+    rows = tuple((one.site, percent(one.share), one.where, _times(one.when)) for one in diagnosis.location)
     return (Table(("site", "could explain", "where", "when"), rows, "Locations"),) if rows else ()
 
 

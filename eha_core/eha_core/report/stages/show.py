@@ -12,7 +12,7 @@ from eha_core.report.claims import improvement, left_over
 from eha_core.report.each_recording import recording_tables
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture
 from eha_core.report.series import autocorrelation, pieces, spread
-from eha_core.report.stage import Stage, Table, adds_physics, judged_spans
+from eha_core.report.stage import Stage, Table, adds_physics, errors_told, judged_spans, models_told
 from eha_core.report.wording import capital, channel_title
 
 MODELS = ("before", "calibrated", "after")
@@ -39,12 +39,11 @@ def error_table(diagnosis: Diagnosis) -> Table:
     rows = []
     for name, one in (diagnosis.held_out or diagnosis.training).items():
         scale = scale_for(CHANNEL_KINDS[name].unit, one.noise)
-        values = (one.rmse_before, one.rmse_calibrated, one.rmse_after, one.noise)
-        cells = [f"{short(value / scale.factor)}{scale.suffix}" for value in values]
+        cells = [f"{short(value / scale.factor)}{scale.suffix}" for value in (*errors_told(diagnosis, one), one.noise)]
         rows.append((channel_title(name), *cells, short(one.rmse_after / one.noise)))
     title = "RMSE on held-out data" if diagnosis.held_out else "RMSE"
-    headings = ("channel", "nominal", "recalibrated", "augmented", "noise", "augmented / noise")
-    return Table(headings, tuple(rows), title)
+    models = models_told(diagnosis)
+    return Table(("channel", *models, "noise", f"{models[-1]} / noise"), tuple(rows), title)
 
 
 def prediction_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
@@ -67,7 +66,7 @@ def _overlays(diagnosis: Diagnosis) -> Picture:
     for name in diagnosis.pictures.after:
         groups += [_whole(diagnosis, name), _close_up(diagnosis, name)]
     caption = (
-        "Left: the held-out spans and the residual in them. Right: where the recalibrated model is worst."
+        "The held-out spans with the residual in them, and beside or below them where the recalibrated model is worst."
         " Drawn are the final models; for the errors in the table they were fitted again without these spans."
     )
     return Picture("6-show", tuple(groups), (3, 2), "Measured and modelled", caption)
@@ -77,7 +76,7 @@ def _models(diagnosis: Diagnosis, name: str) -> list[tuple[str, Array]]:
     """The models of a channel by role; where nothing was added, the calibrated one is the final one."""
     models = [(role, getattr(diagnosis.pictures, role)) for role in MODELS]
     if not adds_physics(diagnosis):
-        del models[MODELS.index("calibrated")]
+        del models[MODELS.index("after")]
     return [(role, modelled[name]) for role, modelled in models if name in modelled]
 
 
