@@ -141,6 +141,15 @@ def test_a_worn_rig_has_four_to_six_effects_and_never_two_of_one_kind() -> None:
     assert len(draw_case("three", 0, 5).effects) == 3
 
 
+def test_an_event_is_one_effect_for_a_while_beside_others_that_always_act() -> None:
+    for number in range(16):
+        case = draw_case("event", number, 5)
+        ((passing, (begin, end)),) = case.windows.items()
+        assert 0.0 < begin < end < case.duration
+        assert passing == case.effects[0][0]
+        assert len({name for name, _ in case.effects}) == len(case.effects) == 2 + number % 2
+
+
 def test_of_several_effects_the_oracle_tells_which_show_beside_the_others() -> None:
     spring, delay = ("hardening_spring", {"coefficient": 3e8}), ("command_delay", {"delay": 1e-7})
     case = short("single", 12, duration=1.5, effects=(spring, delay))

@@ -135,6 +135,12 @@ def _conceal(
     if tier == "named_and_unknown":
         names = [catalogue[number % len(catalogue)], str(g.choice(list(OUTSIDE)))]
         return tuple((name, draw_effect(name, setting, g)) for name in names), {}
+    if tier == "event":
+        passing = WINDOWED[number % len(WINDOWED)]
+        while True:
+            names = [passing, *map(str, g.choice(catalogue, 1 + number % 2, replace=False))]
+            if len(set(names)) == len(names) and len(FRICTION.intersection(names)) < 2:
+                return tuple((name, draw_effect(name, setting, g)) for name in names), _for_a_while(passing, setting, g)
     pools = {
         "outside": list(OUTSIDE),
         "other_law": list(OTHER_LAWS),
@@ -146,6 +152,11 @@ def _conceal(
     share = 0.15 if tier == "small" else 1.0
     effect = (name, draw_effect(name, setting, g, share, other_law=tier == "other_law"))
     if tier == "window":
-        start = float(g.uniform(0.2, 0.45)) * setting.duration
-        return (effect,), {name: (start, start + float(g.uniform(0.25, 0.4)) * setting.duration)}
+        return (effect,), _for_a_while(name, setting, g)
     return (effect,), {}
+
+
+def _for_a_while(name: str, setting: Setting, g: np.random.Generator) -> dict[str, tuple[float, float]]:
+    """From when until when an effect acts [s], by its name."""
+    start = float(g.uniform(0.2, 0.45)) * setting.duration
+    return {name: (start, start + float(g.uniform(0.25, 0.4)) * setting.duration)}

@@ -22,8 +22,9 @@ SHARES = {
     "wrong_rig": 0.03,
     "refit": 0.015,
     "twins": 0.015,
+    "event": 0.0,
 }
-"""Share of each tier in an exam of all tiers."""
+"""Share of each tier in an exam of all tiers; one without a share is asked by its name."""
 
 SETS = ("pair", "three", "rig", "recordings")
 """Tiers that conceal several effects of the catalogue at once."""
@@ -41,6 +42,7 @@ MEANINGS = {
     "null_parameters": "nothing missing, nominal parameters up to 30 % off",
     "tracking": "one effect under a tight position controller, which hides it in command and pressure",
     "window": "one effect that acts during a part of the recording",
+    "event": "one effect that acts during a part of the recording, beside one or two that always act",
     "position_only": "one effect, command and position recorded alone",
     "outside": "one effect that the catalogue does not know",
     "wrong_rig": "one effect, and supply pressure and valve dynamics up to 15 % off too",
