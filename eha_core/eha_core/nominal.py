@@ -8,7 +8,7 @@ from pathlib import Path
 
 from eha_core.errors import ParameterError
 from eha_core.node_parameters import from_node
-from eha_core.parameters import PER_RECORDING, UNKNOWN, effect_names, is_unknown, read_section, split_parts
+from eha_core.parameters import PER_RECORDING, UNKNOWN, acting_as, effect_names, is_unknown, read_section, split_parts
 from eha_core.plant import PAPER, Composition, composition_of
 
 
@@ -80,4 +80,4 @@ def _names(listed: object, composition: Composition) -> tuple[str, ...]:
     names = tuple(dict.fromkeys(found for name in listed for found in from_node({name: 0.0})))
     for name in names:
         composition.require(name, f"{PER_RECORDING}: ")
-    return tuple(place for name in names for place in composition.stands_for(name))
+    return tuple(place for name in names for place in (*acting_as(name), *composition.stands_for(name)))

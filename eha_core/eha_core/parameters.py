@@ -73,6 +73,14 @@ def acting_rows(effect: Effect) -> dict[str, Parameter]:
     return dict(zip(effect.acting_names(), _ACTS, strict=False))
 
 
+def acting_as(name: str) -> tuple[str, ...]:
+    """Each effect's own instant of the kind that a parameter of ACTING is for all of them; none for another name."""
+    kinds = [row.name for row in ACTING]
+    if name not in kinds:
+        return ()
+    return tuple(effect.acting_names()[kinds.index(name)] for effect in effects() if effect.named)
+
+
 @cache
 def step_rows() -> Mapping[str, Parameter]:
     """The parameters that the compiled step takes, in its order: the nominal rows, and each effect's own."""

@@ -38,6 +38,7 @@ def test_no_threshold_moved():
         "WHATEVER_FORM": 0.005,
         "UNKNOWN_MARGIN": 50.0,
         "OUTSTANDING": 1.5,
+        "UNTOUCHED": 0.05,
         "LEFT_OVER": 0.05,
         "NOTICEABLE": 4.0,
         "RELEVANT": 0.01,

@@ -37,6 +37,28 @@ def test_friction_that_acts_for_a_while_is_named_with_its_span() -> None:
     assert result.held_out["position"].rmse_before > 1.5 * result.held_out["position"].rmse_after
 
 
+def test_an_effect_that_acts_for_a_while_is_a_member_like_any_other() -> None:
+    """Beside a valve that overlaps always, which is found first."""
+    result = diagnose(
+        recorded(
+            {"valve_deadband.half_width": 5e-5, "coulomb_friction.force": 200.0, "coulomb_friction.acts_from": 2.37,
+             "coulomb_friction.acts_until": 6.71}
+        ),
+        nominal_values(),
+    )  # fmt: skip
+    assert result.verdict == "missing_physics"
+    found = {effect.id: effect for effect in result.effects}
+    assert set(found) == {"valve_deadband", "coulomb_friction"}
+    assert found["valve_deadband"].active is None
+    assert found["valve_deadband"].parameters["half_width"].value == pytest.approx(5e-5, rel=0.02)
+    assert found["coulomb_friction"].active == pytest.approx((2.37, 6.71), abs=0.02)
+    assert found["coulomb_friction"].parameters["force"].value == pytest.approx(200.0, rel=0.02)
+    assert result.explained.complete
+    instants = [result.fitted_values[f"coulomb_friction.{name}"] for name in ("acts_from", "acts_until")]
+    assert instants == pytest.approx(found["coulomb_friction"].active)
+    assert not any(name.startswith("valve_deadband.acts") for name in result.fitted_values)
+
+
 def test_a_recording_that_ends_while_nodes_go_down_lacks_no_physics() -> None:
     whole = recorded({})
     command = whole.channels["voltage_command"]

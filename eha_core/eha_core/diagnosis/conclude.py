@@ -150,12 +150,16 @@ def _remarks(evidence: Evidence) -> tuple[str, ...]:
 def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, ...]:
     """The named effect's site first: where the name is certain, so is the site, and when it acts."""
     sites = {effect.site for effect in winner.effects}
-    if winner.span:
-        location = tuple(_in_span(one, winner.span) if one.site in sites else one for one in location)
+    always = {one.effect.site for one in winner.hypothesis.members if not one.limited}
+    limited = (one for one in winner.hypothesis.limited if one.effect.site not in always)
+    spans = {one.effect.site: one.span(winner.fit.values) for one in limited}
+    location = tuple(_in_span(one, spans.get(one.site)) for one in location)
     return tuple(sorted(location, key=lambda one: (one.site not in sites, -one.share)))
 
 
-def _in_span(one: Location, span: tuple[float, float]) -> Location:
+def _in_span(one: Location, span: tuple[float, float] | None) -> Location:
+    if span is None:
+        return one
     return replace(one, when=(span,), statement=stated(one.site, one.share, one.where, (span,)))
 
 

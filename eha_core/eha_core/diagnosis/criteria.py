@@ -108,6 +108,10 @@ OUTSTANDING = 1.5
 """An effect is taken to act for a while where its predicted gain is this many times that of any effect that always
 acts. Of effects that do always act, the best windows in a row are predicted to gain no more than the whole record."""
 
+UNTOUCHED = 0.05
+"""Share of what a set leaves a sample of the whole record, beside noise, that it may leave of the rest where an effect
+acts for a while beside it. Assumed; 0.25 let sets through that only had other parameters there (three rigs)."""
+
 LEFT_OVER = 0.05
 """A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from eha_core.diagnosis.criteria import NEXT_TO_NOTHING
 from eha_core.effects import Effect
@@ -45,11 +45,12 @@ SPAN_SCALE = 0.3
 """s; the coordinate's unit of an instant from which, or until which, an effect acts."""
 
 
-def span_freedom(span: Mapping[str, float], bounds: Mapping[str, tuple[float, float]]) -> tuple[Free, ...]:
-    """The instants between which the effects act, free about where they are taken to be, within bounds [s]."""
+def span_freedom(span: Mapping[str, float], bounds: Sequence[tuple[float, float]]) -> tuple[Free, ...]:
+    """The instants between which an effect acts, free about where they are taken to be, within bounds [s]."""
     resolution = SHORTEST_INSTANT / SPAN_SCALE
     return tuple(
-        Free(name, at, False, SPAN_SCALE, EFFECT_TRUST, *bounds[name], resolution) for name, at in span.items()
+        Free(name, at, False, SPAN_SCALE, EFFECT_TRUST, *within, resolution)
+        for (name, at), within in zip(span.items(), bounds, strict=True)
     )
 
 

@@ -53,7 +53,7 @@ def named_effects(winner: Entry, final: Fit, composition: Composition) -> tuple[
             for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)
         }
         values |= _in_other_recordings(effect, final)
-        active = winner.span if member.limited else None
+        active = member.span(final.values)
         statement = effect.describe({name: value.value for name, value in values.items()})
         statement += f", from {active[0]:.4g} s to {active[1]:.4g} s only" if active else ""
         evidence = winner.score if len(winner.effects) == 1 else wald(final, effect)

@@ -10,9 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from eha_core.effects import Effect
-
-LIMITED = "effects_from", "effects_until"
-"""The parameters that say from when until when time-limited effects act."""
+from eha_core.parameters import acting_rows
 
 
 @dataclass(frozen=True, order=True)
@@ -22,6 +20,13 @@ class Member:
     id: str
     limited: bool = False
     effect: Effect = field(compare=False, kw_only=True)
+
+    def span(self, values: Mapping[str, float]) -> tuple[float, float] | None:
+        """From when until when it acts [s] in a model of these values; None where it always does."""
+        if not self.limited:
+            return None
+        begin, end = (values[name] for name in self.effect.acting_names())
+        return begin, end
 
 
 @dataclass(frozen=True)
@@ -42,9 +47,9 @@ class Hypothesis:
         return tuple(member.id for member in self.members)
 
     @property
-    def limited(self) -> bool:
-        """Whether its effects act in an interval only."""
-        return any(member.limited for member in self.members)
+    def limited(self) -> tuple[Member, ...]:
+        """The members that act in an interval only."""
+        return tuple(member for member in self.members if member.limited)
 
     @property
     def kinds(self) -> frozenset[str]:
@@ -74,5 +79,6 @@ NOTHING = Hypothesis()
 
 
 def neutral(effect: Effect) -> Mapping[str, float]:
-    """The values (full names) at which an effect is off."""
-    return {name: row.nominal for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}
+    """The values (full names) at which an effect is off, and would always act."""
+    off = {name: row.nominal for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}
+    return off | {name: row.nominal for name, row in acting_rows(effect).items()}

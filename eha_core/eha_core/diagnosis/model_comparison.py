@@ -53,13 +53,6 @@ class Entry:
         """Ids of the effects, sorted."""
         return self.hypothesis.ids
 
-    @property
-    def span(self) -> tuple[float, float] | None:
-        """From when until when the effects act [s], where that was fitted; None where they always do."""
-        if not self.hypothesis.limited:
-            return None
-        return self.fit.values["effects_from"], self.fit.values["effects_until"]
-
 
 @dataclass(frozen=True)
 class ModelComparison:

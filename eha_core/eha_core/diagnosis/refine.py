@@ -21,7 +21,7 @@ from eha_core.identification.fit import Fit, fit, fit_in_stages
 from eha_core.identification.freedom import LATE, Free, coordinates
 from eha_core.identification.per_recording import is_one_of
 from eha_core.identification.problem import Problem
-from eha_core.parameters import ACTING, NOMINAL
+from eha_core.parameters import NOMINAL
 
 SETTLED_LEADERS = 3
 
@@ -48,7 +48,6 @@ BENT = 0.02
 hypotheses are tried from the dynamics as given, too, where their predicted gain is this share of what others need."""
 
 NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
-SHARED_NAMES = NOMINAL_NAMES | {row.name for row in ACTING}
 
 Progress = Callable[[str], None]
 Found = dict[Hypothesis, Fit]
@@ -197,7 +196,8 @@ def cross(problem: Problem, found: Found) -> Found:
     for hypothesis in others[:CROSSED]:
         result = found[hypothesis]
         both = (one.name for one in result.free if one.name in best.values)
-        shared = {name: best.values[name] for name in both if is_one_of(name, SHARED_NAMES)}
+        shared = {name: best.values[name] for name in both if is_one_of(name, NOMINAL_NAMES)}
+        shared |= _same_interval(hypothesis, leading, best.values)
         kindred = _of_the_same_kind(hypothesis.effects, leading.effects, best.values)
         for own in (kindred, {}) if kindred else ({},):
             values, worse = {**result.values, **shared, **own}, best.objective + OUT_OF_REACH
@@ -214,6 +214,14 @@ def _to_their_ends(problem: Problem, found: Found) -> Found:
     near = {one: at for one, at in found.items() if best < at.objective < best + OUT_OF_REACH}
     ended = {one: fit(exact, at.values, at.free, at.states, iterations=30) for one, at in near.items()}
     return found | {one: at for one, at in ended.items() if at.objective < found[one].objective}
+
+
+def _same_interval(hypothesis: Hypothesis, other: Hypothesis, values: Mapping[str, float]) -> dict[str, float]:
+    """The interval in which the other's effect acts, for this one's, where each has one that acts for a while."""
+    if len(hypothesis.limited) != 1 or len(other.limited) != 1:
+        return {}
+    names = (one.limited[0].effect.acting_names() for one in (hypothesis, other))
+    return {own: values[theirs] for own, theirs in zip(*names, strict=True)}
 
 
 def _of_the_same_kind(

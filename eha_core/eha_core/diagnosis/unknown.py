@@ -65,7 +65,7 @@ def recover(
     if best.fit.data / best.fit.count < 1.0 + LEFT_OVER or nominal.data / nominal.count < 1.0 + LEFT_OVER:
         return None
     progress("recovering an unknown law as a curve")
-    bases = [comparison.nominal, *([best] if best.effects and best.span is None else [])]
+    bases = [comparison.nominal, *([best] if best.effects and not best.hypothesis.limited else [])]
     found = [_beside(problem, base, comparison, facts, progress) for base in bases]
     # beside a curve that is not the law either, a name only makes up for what the curve leaves
     stands = [one for one in found if one is not None and not (one.named and one.fit.data > UNFITTED * one.fit.count)]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, UNFITTED, chance_gain, gain_to_go_on
+from eha_core.diagnosis.passing import passing_beside
+from eha_core.diagnosis.screen import ScoreTest, screen_in_time
 from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
-from eha_core.diagnosis.search.proposals import proposals
+from eha_core.diagnosis.search.proposals import proposals, starts_beside
 from eha_core.diagnosis.search.prune import look_back
 from eha_core.diagnosis.search.short_windows import set_with_friction
 
@@ -16,8 +18,10 @@ LEGS = ((3, 4), (4, 2), (10, 1))
 
 def grow(search: Search, best: Candidate) -> Candidate:
     """The best set that adding to `best` leads to; every set that was fitted stays with the search."""
-    while not best.hypothesis.limited and len(best.hypothesis.members) < MOST_EFFECTS:
-        race(search, proposals(search, best, chance_gain(search.problem.count(), best.times_noise)))
+    while len(best.hypothesis.members) < MOST_EFFECTS:
+        score_tests = screen_in_time(search.problem, best.fit, starts_beside(search, best))
+        try_for_a_while(search, best, score_tests)
+        race(search, proposals(search, best, score_tests, chance_gain(search.problem.count(), best.times_noise)))
         reached = min(search, key=lambda one: one.fit.objective)
         if reached.hypothesis != best.hypothesis and reached.times_noise > UNFITTED:
             # what stopped short would have the next effect make up for it
@@ -31,6 +35,16 @@ def grow(search: Search, best: Candidate) -> Candidate:
         best = look_back(search, reached, chance_gain(samples, reached.times_noise))
         search.report(best)
     return best
+
+
+def try_for_a_while(search: Search, best: Candidate, score_tests: Sequence[ScoreTest]) -> None:
+    """Fit what may act for a while beside the best set, where windows in a row are predicted to gain as much as the
+    next set must."""
+    needed = gain_to_go_on(search.problem.count(), best.times_noise, best.fit.data - best.fit.count)
+    begin = starts_beside(search, best)
+    found = passing_beside(search.problem, best.hypothesis, best.fit, begin, score_tests, needed, search.progress)
+    for hypothesis, result in found.items():
+        search.keep(hypothesis, result)
 
 
 def race(search: Search, guesses: Iterable[Guess]) -> None:

@@ -33,13 +33,16 @@ HELD_SHARE = 0.25
 """With the dynamics held an effect is proposed where it predicts this share of what others must."""
 
 
-def proposals(search: Search, base: Candidate, least: float) -> list[Guess]:
-    """Guesses of the base's set with one effect more, the largest predicted gain first, of those above `least`."""
-    begin = _begin(search, base)
+def proposals(search: Search, base: Candidate, score_tests: Sequence[ScoreTest], least: float) -> list[Guess]:
+    """Guesses of the base's set with one effect more, the largest predicted gain first, of those above `least`.
+
+    score_tests: those of the starts beside the base, at its fit.
+    """
+    begin = starts_beside(search, base)
     guesses = [
-        guess
-        for strategy in (_at_the_fit, _at_nominal_values, _with_dynamics_held)
-        for guess in strategy(search, base, begin)
+        *_at_the_fit(base, score_tests),
+        *_at_nominal_values(search, base, begin),
+        *_with_dynamics_held(search, base, begin),
     ]
     # where only noise is left no other form can be better
     forms = in_another_form(search, base) if base.times_noise > NEAR_NOISE else ()
@@ -49,7 +52,7 @@ def proposals(search: Search, base: Candidate, least: float) -> list[Guess]:
 
 def at_the_fit(search: Search, base: Candidate, most: int) -> list[Guess]:
     """Guesses of the base's set with one effect more, as a score test at its fit ranks them."""
-    score_tests = one_each(screen(search.problem, base.fit, _begin(search, base)), most)
+    score_tests = one_each(screen(search.problem, base.fit, starts_beside(search, base)), most)
     return [_guess(base, base.fit, score_test) for score_test in score_tests]
 
 
@@ -60,13 +63,15 @@ def _leading(score_tests: Sequence[ScoreTest], base: Candidate) -> Sequence[Scor
     return [one for one in score_tests if one.gain > LEAST_PREDICTED * score_tests[0].gain]
 
 
-def _begin(search: Search, base: Candidate) -> list[Start]:
+def starts_beside(search: Search, base: Candidate) -> list[Start]:
+    """The starts of every effect that the base's set admits."""
     able = [effect for effect in search.able if base.hypothesis.admits(effect)]
     return [start for effect in able for start in starts(effect, search.facts)]
 
 
-def _at_the_fit(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
-    for score_test in _leading(one_each(screen(search.problem, base.fit, begin), AT_THE_FIT), base):
+def _at_the_fit(base: Candidate, score_tests: Sequence[ScoreTest]) -> Iterator[Guess]:
+    always = [one for one in score_tests if one.windows is None]
+    for score_test in _leading(one_each(always, AT_THE_FIT), base):
         yield _guess(base, base.fit, score_test)
 
 
@@ -97,8 +102,11 @@ def _guess(base: Candidate, at: Fit, score_test: ScoreTest, in_stages: bool = Fa
 
 
 def in_another_form(search: Search, base: Candidate) -> Iterator[Guess]:
-    """The set with another form of a member's law, from its own values where they share a parameter."""
-    for member in base.hypothesis.members:
+    """The set with another form of a member's law, from its own values where they share a parameter.
+
+    A law that acts for a while got its form when its interval was found.
+    """
+    for member in (one for one in base.hypothesis.members if not one.limited):
         rest = base.hypothesis.without(member)
         values, free = without_effect(base.fit, member.effect)
         forms = [effect for effect in search.able if member.effect.kind and effect.kind == member.effect.kind]

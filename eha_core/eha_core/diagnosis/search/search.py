@@ -3,15 +3,31 @@
 from __future__ import annotations
 
 from eha_core.diagnosis.criteria import NEAR_NOISE, UNFITTED
+from eha_core.diagnosis.screen import screen_in_time
 from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.exchange import exchange
-from eha_core.diagnosis.search.grow import grow
+from eha_core.diagnosis.search.grow import grow, try_for_a_while
+from eha_core.diagnosis.search.proposals import starts_beside
 from eha_core.diagnosis.search.prune import prune
 from eha_core.diagnosis.search.short_windows import forms_of_friction, set_in_each_form, sticks
 from eha_core.diagnosis.search.simpler_form import from_a_simpler_form
 
+SINGLES = 4
+"""How many of the best single effects are asked whether another acts for a while beside them."""
+
 ROUNDS = 8
 """Exchanges at most; each has to make the fit better by more than chance would."""
+
+
+def beside_the_singles(search: Search) -> Candidate:
+    """The best so far when an effect that acts for a while was looked for beside each of the best single effects.
+
+    Such an effect bends what is fitted without it, and the best single effect may be one that the rig does not have.
+    """
+    singles = [one for one in search if len(one.hypothesis.members) == 1]
+    for single in sorted(singles, key=lambda one: one.fit.objective)[:SINGLES]:
+        try_for_a_while(search, single, screen_in_time(search.problem, single.fit, starts_beside(search, single)))
+    return min(search, key=lambda one: one.fit.objective)
 
 
 def search_sets(search: Search, nominal: Candidate) -> Candidate:
@@ -21,8 +37,10 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
     or a member another's place.
     """
     best = min(search, key=lambda one: one.fit.objective)
-    if best.hypothesis.limited:
+    if best.hypothesis.limited and best.times_noise < NEAR_NOISE:
         return best
+    if best.times_noise > NEAR_NOISE:
+        best = beside_the_singles(search)
     if best.times_noise > UNFITTED and sticks(best.hypothesis):
         best = forms_of_friction(search, nominal)
     best = grow(search, best)

@@ -80,8 +80,9 @@ def _first_guess(effect: Effect, facts: Facts) -> dict[str, float]:
 
 
 def sticks(hypothesis: Hypothesis) -> bool:
-    """Whether one of the effects can hold the piston at rest."""
-    return bool(_that_stick(hypothesis.effects))
+    """Whether one of the effects can hold the piston at rest, and always acts: short windows would lose when one that
+    does not begins and ceases to."""
+    return bool(_that_stick([one.effect for one in hypothesis.members if not one.limited]))
 
 
 def _that_stick(effects: Sequence[Effect]) -> list[Effect]:
