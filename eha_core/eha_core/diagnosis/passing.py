@@ -155,9 +155,11 @@ def _span_of(problem: Problem, windows: tuple[int, int]) -> tuple[float, float]:
 
 
 def _one_each(score_tests: Sequence[ScoreTest]) -> list[ScoreTest]:
+    """The best of each effect; none of one that has an instant of its own at which it sets in."""
     best: dict[str, ScoreTest] = {}
     for one in score_tests:
-        if one.windows is not None:
+        sets_in = any(row.relative_to == "time" for row in one.start.effect.parameters)
+        if one.windows is not None and not sets_in:
             best.setdefault(one.start.effect.id, one)
     return list(best.values())[:TRIED]
 

@@ -52,6 +52,8 @@ def with_sets(
             best = prune(search, grow(search, best))
     calibration = _in_noise_of(search, calibration)
     found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
+    if best.hypothesis != NOTHING:  # a single effect that acts for a while may have been found beside another
+        found[best.hypothesis] = best.fit
     if len(best.hypothesis.members) > 1:
         size = len(best.hypothesis.members)
         near = [one for one in search if one.fit.objective < best.fit.objective + CLOSE * max(1.0, best.times_noise)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eha_core.diagnosis.criteria import NEAR_NOISE, UNFITTED
+from eha_core.diagnosis.refine import settle
 from eha_core.diagnosis.screen import screen_in_time
 from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.exchange import exchange
@@ -24,8 +25,16 @@ def beside_the_singles(search: Search) -> Candidate:
 
     Such an effect bends what is fitted without it, and the best single effect may be one that the rig does not have.
     """
-    singles = [one for one in search if len(one.hypothesis.members) == 1]
-    for single in sorted(singles, key=lambda one: one.fit.objective)[:SINGLES]:
+    singles = sorted((one for one in search if len(one.hypothesis.members) == 1), key=lambda one: one.fit.objective)
+    for single in singles[:SINGLES]:
+        if any(one.resolution > 0.0 for one in single.fit.free):
+            # what sets in at an instant explains little beside the right one, and another for a while seems better
+            settled = settle(search.problem, {single.hypothesis: single.fit}, search.progress)
+            search.keep(single.hypothesis, settled[single.hypothesis])
+    best = min(search, key=lambda one: one.fit.objective)
+    if best.times_noise < NEAR_NOISE:
+        return best
+    for single in map(search.again, singles[:SINGLES]):
         try_for_a_while(search, single, screen_in_time(search.problem, single.fit, starts_beside(search, single)))
     return min(search, key=lambda one: one.fit.objective)
 
