@@ -67,9 +67,10 @@ def test_the_site_of_the_named_effect_leads_and_takes_its_span():
     ))  # fmt: skip
     friction = next(effect for effect in effects() if effect.id == "coulomb_friction")
     assert friction.site == "force"
-    always = _ordered((least, other, named), SimpleNamespace(effects=(friction,), span=None))
+    acts = SimpleNamespace(values=dict(zip(friction.acting_names(), (2.0, 5.0), strict=True)))
+    always = _ordered((least, other, named), Entry(NOTHING.with_effects([friction]), acts, 0.0))
     assert always == (named, other, least)
-    first, *rest = _ordered((least, other, named), SimpleNamespace(effects=(friction,), span=(2.0, 5.0)))
+    first, *rest = _ordered((least, other, named), Entry(NOTHING.with_effects([friction], limited=True), acts, 0.0))
     assert (first.site, first.share, first.when) == ("force", 0.2, ((2.0, 5.0),))
     assert rest == [other, least]
 

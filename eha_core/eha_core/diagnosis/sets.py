@@ -65,8 +65,9 @@ def with_sets(
         worse = [hypothesis for hypothesis in singles if best.hypothesis.holds(hypothesis)]
         found = {hypothesis: result for hypothesis, result in found.items() if hypothesis not in worse}
     elif best.times_noise > FAR_FROM_NOISE and not best.hypothesis.limited:
-        # no set came near either: the single effects are worth their last digits after all
-        found = cross(search.problem, settle(search.problem, found, progress))
+        # no set came near either: the single effects are worth their last digits after all, as far as they lack them
+        always = {hypothesis: result for hypothesis, result in found.items() if not hypothesis.limited}
+        found |= cross(search.problem, settle(search.problem, always, progress))
     nominal = refit_nominal(search.problem, search.found[NOTHING], list(found.values()))
     entries = rank(search.problem, nominal, found)
     left_over = {} if best.hypothesis.limited else _left_over(search, best)
