@@ -27,7 +27,7 @@ def beside_the_singles(search: Search) -> Candidate:
     """
     singles = sorted((one for one in search if len(one.hypothesis.members) == 1), key=lambda one: one.fit.objective)
     for single in singles[:SINGLES]:
-        if any(one.resolution > 0.0 for one in single.fit.free):
+        if not single.hypothesis.limited and any(one.resolution > 0.0 for one in single.fit.free):
             # what sets in at an instant explains little beside the right one, and another for a while seems better
             settled = settle(search.problem, {single.hypothesis: single.fit}, search.progress)
             search.keep(single.hypothesis, settled[single.hypothesis])
