@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eha_core.diagnosis.criteria import NEAR_NOISE, UNFITTED
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, UNFITTED
 from eha_core.diagnosis.refine import settle
 from eha_core.diagnosis.screen import screen_in_time
 from eha_core.diagnosis.search.candidates import Candidate, Search
@@ -46,8 +46,8 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
     or a member another's place.
     """
     best = min(search, key=lambda one: one.fit.objective)
-    if best.hypothesis.limited and best.times_noise < NEAR_NOISE:
-        return best
+    if best.hypothesis.limited and not NEAR_NOISE < best.times_noise < FAR_FROM_NOISE:
+        return best  # it explains all, or led the single effects and hardly explains anything
     if best.times_noise > NEAR_NOISE:
         best = beside_the_singles(search)
     if best.times_noise > UNFITTED and sticks(best.hypothesis):
