@@ -34,7 +34,7 @@ def beside_the_singles(search: Search) -> Candidate:
     best = min(search, key=lambda one: one.fit.objective)
     if best.times_noise < NEAR_NOISE:
         return best
-    for single in map(search.again, singles[:SINGLES]):
+    for single in map(search.again, singles[1:SINGLES]):  # beside the first it is looked for when the set grows
         try_for_a_while(search, single, screen_in_time(search.problem, single.fit, starts_beside(search, single)))
     return min(search, key=lambda one: one.fit.objective)
 
