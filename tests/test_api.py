@@ -67,8 +67,8 @@ def test_the_summary_has_the_interval_and_the_errors(found: eha.Results) -> None
 
 
 def test_a_remark_in_the_summary_names_its_channel_in_words(found: eha.Results) -> None:
-    remarked = replace(found.diagnosis, remarks=("pressure_b: 3 outliers were set aside",))
-    assert "Pressure of chamber B: 3 outliers were set aside." in str(summarise(remarked))
+    remarked = replace(found.diagnosis, remarks=("pressure_b: 3 outliers were excluded",))
+    assert "Pressure of chamber B: 3 outliers were excluded." in str(summarise(remarked))
 
 
 def test_json_plots_and_files(found: eha.Results, tmp_path: Path) -> None:

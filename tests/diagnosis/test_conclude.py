@@ -79,7 +79,7 @@ def test_the_site_of_a_law_leads_and_is_told_once():
     seen = (Location("chamber", 0.6, "at large pressures", ((1.0, 2.0),), ""), Location("force", 0.3, "", (), ""))
     first, *rest = _led_by(UnknownLaw("force", "velocity", "3e3 v", 0.84, ()), seen)
     assert (first.site, first.share, first.where, first.when) == ("force", 0.84, "at large pressures", ((1.0, 2.0),))
-    assert first.statement.startswith("84% of what is missing") and "velocity" in first.statement
+    assert first.statement.startswith("84 % of what is missing") and "velocity" in first.statement
     assert rest == [seen[0]]
     (alone,) = _led_by(UnknownLaw("force", "velocity", "3e3 v", 0.84, ()), ())
     assert (alone.where, alone.when) == ("all over the states that were visited", ())

@@ -75,7 +75,7 @@ def friction(simulated: SimpleNamespace) -> Diagnosis:
         duration=SECONDS,
         channels=("voltage_command", "pressure_a", "pressure_b", "position"),
         not_examined=(),
-        remarks=("pressure_a: 3 outliers were set aside",),
+        remarks=("pressure_a: 3 outliers were excluded",),
         damaged=None,
         verdict="missing_physics",
         summary="Physics is missing: the seals rub with 200 N.",

@@ -75,11 +75,11 @@ def test_stays_on_one_screen_however_much_there_is_to_say(ambiguous: Diagnosis) 
 
 def test_what_does_not_fit_ends_with_whole_items_and_their_number(friction: Diagnosis) -> None:
     (mass,) = (one for one in friction.parameters if one.name == "moving_mass")
-    many = replace(friction, parameters=(mass,) * 7, remarks=("pressure_a: 3 outliers were set aside", "word " * 60))
+    many = replace(friction, parameters=(mass,) * 7, remarks=("pressure_a: 3 outliers were excluded", "word " * 60))
     lines = account(many).splitlines()
     text = " ".join(" ".join(lines).split())
     assert "(nominal 9.00 kg); moving_mass 10.946 ± 0.069 kg (nominal 9.00 kg); and 4 more RMSE" in text
-    assert "pressure_a: 3 outliers were set aside; and 1 more" in text
+    assert "pressure_a: 3 outliers were excluded; and 1 more" in text
     (cut,) = (line for line in account(replace(friction, summary="word " * 200)).splitlines() if line.endswith("…"))
     assert cut.endswith("word …")
 

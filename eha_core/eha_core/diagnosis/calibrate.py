@@ -104,7 +104,7 @@ def _but_for_its_end(observation: Observation, calibration: Calibration, number:
     last = float(shooting.edges[-1] - shooting.edges[-2]) * shooting.step_size
     if share < NOWHERE_ELSE or observation.duration < SHORTEST + last:
         return observation
-    why = f"{share:.0%} of what the nominal equations leave unexplained sits there, as where nodes go down"
+    why = f"{100 * share:.0f} % of what the nominal equations leave unexplained sits there, as where nodes go down"
     return without_end(observation, last, why)
 
 

@@ -40,7 +40,7 @@ def whereabouts(
 def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> str:
     """A location in words."""
     place = f"{SITES[site].words}, {where}{_times(when)}"
-    return f"{share:.0%} of what the calibrated model leaves unexplained sits {place}"
+    return f"{100 * share:.0f} % of what the calibrated model leaves unexplained sits {place}"
 
 
 def _energy(shooting: Shooting, result: Fit) -> tuple[Array, Array]:

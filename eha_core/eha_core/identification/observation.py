@@ -86,7 +86,7 @@ class Observation:
 
 
 def observe(recording: Recording, composition: Composition = PAPER) -> Observation:
-    """Choose what drives the simulation and what it is compared with; estimate noise; set outliers aside.
+    """Choose what drives the simulation and what it is compared with; estimate noise; exclude outliers.
 
     A source that no voltage drives says itself what does.
 
@@ -227,5 +227,6 @@ def _measured(channel: Channel, column: int, remarks: list[str]) -> Measured:
     noise = max(estimate_noise(channel.values), RESOLVED[channel.unit])
     bad = find_outliers(channel.values, noise)
     if bad.any():
-        remarks.append(f"{channel.name}: {int(bad.sum())} outliers were set aside")
+        excluded = "1 outlier was excluded" if bad.sum() == 1 else f"{bad.sum()} outliers were excluded"
+        remarks.append(f"{channel.name}: {excluded}")
     return Measured(channel.name, column, channel.time[~bad], channel.values[~bad], noise)
