@@ -53,6 +53,9 @@ def test_the_outcome_differs_by_what_is_predicted():
     apart -= apart.mean(axis=1, keepdims=True)
     assert np.sqrt(np.sum(apart**2)) == pytest.approx(deviations(experiment), rel=0.01)
     assert "should tell them apart" in experiment.statement
+    amplitude, unit = re.search(r"amplitude ([0-9.]+) (\w+)", experiment.statement).groups()
+    stated = float(amplitude) * {"V": 1.0, "mV": 1e-3}[unit]
+    assert stated == pytest.approx(np.max(np.abs(voltage_of(experiment))), rel=0.01)
 
 
 def test_what_the_nominal_parameters_could_imitate_does_not_count():

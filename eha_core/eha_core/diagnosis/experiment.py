@@ -11,7 +11,8 @@ from eha_core.diagnosis.discrimination import STEP, separation
 from eha_core.diagnosis.result import Experiment
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
-from eha_core.signals import make_signal
+from eha_core.quantities import quantity
+from eha_core.signals import make_signal, signals
 
 DURATIONS = (10.0, 20.0, 40.0, 60.0)
 """s; how long a test may last. All trials are compared at the first, and LASTING of them, where that is too short, at
@@ -60,6 +61,15 @@ class Trial:
             **{f"{self.signal}.{k}": v for k, v in self.parameters.items()},
         }
 
+    def settings(self) -> str:
+        """Its parameters in words: "amplitude 0.45 V, frequency 2 Hz"."""
+        units = {row.name: row.unit.replace("same", "V") for row in signals()[self.signal].parameters()}
+        shown = {
+            name.replace("_", " "): quantity(value, units[name]) if isinstance(value, float) else value
+            for name, value in self.parameters.items()
+        }
+        return ", ".join(f"{name} {value}" for name, value in shown.items())
+
     def voltage(self, duration: float) -> Array:
         """Its voltage [V] for so long [s], one value a STEP."""
         times = np.arange(round(duration / STEP)) * STEP
@@ -105,12 +115,10 @@ def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, 
     if best.separation < TELLING and not set(PRESSURES) <= set(noises):
         record = tuple(name for name in PRESSURES if name not in noises)
         best = _best_discrimination(fits, {**PRESSURES, **noises}, level, voltage_limit)
-    how = ", ".join(f"{name} {value:.3g}" if isinstance(value, float) else f"{name} {value}"
-                    for name, value in best.trial.parameters.items())  # fmt: skip
     beside = ", with the chambers' pressures recorded too," if record else ""
     told = "should tell" if best.separation > TELLING else "may tell" if best.separation > PERHAPS else "hardly tells"
     statement = (
-        f"{' or '.join(' and '.join(ids) for ids in names)}: a {best.trial.signal} of voltage ({how})"
+        f"{' or '.join(' and '.join(ids) for ids in names)}: a {best.trial.signal} of voltage ({best.trial.settings()})"
         f" for {best.duration:g} s{beside} {told} them apart"
         f" (expected: {np.sqrt(best.separation):.0f} deviations of noise)"
     )
