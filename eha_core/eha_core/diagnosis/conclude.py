@@ -201,7 +201,8 @@ def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> De
 def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
     """The law's site first, whatever effects of other sites could make up for."""
     where, when = (location[0].where, location[0].when) if location else ("all over the states that were visited", ())
-    statement = f"{100 * law.r_squared:.0f} % of what is missing {SITES[law.site].words} is a law over {law.function_of}"
+    share = 100.0 * law.r_squared
+    statement = f"{share:.0f} % of what is missing {SITES[law.site].words} is a law over {law.function_of}"
     others = (one for one in location if one.site != law.site)
     return (Location(law.site, law.r_squared, where, when, statement), *others)
 
