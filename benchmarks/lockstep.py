@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from benchmarks.row import Row
 from eha_core.effects import Effect, effects
-from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.observation import observe
 from eha_core.identification.problem import STATE_STEP, Point, changes, whole
 from eha_core.identification.segments import cut
@@ -138,7 +138,7 @@ def _jacobian_row() -> Row:
     coarse, states = problem.slopes, problem.shooting.initial_states
     values = nominal_values()
     moved: list[Point] = [
-        ({**values, one.name: 1.001 * values[one.name]}, states) for one in nominal_freedom(values, "voltage", 0.05)
+        ({**values, one.name: 1.001 * values[one.name]}, states) for one in free_nominal_parameters(values, "voltage", 0.05)
     ]
     moved += [(values, states + step) for step in np.diag(STATE_STEP)]
 

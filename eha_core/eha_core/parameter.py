@@ -15,10 +15,10 @@ class Parameter:
     `typical` is a size at which the quantity matters on a bench actuator: where a search for it starts, and what the
     catalogue's own tests plant. It is the nominal value itself for the parameters of the nominal plant.
     A search tries each of `starts`, in units of the observed quantity that `relative_to` names (one of
-    `eha_core.diagnosis.facts.SCALES`), or of `typical` where it names none. `above` names a parameter of the same
-    effect that a fit takes this one never to be smaller than. `switches` marks the parameters that turn
-    an effect on by leaving their nominal value. `logarithmic` says that a fit moves the quantity by factors; it can
-    then not reach zero.
+    `eha_core.diagnosis.characteristic_scales.QUANTITIES`), or of `typical` where it names none. `above` names a
+    parameter of the same effect that a fit takes this one never to be smaller than. `switches` marks the
+    parameters that turn an effect on by leaving their nominal value. `logarithmic` says that a fit moves the quantity
+    by factors; it can then not reach zero.
     """
 
     name: str

@@ -6,7 +6,7 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis import diagnose_together
-from eha_core.identification.freedom import NOMINAL_TRUST, nominal_freedom, not_believed
+from eha_core.identification.free_parameters import NOMINAL_PRIORS, free_nominal_parameters, not_believed
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.plant import PAPER
@@ -17,12 +17,12 @@ RIG = {"damping_coefficient": 20.0 * nominal_values()["damping_coefficient"], "c
 def test_an_unknown_value_may_go_a_thousandfold():
     name = "damping_coefficient"
     known, unknown = (
-        next(one for one in nominal_freedom(nominal_values(), "voltage", 0.01, names) if one.name == name)
+        next(one for one in free_nominal_parameters(nominal_values(), "voltage", 0.01, names) if one.name == name)
         for names in ((), (name,))
     )
-    assert known.upper / known.reference == pytest.approx(NOMINAL_TRUST[name].reach)
+    assert known.upper / known.reference == pytest.approx(NOMINAL_PRIORS[name].bound_factor)
     assert unknown.upper / unknown.reference == pytest.approx(1000.0)
-    assert unknown.trust > 2.0 * known.trust
+    assert unknown.prior_deviation > 2.0 * known.prior_deviation
     assert not_believed(known, PAPER.place_rows[name]) == unknown
 
 

@@ -4,12 +4,13 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import ENOUGH
-from eha_core.diagnosis.facts import gather
-from eha_core.diagnosis.hypotheses import candidates, starts
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.initial_guesses import applicable_effects, initial_guesses
 from eha_core.diagnosis.model_comparison import REFINED
-from eha_core.diagnosis.refine import attempts, refit_with, settle
+from eha_core.diagnosis.planned_refits import planned_refits, refit_with
 from eha_core.diagnosis.screen import screen
 from eha_core.effects import effects
 from eha_core.identification.observation import observe
@@ -56,14 +57,14 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     other = {"moving_mass": 1.1 * nominal["moving_mass"], "damping_coefficient": 0.93 * nominal["damping_coefficient"]}
     observation = observe(recorded({**rig, **planted, **other}, seed=7, duration=DURATIONS.get(effect.id, 6.0)))
     calibration = calibrate([observation], NominalModel(nominal), STEPS.get(effect.id, 2e-4))
-    facts = gather([observation], calibration.shooting, calibration.fitted)
-    tried = [start for one in candidates([observation]) for start in starts(one, facts)]
+    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
+    tried = [guess for one in applicable_effects([observation]) for guess in initial_guesses(one, scales)]
     score_tests = screen(calibration.problem, calibration.fitted, tried)
-    leading = attempts(calibration.problem, calibration.fitted, tried, score_tests, REFINED, ENOUGH)
-    attempt = next((one for one in leading if one.score_test.start.effect.id == effect.id), None)
-    assert attempt is not None, [one.score_test.start.effect.id for one in leading]
-    first = refit_with(calibration.problem, attempt, float("inf"))
-    (result,) = settle(calibration.problem, {NOTHING.with_effects([effect]): first}).values()
+    leading = planned_refits(calibration.problem, calibration.fitted, tried, score_tests, REFINED, ENOUGH)
+    planned = next((one for one in leading if one.score_test.guess.effect.id == effect.id), None)
+    assert planned is not None, [one.score_test.guess.effect.id for one in leading]
+    first = refit_with(calibration.problem, planned, float("inf"))
+    (result,) = converge(calibration.problem, {NOTHING.with_effects([effect]): first}).values()
     assert result.data / result.count < 1.1
     assert calibration.fitted.objective - result.objective > 50.0
     for row in effect.parameters:

@@ -13,7 +13,7 @@ from eha_core.diagnosis import conclude
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.conclude import _led_by, _ordered, _unknown
 from eha_core.diagnosis.discrimination import RATE
-from eha_core.diagnosis.effect_freedom import effect_freedom
+from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.model_comparison import Entry, ModelComparison
@@ -248,7 +248,7 @@ def concluded(verdict: str, *names: str, rivals=(), lead: int = 1, damaged=(None
     shooting = conclude.cut_together(observations, nominal_values())
     left = tuple(np.zeros(len(one.values)) for one in shooting.samplings)
     size = {"constant_load.force": 200.0, "coulomb_friction.force": 250.0}
-    free = [one for effect in chosen for one in effect_freedom(effect, {**nominal_values(), **size})]
+    free = [one for effect in chosen for one in free_effect_parameters(effect, {**nominal_values(), **size})]
     model = replace(explanation(size, tuple(free)), residuals=left)
     nominal, winner = Entry(NOTHING, model, 0.0), Entry(NOTHING.with_effects(chosen), model, 90.0)
     evidence = Evidence(

@@ -5,7 +5,7 @@ import pytest
 from test_experiment import explanation
 
 from eha_core.diagnosis.discrimination import STEP, separation
-from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.parameters import nominal_values
 
 NOISE = {"position": 1e-5, "pressure_a": 1e4, "pressure_b": 1e4}
@@ -15,7 +15,7 @@ ELSEWHERE = {"valve_gain": 1.04, "moving_mass": 0.95, "damping_coefficient": 1.0
 
 def test_rivals_that_differ_in_parameters_alone_are_not_told_apart():
     nominal = nominal_values()
-    free = nominal_freedom(nominal, "voltage", 0.02)
+    free = free_nominal_parameters(nominal, "voltage", 0.02)
     moved = {name: factor * nominal[name] for name, factor in ELSEWHERE.items()}
     held = separation(VOLTAGE, [explanation({}), explanation(moved)], NOISE)
     assert held > 1e5

@@ -7,7 +7,7 @@ import pytest
 
 from eha_core.diagnosis.experiment import propose
 from eha_core.identification.fit import Fit
-from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant
 from eha_core.signals import make_signal
@@ -60,13 +60,13 @@ def test_the_outcome_differs_by_what_is_predicted():
 
 def test_what_the_nominal_parameters_could_imitate_does_not_count():
     known = [(("constant_load",), explanation(LOAD)), (("flow_gain_asymmetry",), explanation(ASYMMETRY))]
-    free = nominal_freedom(nominal_values(), "voltage", 0.02)
+    free = free_nominal_parameters(nominal_values(), "voltage", 0.02)
     fitted = [(known[0][0], explanation(LOAD, free)), known[1]]
     assert deviations(propose(fitted, NOISE, 0.1, LIMIT)) < 0.9 * deviations(propose(known, NOISE, 0.1, LIMIT))
 
 
 def test_pressures_are_asked_for_where_no_voltage_tells():
-    free = nominal_freedom(nominal_values(), "voltage", 0.02)
+    free = free_nominal_parameters(nominal_values(), "voltage", 0.02)
     load, area = {"constant_load.force": 1.0}, {"unequal_piston_area.ratio": 0.99986}
     rivals = [(("constant_load",), explanation(load, free)), (("unequal_piston_area",), explanation(area))]
     experiment = propose(rivals, NOISE, 0.1, LIMIT)

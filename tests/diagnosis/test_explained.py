@@ -31,7 +31,7 @@ def evidence(before: float, after: float, **sites: float):
         calibration=SimpleNamespace(shooting=SimpleNamespace(names=("position", "pressure_a"))),
         comparison=SimpleNamespace(nominal=SimpleNamespace(fit=fit(before)), left_over=sites),
         decision=SimpleNamespace(winner=SimpleNamespace(fit=fit(after))),
-        facts=None,
+        scales=None,
         lead=1,
     )
 

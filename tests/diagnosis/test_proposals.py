@@ -1,35 +1,35 @@
-"""Where the fit of another form of a law begins, and which starts there are."""
+"""Where the fit of another form of a law begins, and which initial guesses there are."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from eha_core.diagnosis.effect_freedom import effect_freedom
-from eha_core.diagnosis.hypotheses import starts
+from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.initial_guesses import initial_guesses
 from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.proposals import in_another_form
 from eha_core.effects import effects
 from eha_core.identification.fit import Ending, Fit
-from eha_core.identification.freedom import coordinates
+from eha_core.identification.free_parameters import coordinates
 
 LAWS = {effect.id: effect for effect in effects()}
 FORMS = [LAWS[name] for name in ("coulomb_friction", "presliding_friction", "stribeck_friction")]
-FACTS = SimpleNamespace(scales={"force": (0.0, 1000.0), "speed": (0.0, 0.2)})
+SCALES = SimpleNamespace(by_quantity={"force": (0.0, 1000.0), "speed": (0.0, 0.2)})
 
 
 def forms_of(law: str, **found: float) -> dict[str, list[dict[str, float]]]:
-    """The starts of the other forms, by their effect, from a fit of one with these values."""
+    """The initial guesses of the other forms, by their effect, from a fit of one with these values."""
     values = {f"{law}.{name}": value for name, value in found.items()}
-    free = effect_freedom(LAWS[law], values)
+    free = free_effect_parameters(LAWS[law], values)
     at = Fit(free, coordinates(free, values), values, np.zeros((1, 4)), 0.0, 0.0, 1, (), np.eye(len(free)),
              Ending.CONVERGED, 1)  # fmt: skip
-    search = Search(None, FORMS, FACTS)
+    search = Search(None, FORMS, SCALES)
     begun: dict[str, list[dict[str, float]]] = {}
-    for guess in in_another_form(search, Candidate(NOTHING.with_effects([LAWS[law]]), at)):
-        (form,) = guess.hypothesis.ids
-        own = {name.rsplit(".", 1)[1]: value for name, value in guess.values.items() if name.startswith(form)}
+    for proposal in in_another_form(search, Candidate(NOTHING.with_effects([LAWS[law]]), at)):
+        (form,) = proposal.hypothesis.ids
+        own = {name.rsplit(".", 1)[1]: value for name, value in proposal.values.items() if name.startswith(form)}
         begun.setdefault(form, []).append(own)
     return begun
 
@@ -50,6 +50,7 @@ def test_forms_that_share_a_parameter_begin_with_its_value():
 
 
 @pytest.mark.parametrize("law", ["presliding_friction", "stribeck_friction"])
-def test_every_start_has_one_to_four_times_as_much_friction_at_rest_as_in_motion(law):
-    pairs = {(one.values[f"{law}.force"], one.values[f"{law}.static_force"]) for one in starts(LAWS[law], FACTS)}
+def test_every_initial_guess_has_one_to_four_times_as_much_friction_at_rest_as_in_motion(law):
+    guesses = initial_guesses(LAWS[law], SCALES)
+    pairs = {(one.values[f"{law}.force"], one.values[f"{law}.static_force"]) for one in guesses}
     assert pairs == {(100.0, 200.0), (400.0, 600.0)}

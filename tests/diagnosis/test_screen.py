@@ -5,10 +5,10 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis import screen
-from eha_core.diagnosis.facts import gather
-from eha_core.diagnosis.hypotheses import candidates, starts
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.initial_guesses import applicable_effects, initial_guesses
 from eha_core.identification.fit import fit
-from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.observation import observe
 from eha_core.identification.problem import whole
 from eha_core.identification.segments import cut
@@ -19,17 +19,18 @@ def test_windows_taken_together_predict_the_same_and_tell_since_when(monkeypatch
     friction = {"coulomb_friction.force": 200.0, "effects_from": 3.0, "effects_until": 6.0}
     observation, values = observe(recorded(friction, duration=12.0)), nominal_values()
     problem = whole(cut(observation, values))
-    calibrated = fit(problem, values, nominal_freedom(values, "voltage", 0.0), iterations=3)
-    facts = gather([observation], problem.shooting, calibrated)
-    begin = [one for effect in candidates([observation]) if effect.site == "force" for one in starts(effect, facts)]
+    calibrated = fit(problem, values, free_nominal_parameters(values, "voltage", 0.0), iterations=3)
+    scales = characteristic_scales([observation], problem.shooting, calibrated)
+    of_force = [effect for effect in applicable_effects([observation]) if effect.site == "force"]
+    begin = [guess for effect in of_force for guess in initial_guesses(effect, scales)]
     alone = screen.screen_in_time(problem, calibrated, begin)
     monkeypatch.setattr(screen, "MOST_SPANS", 4)
-    monkeypatch.setattr(screen, "LANES", 3)  # so that the starts are simulated in several turns
+    monkeypatch.setattr(screen, "LANES", 3)  # so that the guesses are simulated in several turns
     together = screen.screen_in_time(problem, calibrated, begin)
-    always = [{repr(one.start): one.gain for one in found if one.windows is None} for found in (alone, together)]
+    always = [{repr(one.guess): one.gain for one in found if one.windows is None} for found in (alone, together)]
     assert len(always[0]) == len(begin)
-    assert [always[1][start] for start in always[0]] == pytest.approx(list(always[0].values()), rel=1e-8)
-    assert alone[0].start.effect.id == together[0].start.effect.id == "coulomb_friction"
+    assert [always[1][guess] for guess in always[0]] == pytest.approx(list(always[0].values()), rel=1e-8)
+    assert alone[0].guess.effect.id == together[0].guess.effect.id == "coulomb_friction"
     assert alone[0].windows == together[0].windows == (3, 6)
     assert {edge for one in together if one.windows for edge in one.windows} <= {0, 3, 6, 9, 12}
 

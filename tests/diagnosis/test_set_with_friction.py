@@ -4,11 +4,11 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.criteria import UNFITTED
-from eha_core.diagnosis.facts import gather
-from eha_core.diagnosis.hypotheses import candidates
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.candidates import Guess, Search, with_effects
+from eha_core.diagnosis.initial_guesses import applicable_effects
+from eha_core.diagnosis.search.candidates import Proposal, Search, with_effects
 from eha_core.diagnosis.search.short_windows import set_in_each_form, set_with_friction, sticks
 from eha_core.effects import effects
 from eha_core.identification.observation import observe
@@ -33,8 +33,8 @@ LOST = {
 def search():
     observation = observe(recorded(PLANTED, duration=6.0))
     calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
-    facts = gather([observation], calibration.shooting, calibration.fitted)
-    made = Search(calibration.problem, candidates([observation]), facts, shorter=calibration.shorter)
+    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
+    made = Search(calibration.problem, applicable_effects([observation]), scales, shorter=calibration.shorter)
     made.keep(NOTHING, calibration.fitted)
     return made
 
@@ -43,7 +43,7 @@ def fitted(search, values, iterations):
     chosen = [LAWS[name] for name in sorted({name.split(".")[0] for name in values})]
     begun = {**nominal_values(), **values}
     free = with_effects(search.found[NOTHING].free, chosen, begun)
-    return search.try_guess(Guess(NOTHING.with_effects(chosen), begun, free, None), iterations)
+    return search.try_proposal(Proposal(NOTHING.with_effects(chosen), begun, free, None), iterations)
 
 
 def test_a_law_that_has_lost_its_shape_is_led_back(search):

@@ -8,10 +8,10 @@ from made import recorded
 
 from eha_core.diagnosis import criteria, diagnose
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.facts import gather
-from eha_core.diagnosis.hypotheses import candidates
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.candidates import Guess, Search, with_effects
+from eha_core.diagnosis.initial_guesses import applicable_effects
+from eha_core.diagnosis.search.candidates import Proposal, Search, with_effects
 from eha_core.diagnosis.search.prune import asked_of, by_chance, prune, refit_without, wald
 from eha_core.diagnosis.verdict import coherence
 from eha_core.effects import effects
@@ -32,8 +32,8 @@ def search():
     """A search on a rig with a load and an overlap, the fit of both and of a third that is not there."""
     observation = observe(recorded(PLANTED, duration=6.0))
     calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
-    facts = gather([observation], calibration.shooting, calibration.fitted)
-    made = Search(calibration.problem, candidates([observation]), facts)
+    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
+    made = Search(calibration.problem, applicable_effects([observation]), scales)
     made.keep(NOTHING, calibration.fitted)
     return made
 
@@ -42,7 +42,7 @@ def fitted(search, names, values):
     chosen = [LAWS[name] for name in names]
     begun = {**nominal_values(), **values}
     free = with_effects(search.found[NOTHING].free, chosen, begun)
-    return search.try_guess(Guess(NOTHING.with_effects(chosen), begun, free, None), 15)
+    return search.try_proposal(Proposal(NOTHING.with_effects(chosen), begun, free, None), 15)
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +103,7 @@ def test_a_laws_form_leaves_something_for_what_acts_in_the_same_balance(three):
 
 def test_a_fit_in_another_noise_is_the_same_model(search):
     best = fitted(search, ("constant_load", "valve_deadband"), PLANTED)
-    again = Search(search.problem, search.able, search.facts, found=dict(search.found))
+    again = Search(search.problem, search.applicable, search.scales, found=dict(search.found))
     louder = replace(best, fit=replace(best.fit, residuals=tuple(2.0 * one for one in best.fit.residuals)))
     again.measure_noise(louder)
     noises = zip(again.problem.shooting.samplings, search.problem.shooting.samplings, strict=True)

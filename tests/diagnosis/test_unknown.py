@@ -6,7 +6,7 @@ from made import recorded
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.facts import gather
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.model_comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.search.candidates import with_effects
@@ -35,7 +35,7 @@ def found():
     """What is recovered where the search left a set of the hysteresis and a load that is not there."""
     observation = observe(recorded(PLANTED, duration=6.0))
     calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
-    facts = gather([observation], calibration.shooting, calibration.fitted)
+    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
     chosen = [LAWS["constant_load"], LAWS["spool_hysteresis"]]
     begun = {**nominal_values(), "spool_hysteresis.half_width": 1.4e-4, "constant_load.force": 50.0}
     free = with_effects(calibration.fitted.free, chosen, begun)
@@ -43,7 +43,7 @@ def found():
     entries = rank(calibration.problem, calibration.fitted, fits)
     nominal = Entry(NOTHING, calibration.fitted, 0.0)
     comparison = ModelComparison(nominal, entries, (), residual_variance(calibration.fitted, entries))
-    return recover(calibration.problem, comparison, facts)
+    return recover(calibration.problem, comparison, scales)
 
 
 def test_the_law_stands_beside_the_effect_that_is_there_and_takes_the_place_of_the_one_that_is_not(found):

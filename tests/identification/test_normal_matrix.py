@@ -5,10 +5,10 @@ import pytest
 from made import recorded
 from scipy.linalg import LinAlgError
 
-from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.normal_matrix import NormalMatrix
 from eha_core.identification.observation import observe
-from eha_core.identification.problem import LINK, STATE_TRUST, Problem, linearise, normal_equations, whole
+from eha_core.identification.problem import LINK, STATE_PRIOR, Problem, linearise, normal_equations, whole
 from eha_core.identification.segments import cut
 from eha_core.parameters import nominal_values
 
@@ -119,7 +119,7 @@ def _jacobian(problem: Problem, free, linear) -> np.ndarray:
             row[count + 4 * window : count + 4 * window + size] = linear.ends_by_state[window, state]
             row[count + 4 * (window + 1) + state] = -1.0
             rows.append(row / LINK[state])
-    trust = np.concatenate([[one.trust for one in free], np.tile(STATE_TRUST, windows)])
+    trust = np.concatenate([[one.prior_deviation for one in free], np.tile(STATE_PRIOR, windows)])
     return np.concatenate([np.array(rows), np.diag(1.0 / trust)])
 
 
@@ -130,7 +130,7 @@ def test_the_equations_of_a_recording_are_those_of_its_jacobian(channels):
     observation = observe(recorded({"moving_mass": 11.5}, duration=6.0, channels=("voltage_command", *channels)))
     shooting = cut(observation, values)
     problem = Problem(shooting, np.array([0, 1, 3, 4]))
-    free = nominal_freedom(values, "voltage", 0.0)
+    free = free_nominal_parameters(values, "voltage", 0.0)
     q = np.full(len(free), 0.01)
     states = shooting.initial_states + 0.1 * LINK
     linear = linearise(problem, values, free, q, states)
@@ -138,7 +138,7 @@ def test_the_equations_of_a_recording_are_those_of_its_jacobian(channels):
     jacobian = _jacobian(problem, free, linear)
     links = problem.links()
     gaps = (linear.ends[links] - states[links + 1]) / LINK
-    trust = np.concatenate([[one.trust for one in free], np.tile(STATE_TRUST, shooting.windows)])
+    trust = np.concatenate([[one.prior_deviation for one in free], np.tile(STATE_PRIOR, shooting.windows)])
     offsets = np.concatenate([q, (states - shooting.initial_states).ravel()]) / trust
     full = jacobian.T @ jacobian
     scale = np.sqrt(np.diag(full))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from made import recorded
 
-from eha_core.identification.freedom import Free
+from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.observation import observe
 from eha_core.identification.parallel import side_by_side
 from eha_core.identification.problem import STATE_STEP, Problem, changes, linearise, whole
@@ -100,7 +100,7 @@ def test_nothing_free_but_the_starts(shooting: Shooting) -> None:
 
 def test_a_step_is_taken_inwards_at_a_bound(shooting: Shooting) -> None:
     values = nominal_values() | {"moving_mass": 12.0}
-    at_bound = Free("moving_mass", 9.0, False, 1.0, 1.0, 1.0, 12.0)
+    at_bound = FreeParameter("moving_mass", 9.0, False, 1.0, 1.0, 1.0, 12.0)
     inside = replace(at_bound, upper=13.0)
     slopes = [
         linearise(whole(shooting), values, (one,), np.array([3.0]), shooting.initial_states).by_parameter[:, 0]

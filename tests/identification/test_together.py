@@ -9,7 +9,7 @@ from made import recorded
 from eha_core.diagnosis import diagnose_together
 from eha_core.errors import RecordingError
 from eha_core.identification.fit import fit
-from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.observation import observe
 from eha_core.identification.problem import changes, residuals, whole
 from eha_core.identification.segments import cut
@@ -86,7 +86,7 @@ def test_a_fit_of_both_has_one_value_where_none_is_marked_and_two_where_it_is():
     seen = [observe(recorded(rig, seed=seed, duration=5.0)) for seed, rig in enumerate(rigs, 7)]
     marked = ("supply_pressure",)
     shooting = cut_together(seen, nominal_values(), per_recording=marked)
-    free = nominal_freedom(nominal_values(), "voltage", 0.01)
+    free = free_nominal_parameters(nominal_values(), "voltage", 0.01)
     found = fit(whole(shooting), nominal_values(), free, iterations=20)
     assert found.values["supply_pressure"] == pytest.approx(19e6, rel=0.01)
     assert found.values["supply_pressure@2"] == pytest.approx(22e6, rel=0.01)

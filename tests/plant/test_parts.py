@@ -161,10 +161,10 @@ from eha_core.plant import Plant, compose
 plant = Plant({"pump_flow": 3e-5, "internal_leakage": 0.0}, 1e-3, composition=compose(source="constant_pump"))
 found = plant.run(np.ones(400), 400)
 print(found.velocity[-1], found.flow_a[-1])
-from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.nominal import nominal_of
 model = nominal_of({"pump_flow": 3e-5}, composition=compose(source="constant_pump"))
-free = nominal_freedom(model.values, "measured", 0.05, model.unknown, model.composition)
+free = free_nominal_parameters(model.values, "measured", 0.05, model.unknown, model.composition)
 print(next(one.value(one.coordinate(4e-5)) for one in free if one.name == "pump_flow"))
 """
 

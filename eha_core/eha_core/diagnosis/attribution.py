@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration
-from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.locate import stated, whereabouts
 from eha_core.diagnosis.model_comparison import ModelComparison
 from eha_core.diagnosis.result import Location
@@ -21,7 +21,7 @@ from eha_core.weak_form.balance import Balance
 def attribute(
     calibration: Calibration,
     nominal: Fit,
-    facts: Facts,
+    scales: Scales,
     comparison: ModelComparison,
     equations: Sequence[Balance],
     recording: int = 1,
@@ -33,7 +33,7 @@ def attribute(
     shooting = calibration.shooting
     unexplained = max(nominal.objective - nominal.count, 1.0)
     gains = _site_gains(comparison, equations)
-    where, when = whereabouts(shooting, nominal, facts, recording)
+    where, when = whereabouts(shooting, nominal, scales, recording)
     found: list[Location] = []
     for site, gain in sorted(gains.items(), key=lambda item: -item[1])[:4]:
         share = float(np.clip(gain / unexplained, 0.0, 1.0))
@@ -54,7 +54,7 @@ def _site_gains(comparison: ModelComparison, equations: Sequence[Balance]) -> di
             refitted[entry.ids[0]] = max(gain, refitted.get(entry.ids[0], gain))
     most = max([0.0, *refitted.values()])
     for score_test in comparison.score_tests:
-        effect = score_test.start.effect
+        effect = score_test.guess.effect
         gain = refitted.get(effect.id, min(score_test.gain, 0.5 * most))
         if gain > gains.get(effect.site, 0.0):
             gains[effect.site] = gain

@@ -10,7 +10,7 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
-from eha_core.identification.freedom import nominal_freedom
+from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.noise import residual_noise
 from eha_core.identification.observation import RESOLVED, SHORTEST, Observation, without_end
 from eha_core.identification.per_recording import base_name
@@ -53,14 +53,14 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     shooting = cut_together(observations, nominal, step_size, per_recording=model.per_recording)
     positions = [channel.values for one in observations for channel in one.measured if channel.name == "position"]
     farthest = max(float(np.max(np.abs(values))) for values in positions)
-    free = nominal_freedom(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
+    free = free_nominal_parameters(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
     first = fit_in_stages(whole(shooting), nominal, free)
     shooting = with_noise(shooting, corrected_noise(shooting, first))
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
-    as_given = fit(problem, nominal, (), fitted.states, iterations=5)
+    at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
     shorter = tuple(cut_together(observations, nominal, step_size, one, model.per_recording) for one in SHORT)
-    return Calibration(shooting, problem, as_given, fitted, shorter)
+    return Calibration(shooting, problem, at_nominal_values, fitted, shorter)
 
 
 def calibrate_finely_enough(observations: Sequence[Observation], model: NominalModel) -> Calibration:
@@ -131,7 +131,7 @@ def corrected_noise(shooting: Shooting, result: Fit) -> list[float]:
 def identifiable(result: Fit, name: str) -> bool:
     """Whether the recording says more about a parameter than its nominal value did."""
     place = [one.name for one in result.free].index(name)
-    return bool(np.sqrt(max(result.covariance[place, place], 0.0)) < 0.5 * result.free[place].trust)
+    return bool(np.sqrt(max(result.covariance[place, place], 0.0)) < 0.5 * result.free[place].prior_deviation)
 
 
 def has_changed(result: Fit, nominal: Mapping[str, float], name: str) -> bool:

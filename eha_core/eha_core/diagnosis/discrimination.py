@@ -9,9 +9,9 @@ from itertools import permutations
 
 import numpy as np
 
-from eha_core.diagnosis.refine import NOMINAL_NAMES
+from eha_core.diagnosis.nominal_start import NOMINAL_NAMES
 from eha_core.identification.fit import SETTLED, Fit
-from eha_core.identification.freedom import Free, coordinates, values_at
+from eha_core.identification.free_parameters import FreeParameter, coordinates, values_at
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import is_one_of
 from eha_core.plant import COLUMNS, Plant
@@ -82,7 +82,7 @@ class _Test:
         """What is measured of the plant with these parameters."""
         return self.measured(self.respond(values))
 
-    def slopes(self, rival: Fit, free: Sequence[Free], outcome: Array) -> Array:
+    def slopes(self, rival: Fit, free: Sequence[FreeParameter], outcome: Array) -> Array:
         """How a rival's outcome moves with the coordinate of each of these parameters: (samples, parameters)."""
         slopes = np.zeros((len(outcome), len(free)))
         at = coordinates(free, rival.values)
@@ -109,13 +109,13 @@ def _is_bearable(rows: Array, values: Mapping[str, float]) -> bool:
 class _Slopes:
     """How an outcome moves with the coordinates of `free`: (samples, parameters)."""
 
-    free: tuple[Free, ...]
+    free: tuple[FreeParameter, ...]
     columns: Array
 
     @cached_property
     def priors(self) -> Array:
         """Inverse standard deviations of the coordinates."""
-        return np.array([1.0 / one.trust for one in self.free])
+        return np.array([1.0 / one.prior_deviation for one in self.free])
 
     def towards(self, difference: Array, q: Array, damping: float = 0.0) -> Array:
         """The damped move from q that takes an outcome to one that differs by so much, as far as the priors let it."""

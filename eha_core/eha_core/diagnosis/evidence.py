@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration
-from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.model_comparison import ModelComparison
 from eha_core.diagnosis.result import Location
 from eha_core.diagnosis.unknown import Recovery
@@ -34,7 +34,7 @@ class Evidence:
     lead: int
     nominal: Mapping[str, float]
     calibration: Calibration
-    facts: Facts
+    scales: Scales
     equations: tuple[Balance, ...]
     balances: tuple[tuple[Balance, ...], ...]
     comparison: ModelComparison

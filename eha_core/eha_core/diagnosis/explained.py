@@ -37,7 +37,7 @@ def _left_over(evidence: Evidence) -> tuple[Location, ...]:
     """Where and when the rest sits; at the site at which one more effect would explain most of it, as far as a score
     test tells."""
     winner = evidence.decision.winner
-    where, when = whereabouts(evidence.calibration.shooting, winner.fit, evidence.facts, evidence.lead)
+    where, when = whereabouts(evidence.calibration.shooting, winner.fit, evidence.scales, evidence.lead)
     sites = evidence.comparison.left_over
     total = sum(sites.values())
     ranked = sorted(sites.items(), key=lambda item: -item[1])[:3]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.facts import Facts, facts_alone
+from eha_core.diagnosis.characteristic_scales import Scales, scales_alone
 from eha_core.effects import SITES
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
@@ -30,11 +30,11 @@ class Region:
 
 
 def whereabouts(
-    shooting: Shooting, result: Fit, facts: Facts, recording: int = 1
+    shooting: Shooting, result: Fit, scales: Scales, recording: int = 1
 ) -> tuple[str, tuple[tuple[float, float], ...]]:
     """In which part of state space, and when, a fit leaves most of a recording, counted from one."""
     alone, of_it = recording_alone(shooting, recording), fit_alone(shooting, result, recording)
-    return _where(alone, of_it, facts_alone(shooting, facts, recording)), _when(alone, of_it)
+    return _where(alone, of_it, scales_alone(shooting, scales, recording)), _when(alone, of_it)
 
 
 def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> str:
@@ -78,10 +78,10 @@ def _times(when: tuple[tuple[float, float], ...]) -> str:
     return f", in {len(when)} spans of time, the first from {when[0][0]:.1f} s"
 
 
-def regions(shooting: Shooting, result: Fit, facts: Facts) -> tuple[Region, ...]:
+def regions(shooting: Shooting, result: Fit, scales: Scales) -> tuple[Region, ...]:
     """How much of the time and of the unexplained energy fall into each part of state space that an engineer would
     name."""
-    if not len(facts.rows):
+    if not len(scales.rows):
         return ()
     sampling, residual = max(
         zip(shooting.samplings, result.residuals, strict=True), key=lambda pair: float(np.mean(pair[1] ** 2))
@@ -89,8 +89,8 @@ def regions(shooting: Shooting, result: Fit, facts: Facts) -> tuple[Region, ...]
     at = sampling.row
     energy = np.maximum(residual**2 - 1.0, 0.0)
     total = float(energy.sum()) or 1.0
-    speed, spool, position = (facts.column(name)[at] for name in ("velocity", "spool_position", "position"))
-    pressure = np.maximum(facts.column("pressure_a")[at], facts.column("pressure_b")[at])
+    speed, spool, position = (scales.column(name)[at] for name in ("velocity", "spool_position", "position"))
+    pressure = np.maximum(scales.column("pressure_a")[at], scales.column("pressure_b")[at])
     masks = {
         "near zero speed": np.abs(speed) < 0.15 * np.std(speed),
         "near the valve's null": np.abs(spool) < 0.15 * np.std(spool),
@@ -103,9 +103,9 @@ def regions(shooting: Shooting, result: Fit, facts: Facts) -> tuple[Region, ...]
     return tuple(Region(name, float(mask.mean()), float(energy[mask].sum()) / total) for name, mask in masks.items())
 
 
-def _where(shooting: Shooting, result: Fit, facts: Facts) -> str:
+def _where(shooting: Shooting, result: Fit, scales: Scales) -> str:
     """The region that holds most beyond its share of time, if any stands out."""
-    candidates = [one for one in regions(shooting, result, facts) if one.time_share > 0.005]
+    candidates = [one for one in regions(shooting, result, scales) if one.time_share > 0.005]
     best = max(candidates, key=lambda one: one.energy_share / one.time_share, default=None)
     if best is None or best.energy_share < 2.0 * best.time_share or best.energy_share < 0.15:
         return "all over the states that were visited"

@@ -8,23 +8,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import ADEQUATE, ENOUGH, FAR_FROM_NOISE, HARDLY, OVER, parameter_cost
-from eha_core.diagnosis.effect_freedom import freedom_used
-from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.hypotheses import starts
+from eha_core.diagnosis.effect_parameters import parameters_used
+from eha_core.diagnosis.found import Found, Progress, keep_better
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.passing import passing_effects
-from eha_core.diagnosis.refine import (
-    Found,
-    Progress,
-    attempts,
-    cross,
-    keep_better,
-    refit_nominal,
-    refit_with,
-    settle,
-)
+from eha_core.diagnosis.initial_guesses import initial_guesses
+from eha_core.diagnosis.planned_refits import planned_refits, refit_with
 from eha_core.diagnosis.screen import ScoreTest, screen_in_time
+from eha_core.diagnosis.time_limited import time_limited_effects
+from eha_core.diagnosis.warm_start import refit_nominal, warm_start
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.problem import Problem
@@ -67,31 +61,31 @@ class ModelComparison:
 
 
 def compete(
-    problem: Problem, calibrated: Fit, candidates: Sequence[Effect], facts: Facts, progress: Progress = lambda _: None
+    problem: Problem, calibrated: Fit, candidates: Sequence[Effect], scales: Scales, progress: Progress = lambda _: None
 ) -> ModelComparison:
     """Screen every candidate; refit those that may act for a while, if any, and the best of the others."""
     progress("screening the catalogue")
-    initial_guesses = [start for effect in candidates for start in starts(effect, facts)]
-    screened = screen_in_time(problem, calibrated, initial_guesses)
+    guesses = [guess for effect in candidates for guess in initial_guesses(effect, scales)]
+    screened = screen_in_time(problem, calibrated, guesses)
     score_tests = tuple(one for one in screened if one.windows is None)
-    passing = passing_effects(problem, calibrated, initial_guesses, screened, ENOUGH, progress)
+    limited = time_limited_effects(problem, calibrated, guesses, screened, ENOUGH, progress)
     found: Found = {}
-    best = min([calibrated.objective, *(result.objective for result in passing.values())])
+    best = min([calibrated.objective, *(result.objective for result in limited.values())])
     nearly_all = problem.count() + OVER * (calibrated.objective - problem.count())
     # a share of what a hopeless calibration leaves is still far from noise
     enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_FROM_NOISE * problem.count()))
-    for attempt in attempts(problem, calibrated, initial_guesses, score_tests, REFINED, ENOUGH):
-        effect = attempt.score_test.start.effect
-        if best < enough and attempt.score_test.gain < HARDLY * (calibrated.objective - best):
+    for planned in planned_refits(problem, calibrated, guesses, score_tests, REFINED, ENOUGH):
+        effect = planned.score_test.guess.effect
+        if best < enough and planned.score_test.gain < HARDLY * (calibrated.objective - best):
             continue
         progress(f"refitting with {effect.id}")
-        result = refit_with(problem, attempt, best)
+        result = refit_with(problem, planned, best)
         keep_better(found, NOTHING.with_effects([effect]), result)
         best = min(best, result.objective)
     # single effects that are far off are not worth their last digits
-    if best < FAR_FROM_NOISE * problem.count() or passing:
-        found = cross(problem, settle(problem, found, progress))
-    return _ranked(problem, calibrated, {**passing, **found}, score_tests)
+    if best < FAR_FROM_NOISE * problem.count() or limited:
+        found = warm_start(problem, converge(problem, found, progress))
+    return _ranked(problem, calibrated, {**limited, **found}, score_tests)
 
 
 def _ranked(problem: Problem, calibrated: Fit, found: Found, score_tests: tuple[ScoreTest, ...]) -> ModelComparison:
@@ -112,7 +106,7 @@ def rank(problem: Problem, nominal: Fit, found: Found) -> tuple[Entry, ...]:
     variance = max(1.0, best.data / best.count)
     entries = []
     for hypothesis, result in found.items():
-        cost = (freedom_used(result) - len(nominal.free)) * parameter_cost(problem.count(), variance)
+        cost = (parameters_used(result) - len(nominal.free)) * parameter_cost(problem.count(), variance)
         gain = (nominal.objective - result.objective) / variance
         entries.append(Entry(hypothesis, result, gain - cost, cost))
     return tuple(sorted(entries, key=lambda entry: -entry.score))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from eha_core.diagnosis.characteristic_scales import scales_alone
 from eha_core.diagnosis.evidence import Evidence
-from eha_core.diagnosis.facts import facts_alone
 from eha_core.diagnosis.result import Pictures
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
@@ -21,11 +21,11 @@ def pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pi
     times = {name: shooting.times(one) for name, one in zip(shooting.names, shooting.samplings, strict=True)}
     measured = {name: one.values for name, one in zip(shooting.names, shooting.samplings, strict=True)}
     variables: dict[str, Array] = {}
-    facts = facts_alone(whole, evidence.facts, evidence.lead)
-    if len(facts.rows):
+    scales = scales_alone(whole, evidence.scales, evidence.lead)
+    if len(scales.rows):
         for name in ("velocity", "spool_position", "position", "pressure_a", "pressure_b"):
-            variables[name] = facts.column(name)
-        variables["time"] = np.asarray((np.arange(len(facts.rows)) + 1) * shooting.every * shooting.step_size)
+            variables[name] = scales.column(name)
+        variables["time"] = np.asarray((np.arange(len(scales.rows)) + 1) * shooting.every * shooting.step_size)
     if evidence.observation.drive == "voltage":
         times["voltage_command"], measured["voltage_command"] = evidence.observation.inputs[0]
     equations = {one.equation: (one.time, one.residual) for one in evidence.equations}

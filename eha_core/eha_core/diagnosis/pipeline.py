@@ -9,18 +9,18 @@ from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.attribution import attribute
 from eha_core.diagnosis.calibrate import calibrate_but_for_the_ends
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.criteria import NEAR_NOISE, chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
-from eha_core.diagnosis.facts import gather
-from eha_core.diagnosis.hypotheses import candidates
+from eha_core.diagnosis.initial_guesses import applicable_effects
 from eha_core.diagnosis.model_comparison import compete
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.sets import with_sets
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
 from eha_core.identification.fit import Fit, fit
-from eha_core.identification.freedom import not_believed
+from eha_core.identification.free_parameters import not_believed
 from eha_core.identification.observation import observe, reaching
 from eha_core.identification.parallel import side_by_side
 from eha_core.identification.per_recording import base_name
@@ -88,21 +88,21 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
     progress("calibrating the nominal equations")
     observations, calibration = calibrate_but_for_the_ends(seen, model)
     shooting, fitted = calibration.shooting, calibration.fitted
-    facts = gather(observations, shooting, fitted)
+    scales = characteristic_scales(observations, shooting, fitted)
     lead = telling_most(shooting, fitted)
     alternatives = tuple(
         balances(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, model, lead))
         for model in (fitted, calibration.nominal)
     )
-    able = candidates(observations)
-    comparison = compete(calibration.problem, fitted, able, facts, progress)
-    calibration, comparison = with_sets(calibration, comparison, able, facts, progress)
-    recovery = recover(calibration.problem, comparison, facts, progress)
+    applicable = applicable_effects(observations)
+    comparison = compete(calibration.problem, fitted, applicable, scales, progress)
+    calibration, comparison = with_sets(calibration, comparison, applicable, scales, progress)
+    recovery = recover(calibration.problem, comparison, scales, progress)
     decision = decide(calibration, model.values, comparison, recovery)
     equations = least(alternatives)
-    location = attribute(calibration, comparison.nominal.fit, facts, comparison, equations, lead)
+    location = attribute(calibration, comparison.nominal.fit, scales, comparison, equations, lead)
     return Evidence(
-        observations, lead, model.values, calibration, facts, equations, alternatives, comparison, recovery, decision,
+        observations, lead, model.values, calibration, scales, equations, alternatives, comparison, recovery, decision,
         location,
     )  # fmt: skip
 

@@ -259,7 +259,7 @@ class Diagnosis:
     for each, and `tests` one for each recording that nothing was fitted to.
 
     `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
-    calibrated model, less the cost of its freedom. `whiteness` is each channel's largest autocorrelation in units of
+    calibrated model, less the cost of its parameters. `whiteness` is each channel's largest autocorrelation in units of
     the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
     what, when, as text. `steps` lead from the nominal model to the whole set, which adds `effects` in their order;
     `without` has what the set leaves when one of several effects is taken out and the rest fitted again.
@@ -304,7 +304,7 @@ class Diagnosis:
         return self.pictures.span or (0.0, self.duration)
 
     @property
-    def bent(self) -> bool:
+    def biased(self) -> bool:
         """Whether the parameters were fitted without a law that is known to be missing, and may imitate it."""
         simulated = any(name.startswith("recovered_") for name in self.fitted_values)
         return self.verdict == "unknown_physics" and not simulated

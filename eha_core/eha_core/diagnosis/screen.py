@@ -1,7 +1,7 @@
 """Stage 4a, screen: how much of what the calibrated model leaves unexplained could each hypothesis explain?
 
-An effect switched on at a start changes the simulated channels by d. Whatever of d the windows' states and the nominal
-parameters could imitate is projected out; the rest, d', predicts a gain in chi^2 of (d'.r)^2 / (d'.d').
+An effect switched on at an initial guess changes the simulated channels by d. Whatever of d the windows' states and the
+nominal parameters could imitate is projected out; the rest, d', predicts a gain in chi^2 of (d'.r)^2 / (d'.d').
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.initial_guesses import InitialGuess
 from eha_core.identification.fit import Fit
 from eha_core.identification.normal_matrix import Eliminated
 from eha_core.identification.numbers import Array, Integers
@@ -28,24 +28,24 @@ answer has a number for each pair. A fit of the instants follows, so nothing han
 
 @dataclass(frozen=True)
 class ScoreTest:
-    """A start, the gain in chi^2 predicted of it, and the factor on its size at which that is predicted; `windows`, the
+    """A guess, the gain in chi^2 predicted of it, and the factor on its size at which that is predicted; `windows`, the
     first and the one after the last, where it acts in these alone. `others`: the factors in further recordings, where
     its size differs between recordings."""
 
-    start: Start
+    guess: InitialGuess
     gain: float
     factor: float
     windows: tuple[int, int] | None = None
     others: tuple[float, ...] = ()
 
 
-def screen(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[ScoreTest, ...]:
-    """The score test of every start that acts all the time, the largest first."""
-    return tuple(one for one in screen_in_time(problem, calibrated, starts) if one.windows is None)
+def screen(problem: Problem, calibrated: Fit, guesses: Sequence[InitialGuess]) -> tuple[ScoreTest, ...]:
+    """The score test of every guess that acts all the time, the largest first."""
+    return tuple(one for one in screen_in_time(problem, calibrated, guesses) if one.windows is None)
 
 
-def screen_in_time(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -> tuple[ScoreTest, ...]:
-    """The score test of every start, the largest gain first: acting all the time, and in the windows where it gains
+def screen_in_time(problem: Problem, calibrated: Fit, guesses: Sequence[InitialGuess]) -> tuple[ScoreTest, ...]:
+    """The score test of every guess, the largest gain first: acting all the time, and in the windows where it gains
     most."""
     linear = linearise(problem, calibrated.values, calibrated.free, calibrated.q, calibrated.states)
     normal, gradient = normal_equations(problem, calibrated.free, calibrated.q, calibrated.states, linear)
@@ -53,10 +53,10 @@ def screen_in_time(problem: Problem, calibrated: Fit, starts: Sequence[Start]) -
     towards = system.solve(gradient)
     spans = _spans(problem.shooting.recordings)
     found: list[ScoreTest] = []
-    turns = -(-len(starts) // (threads() * (LANES - 1)))  # so that a long record's changes need not all be kept
-    room = -(-len(starts) // max(1, turns)) or 1
-    for first in range(0, len(starts), room):
-        some = starts[first : first + room]
+    turns = -(-len(guesses) // (threads() * (LANES - 1)))  # so that a long record's changes need not all be kept
+    room = -(-len(guesses) // max(1, turns)) or 1
+    for first in range(0, len(guesses), room):
+        some = guesses[first : first + room]
         found += _score_tests(problem, calibrated, linear, some, spans, (system, towards))
     return tuple(sorted(found, key=lambda one: -one.gain))
 
@@ -65,30 +65,30 @@ def _score_tests(
     problem: Problem,
     calibrated: Fit,
     linear: Linearised,
-    starts: Sequence[Start],
+    guesses: Sequence[InitialGuess],
     spans: Integers,
     solution: tuple[Eliminated, Array],
 ) -> list[ScoreTest]:
-    """The score tests of a few starts. `solution`: the calibrated model's equations, and what they are solved by."""
+    """The score tests of a few guesses. `solution`: the calibrated model's equations, and what they are solved by."""
     (system, towards), shooting = solution, problem.shooting
     at = calibrated.values, calibrated.states
-    columns, shifts = changes(problem, at, [({**at[0], **start.values}, at[1]) for start in starts])
+    columns, shifts = changes(problem, at, [({**at[0], **guess.values}, at[1]) for guess in guesses])
     ran_away = ~np.all(np.isfinite(columns), axis=0)
     columns[:, ran_away], shifts[:, :, ran_away] = 0.0, 0.0
     found = _by_span(problem, calibrated, linear, columns, shifts, spans)
     recordings = [range(*np.searchsorted(spans, (one.start, one.stop))) for one in shooting.recordings]
 
     def score_tests(place: int) -> list[ScoreTest]:
-        start = starts[place]
+        guess = guesses[place]
         if ran_away[place]:
-            return [ScoreTest(start, 0.0, 0.0)]
+            return [ScoreTest(guess, 0.0, 0.0)]
         energy, overlap = found.energy[:, place], found.overlap(place)
         along, imitated = found.along[:, place] - towards @ overlap, overlap.T @ system.solve(overlap)
-        if len(recordings) > 1 and any(name in shooting.per_recording for name in start.values):
-            return [_in_each_recording(start, energy, along, imitated, recordings)]
-        return _best_intervals(start, spans, energy, along, imitated, recordings)
+        if len(recordings) > 1 and any(name in shooting.per_recording for name in guess.values):
+            return [_in_each_recording(guess, energy, along, imitated, recordings)]
+        return _best_intervals(guess, spans, energy, along, imitated, recordings)
 
-    return [one for several in each(score_tests, range(len(starts))) for one in several]
+    return [one for several in each(score_tests, range(len(guesses))) for one in several]
 
 
 def _spans(recordings: Sequence[range]) -> Integers:
@@ -104,13 +104,13 @@ def _spans(recordings: Sequence[range]) -> Integers:
 
 @dataclass(frozen=True)
 class _Overlaps:
-    """What each start changes in each span of windows alone.
+    """What each guess changes in each span of windows alone.
 
     Attributes:
-        energy: (spans, starts). along: (spans, starts) its product with the residual.
-        by_parameter: (spans, parameters, starts) its product with what each parameter changes.
-        by_state: (windows, states, starts) with what a window's own states change.
-        by_next: (windows, states, starts) with what the states of the window after it change, through the link.
+        energy: (spans, guesses). along: (spans, guesses) its product with the residual.
+        by_parameter: (spans, parameters, guesses) its product with what each parameter changes.
+        by_state: (windows, states, guesses) with what a window's own states change.
+        by_next: (windows, states, guesses) with what the states of the window after it change, through the link.
         span_of: (windows,) the span of each.
     """
 
@@ -122,7 +122,7 @@ class _Overlaps:
     span_of: Integers
 
     def overlap(self, place: int) -> Array:
-        """One start's product with every column that can imitate it: (columns, spans)."""
+        """One guess's product with every column that can imitate it: (columns, spans)."""
         windows, states, _ = self.by_state.shape
         spans, parameters, _ = self.by_parameter.shape
         found = np.zeros((parameters + windows * states, spans))
@@ -137,15 +137,15 @@ class _Overlaps:
 def _by_span(
     problem: Problem, calibrated: Fit, linear: Linearised, columns: Array, shifts: Array, spans: Integers
 ) -> _Overlaps:
-    """What `columns` (samples, starts) and `shifts` of the windows' ends have in common with the residual and with what
-    can imitate them."""
-    shooting, size, starts = problem.shooting, problem.shooting.free_states, columns.shape[1]
+    """What `columns` (samples, guesses) and `shifts` of the windows' ends have in common with the residual and with
+    what can imitate them."""
+    shooting, size, many = problem.shooting, problem.shooting.free_states, columns.shape[1]
     windows, count = shooting.windows, len(calibrated.free)
     bounds = np.searchsorted(linear.window, np.arange(windows + 1))
     span_of = np.repeat(np.arange(len(spans) - 1), np.diff(spans))
-    energy, along = np.zeros((len(spans) - 1, starts)), np.zeros((len(spans) - 1, starts))
-    by_parameter = np.zeros((len(spans) - 1, count, starts))
-    by_state, by_next = np.zeros((windows, STATE_SIZE, starts)), np.zeros((windows, STATE_SIZE, starts))
+    energy, along = np.zeros((len(spans) - 1, many)), np.zeros((len(spans) - 1, many))
+    by_parameter = np.zeros((len(spans) - 1, count, many))
+    by_state, by_next = np.zeros((windows, STATE_SIZE, many)), np.zeros((windows, STATE_SIZE, many))
     for window, span in enumerate(span_of):
         piece = slice(bounds[window], bounds[window + 1])
         part = columns[piece]
@@ -166,7 +166,7 @@ def _by_span(
 
 
 def _in_each_recording(
-    start: Start, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
+    guess: InitialGuess, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
 ) -> ScoreTest:
     """The score test with a size of its own in each recording: the gains of each alone, added up."""
     gains, factors = [], []
@@ -176,11 +176,11 @@ def _in_each_recording(
         usable = left > 1e-9 * float(energy[own].sum()) > 0.0
         factors.append(float(along[own].sum()) / left if usable else 0.0)
         gains.append(factors[-1] ** 2 * left if usable else 0.0)
-    return ScoreTest(start, sum(gains), factors[0], None, tuple(factors[1:]))
+    return ScoreTest(guess, sum(gains), factors[0], None, tuple(factors[1:]))
 
 
 def _best_intervals(
-    start: Start, spans: Integers, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
+    guess: InitialGuess, spans: Integers, energy: Array, along: Array, imitated: Array, recordings: Sequence[range]
 ) -> list[ScoreTest]:
     """The score test over all spans, and the best over some of them in a row, of one recording.
 
@@ -202,14 +202,14 @@ def _best_intervals(
     gain = np.where(usable, product * product / divisor, 0.0)
     factor = np.where(usable, product / divisor, 0.0)
     always = count - 1  # of the ranges that begin at the first span, the one that ends with the last
-    score_tests = [ScoreTest(start, float(gain[always]), float(factor[always]))]
+    score_tests = [ScoreTest(guess, float(gain[always]), float(factor[always]))]
     if count > 1:
-        gain = np.where(factor < 0.0, gain if _reversible(start) else 0.0, gain)
+        gain = np.where(factor < 0.0, gain if _reversible(guess) else 0.0, gain)
         gain[always] = -1.0
         gain[begins[first] != begins[last]] = -1.0
         best = int(np.argmax(gain))
         interval = (int(spans[first[best]]), int(spans[stop[best]]))
-        score_tests.append(ScoreTest(start, float(gain[best]), float(factor[best]), interval))
+        score_tests.append(ScoreTest(guess, float(gain[best]), float(factor[best]), interval))
     return score_tests
 
 
@@ -217,24 +217,24 @@ def one_each(score_tests: Sequence[ScoreTest], most: int) -> tuple[ScoreTest, ..
     """The best score test of each effect, `most` of them at most. A size cannot be negative where its bounds say so."""
     best: dict[str, ScoreTest] = {}
     for one in score_tests:
-        if one.factor < 0.0 and not _reversible(one.start):
+        if one.factor < 0.0 and not _reversible(one.guess):
             continue
-        best.setdefault(one.start.effect.id, one)
+        best.setdefault(one.guess.effect.id, one)
     return tuple(best.values())[:most]
 
 
-def _reversible(start: Start) -> bool:
-    switches = [row for row in start.effect.parameters if row.switches]
+def _reversible(guess: InitialGuess) -> bool:
+    switches = [row for row in guess.effect.parameters if row.switches]
     return all(row.lower < row.nominal for row in switches)
 
 
 def scaled(score_test: ScoreTest) -> dict[str, float]:
-    """The start's values with the sizes that switch the effect scaled by the predicted factor, within a decade and the
+    """The guess's values with the sizes that switch the effect scaled by the predicted factor, within a decade and the
     bounds."""
-    values = sized(score_test.start, _within_a_decade(score_test.factor))
+    values = sized(score_test.guess, _within_a_decade(score_test.factor))
     for number, factor in enumerate(score_test.others, 2):
-        own = sized(score_test.start, _within_a_decade(factor))
-        values |= {named(name, number): value for name, value in own.items() if value != score_test.start.values[name]}
+        own = sized(score_test.guess, _within_a_decade(factor))
+        values |= {named(name, number): value for name, value in own.items() if value != score_test.guess.values[name]}
     return values
 
 
@@ -242,11 +242,11 @@ def _within_a_decade(factor: float) -> float:
     return float(np.sign(factor) * np.clip(abs(factor), 0.1, 10.0))
 
 
-def sized(start: Start, factor: float) -> dict[str, float]:
-    """The start's values with the sizes that switch the effect at so many times what they are, within their bounds."""
+def sized(guess: InitialGuess, factor: float) -> dict[str, float]:
+    """The guess's values with the sizes that switch the effect at so many times what they are, within their bounds."""
     values: dict[str, float] = {}
-    for name, row in zip(start.effect.parameter_names(), start.effect.parameters, strict=True):
-        value = start.values[name]
+    for name, row in zip(guess.effect.parameter_names(), guess.effect.parameters, strict=True):
+        value = guess.values[name]
         if row.switches:
             value = min(max(row.nominal + factor * (value - row.nominal), row.lower), row.upper)
         values[name] = value

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from eha_core.diagnosis.calibrate import Calibration
+from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
-from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.found import Found, Progress
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.model_comparison import Entry, ModelComparison, rank, residual_variance
-from eha_core.diagnosis.refine import Found, Progress, cross, refit_nominal, settle
 from eha_core.diagnosis.search.candidates import Candidate, Search, in_noise_of
 from eha_core.diagnosis.search.exchange import rivals_for
 from eha_core.diagnosis.search.grow import grow
@@ -22,6 +23,7 @@ from eha_core.diagnosis.search.proposals import at_the_fit, in_another_form
 from eha_core.diagnosis.search.prune import prune
 from eha_core.diagnosis.search.search import search_sets
 from eha_core.diagnosis.search.simpler_form import CLOSE, for_its_cost, try_forms
+from eha_core.diagnosis.warm_start import refit_nominal, warm_start
 from eha_core.effects import Effect
 
 ROUNDS = 3
@@ -31,19 +33,19 @@ ROUNDS = 3
 def with_sets(
     calibration: Calibration,
     comparison: ModelComparison,
-    able: Sequence[Effect],
-    facts: Facts,
+    applicable: Sequence[Effect],
+    scales: Scales,
     progress: Progress = lambda _: None,
 ) -> tuple[Calibration, ModelComparison]:
     """The comparison with the best set in it and whatever comes near that, and the calibration in the noise found."""
     singles = {entry.hypothesis: entry.fit for entry in comparison.entries}
     found: Found = {**singles, NOTHING: comparison.nominal.fit}
-    search = Search(calibration.problem, able, facts, progress, found, calibration.shorter)
+    search = Search(calibration.problem, applicable, scales, progress, found, calibration.shorter)
     best = search_sets(search, search.again(Candidate(NOTHING, comparison.nominal.fit)))
     if len(best.hypothesis.members) > 1:
         # a set that stopped short would make any other form of a law look better
-        settled = settle(search.problem, {best.hypothesis: best.fit}, progress)
-        best = search.keep(best.hypothesis, settled[best.hypothesis])
+        converged = converge(search.problem, {best.hypothesis: best.fit}, progress)
+        best = search.keep(best.hypothesis, converged[best.hypothesis])
         for _ in range(ROUNDS):
             before, best = best.hypothesis, _against_its_rivals(search, best)
             if best.hypothesis == before:
@@ -61,13 +63,13 @@ def with_sets(
             if len(one.hypothesis.members) == size or one.hypothesis == best.hypothesis:
                 found[one.hypothesis] = one.fit
         sets = {hypothesis: result for hypothesis, result in found.items() if len(hypothesis.members) == size}
-        found = {**found, **cross(search.problem, settle(search.problem, sets, progress))}
+        found = {**found, **warm_start(search.problem, converge(search.problem, sets, progress))}
         worse = [hypothesis for hypothesis in singles if best.hypothesis.holds(hypothesis)]
         found = {hypothesis: result for hypothesis, result in found.items() if hypothesis not in worse}
     elif best.times_noise > FAR_FROM_NOISE and not best.hypothesis.limited:
         # no set came near either: the single effects are worth their last digits after all, as far as they lack them
         always = {hypothesis: result for hypothesis, result in found.items() if not hypothesis.limited}
-        found |= cross(search.problem, settle(search.problem, always, progress))
+        found |= warm_start(search.problem, converge(search.problem, always, progress))
     nominal = refit_nominal(search.problem, search.found[NOTHING], list(found.values()))
     entries = rank(search.problem, nominal, found)
     left_over = {} if best.hypothesis.limited else _left_over(search, best)
@@ -78,19 +80,19 @@ def with_sets(
 def _left_over(search: Search, best: Candidate) -> dict[str, float]:
     """What one more effect beside the best is predicted to gain, the most of each site."""
     gains: dict[str, float] = {}
-    for guess in at_the_fit(search, search.again(best), len(search.able)):
-        added = next(one for one in guess.hypothesis.members if one not in best.hypothesis.members)
-        gains[added.effect.site] = max(guess.predicted, gains.get(added.effect.site, 0.0))
+    for proposal in at_the_fit(search, search.again(best), len(search.applicable)):
+        added = next(one for one in proposal.hypothesis.members if one not in best.hypothesis.members)
+        gains[added.effect.site] = max(proposal.predicted, gains.get(added.effect.site, 0.0))
     return gains
 
 
 def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
     """The best set when what has the largest predicted gain in a member's place was fitted to where it can be told."""
     for member in best.hypothesis.members:
-        for guess in rivals_for(search, best, member):
-            if guess.hypothesis not in search.found:
-                search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
-                search.try_guess(guess, 15, give_up_above=best.fit.objective + CLOSE)
+        for proposal in rivals_for(search, best, member):
+            if proposal.hypothesis not in search.found:
+                search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
+                search.try_proposal(proposal, 15, give_up_above=best.fit.objective + CLOSE)
     size = len(best.hypothesis.members)
     while True:
         try_forms(search, best, in_another_form(search, best))

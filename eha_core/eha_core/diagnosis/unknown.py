@@ -10,15 +10,15 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eha_core.curve import KNOTS
+from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CONVINCING, LEFT_OVER, UNFITTED, chance_gain, parameter_cost
-from eha_core.diagnosis.facts import Facts
 from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.search.candidates import without_effect
 from eha_core.diagnosis.search.prune import REFITTED
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
-from eha_core.identification.freedom import Free, coordinates
+from eha_core.identification.free_parameters import FreeParameter, coordinates
 from eha_core.identification.observation import WITH_OIL
 from eha_core.identification.problem import Problem, linearise, normal_equations
 from eha_core.identification.shooting import Shooting
@@ -54,7 +54,7 @@ class Recovery:
 
 
 def recover(
-    problem: Problem, comparison: ModelComparison, facts: Facts, progress: Callable[[str], None] = lambda _: None
+    problem: Problem, comparison: ModelComparison, scales: Scales, progress: Callable[[str], None] = lambda _: None
 ) -> Recovery | None:
     """Fit curves where the catalogue's best leaves something over: alone, and beside the effects that are named.
 
@@ -66,18 +66,18 @@ def recover(
         return None
     progress("recovering an unknown law as a curve")
     bases = [comparison.nominal, *([best] if best.effects and not best.hypothesis.limited else [])]
-    found = [_beside(problem, base, comparison, facts, progress) for base in bases]
+    found = [_beside(problem, base, comparison, scales, progress) for base in bases]
     # beside a curve that is not the law either, a name only makes up for what the curve leaves
     stands = [one for one in found if one is not None and not (one.named and one.fit.data > UNFITTED * one.fit.count)]
     return max(stands, key=lambda one: one.score, default=None)
 
 
 def _beside(
-    problem: Problem, base: Entry, comparison: ModelComparison, facts: Facts, progress: Callable[[str], None]
+    problem: Problem, base: Entry, comparison: ModelComparison, scales: Scales, progress: Callable[[str], None]
 ) -> Recovery | None:
     """The best curve beside the effects of an entry, of which those go that the curve makes idle."""
     fits = []
-    for effect, variable, result in _fitted_curves(problem, base, facts, progress):
+    for effect, variable, result in _fitted_curves(problem, base, scales, progress):
         law = replace(base.hypothesis.with_effects([effect]), law=(effect.id, variable))
         fits.append((law, effect, variable, result))
     if not fits:
@@ -95,12 +95,12 @@ def _beside(
 
 
 def _fitted_curves(
-    problem: Problem, base: Entry, facts: Facts, progress: Callable[[str], None]
+    problem: Problem, base: Entry, scales: Scales, progress: Callable[[str], None]
 ) -> Iterator[tuple[Effect, str, Fit]]:
     """The curves with the largest predicted gain beside the effects of an entry, fitted."""
     score_tests = []
-    for effect, variable, values in _curves(base.fit.values, facts, problem.shooting):
-        free = (*base.fit.free, *_knots_free(effect, values, facts))
+    for effect, variable, values in _curves(base.fit.values, scales, problem.shooting):
+        free = (*base.fit.free, *_knots_free(effect, values, scales))
         score_tests.append((_predicted_gain(problem, base.fit, values, free), effect, variable, values, free))
     score_tests.sort(key=lambda one: -one[0])
     beside = f" beside {' and '.join(base.ids)}" if base.ids else ""
@@ -125,13 +125,13 @@ def _without_idle(problem: Problem, hypothesis: Hypothesis, result: Fit) -> tupl
 
 
 def _curves(
-    values: Mapping[str, float], facts: Facts, shooting: Shooting
+    values: Mapping[str, float], scales: Scales, shooting: Shooting
 ) -> Iterator[tuple[Effect, str, dict[str, float]]]:
     for effect in shooting.composition.effects:
         if effect.named or (shooting.drive not in WITH_OIL and effect.site != "force"):
             continue
         for place, variable in enumerate(VARIABLES[effect.id]):
-            covered = _range(variable, facts)
+            covered = _range(variable, scales)
             if covered is None:
                 continue
             chosen = {**values, f"{effect.id}.lower": covered[0], f"{effect.id}.upper": covered[1]}
@@ -140,37 +140,39 @@ def _curves(
             yield effect, variable, chosen
 
 
-def _range(variable: str, facts: Facts) -> tuple[float, float] | None:
+def _range(variable: str, scales: Scales) -> tuple[float, float] | None:
     if variable == "time":
-        return 0.0, facts.scales["time"][1]
+        return 0.0, scales.by_quantity["time"][1]
     if variable == "position":
-        centre, half = facts.scales["position"]
+        centre, half = scales.by_quantity["position"]
         return centre - half, centre + half
-    if not len(facts.rows):
-        speed = facts.scales["speed"][1]
+    if not len(scales.rows):
+        speed = scales.by_quantity["speed"][1]
         return (-2.5 * speed, 2.5 * speed) if variable == "velocity" else None
     if variable == "pressure difference":
-        series = facts.column("pressure_a") - facts.column("pressure_b")
+        series = scales.column("pressure_a") - scales.column("pressure_b")
     else:
-        series = facts.column({"velocity": "velocity", "spool position": "spool_position"}[variable])
+        series = scales.column({"velocity": "velocity", "spool position": "spool_position"}[variable])
     low, high = np.quantile(series, [0.002, 0.998])
     return float(low), float(high)
 
 
-def _knots_free(effect: Effect, values: Mapping[str, float], facts: Facts) -> tuple[Free, ...]:
+def _knots_free(effect: Effect, values: Mapping[str, float], scales: Scales) -> tuple[FreeParameter, ...]:
     if effect.site == "force":
-        scale = facts.scales["force"][1]
+        scale = scales.by_quantity["force"][1]
     elif effect.site == "orifice":
-        scale = facts.scales["spool"][1]
+        scale = scales.by_quantity["spool"][1]
     else:
-        scale = facts.scales["leakage_flow"][1] * facts.scales["pressure"][1]
+        scale = scales.by_quantity["leakage_flow"][1] * scales.by_quantity["pressure"][1]
     rows = zip(effect.parameter_names(), effect.parameters, strict=True)
     return tuple(
-        Free(name, values[name], False, scale, 3.0, row.lower, row.upper) for name, row in rows if row.switches
+        FreeParameter(name, values[name], False, scale, 3.0, row.lower, row.upper) for name, row in rows if row.switches
     )
 
 
-def _predicted_gain(problem: Problem, nominal: Fit, values: Mapping[str, float], free: tuple[Free, ...]) -> float:
+def _predicted_gain(
+    problem: Problem, nominal: Fit, values: Mapping[str, float], free: tuple[FreeParameter, ...]
+) -> float:
     """The gain in chi^2 that the linearised problem predicts of the curve."""
     q = coordinates(free, values)
     linear = linearise(problem, values, free, q, nominal.states)
@@ -190,6 +192,6 @@ def _seen(effect: Effect, result: Fit) -> tuple[tuple[float, float], ...]:
     for place, k in zip(places, range(KNOTS), strict=True):
         name = f"{effect.id}.knot_{k:02d}"
         index = names.index(name)
-        if np.sqrt(max(result.covariance[index, index], 0.0)) < 0.5 * result.free[index].trust:
+        if np.sqrt(max(result.covariance[index, index], 0.0)) < 0.5 * result.free[index].prior_deviation:
             found.append((float(place), float(result.values[name])))
     return tuple(found)

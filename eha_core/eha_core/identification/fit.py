@@ -12,7 +12,7 @@ from enum import Enum
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from eha_core.identification.freedom import LATE, Free, coordinates, values_at
+from eha_core.identification.free_parameters import LATE, FreeParameter, coordinates, values_at
 from eha_core.identification.normal_matrix import NormalMatrix
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name, in_each, is_one_of
@@ -60,7 +60,7 @@ class Fit:
         ending: why it ended.
     """
 
-    free: tuple[Free, ...]
+    free: tuple[FreeParameter, ...]
     q: Array
     values: Mapping[str, float]
     states: Array
@@ -115,7 +115,7 @@ class Fit:
 def fit(
     problem: Problem,
     values: Mapping[str, float],
-    free: Sequence[Free],
+    free: Sequence[FreeParameter],
     states: Array | None = None,
     *,
     iterations: int = 12,
@@ -178,7 +178,7 @@ def exact(problem: Problem) -> Problem:
 def fit_in_stages(
     problem: Problem,
     values: Mapping[str, float],
-    free: Sequence[Free],
+    free: Sequence[FreeParameter],
     states: Array | None = None,
     *,
     iterations: int = 30,
@@ -209,7 +209,7 @@ class _Point:
 def _descend(
     problem: Problem,
     values: Mapping[str, float],
-    free: Sequence[Free],
+    free: Sequence[FreeParameter],
     at: _Point,
     normal: NormalMatrix,
     gradient: Array,
@@ -230,7 +230,9 @@ def _descend(
     return None
 
 
-def _step(normal: NormalMatrix, gradient: Array, damping: float, free: Sequence[Free], q: Array) -> Array | None:
+def _step(
+    normal: NormalMatrix, gradient: Array, damping: float, free: Sequence[FreeParameter], q: Array
+) -> Array | None:
     """The damped Gauss-Newton step; parameters that it would carry past a bound go to the bound, and the rest
     adapts."""
     count = len(free)
@@ -254,7 +256,9 @@ def _step(normal: NormalMatrix, gradient: Array, damping: float, free: Sequence[
     return move
 
 
-def _moved(problem: Problem, free: Sequence[Free], q: Array, states: Array, move: Array) -> tuple[Array, Array]:
+def _moved(
+    problem: Problem, free: Sequence[FreeParameter], q: Array, states: Array, move: Array
+) -> tuple[Array, Array]:
     longest = np.array([one.longest_move for one in free])
     new_q = q + np.clip(move[: len(free)], -longest, longest)
     new_states = states + np.where(problem.used()[:, None], move[len(free) :].reshape(states.shape), 0.0)
@@ -264,7 +268,7 @@ def _moved(problem: Problem, free: Sequence[Free], q: Array, states: Array, move
 def _finish(
     problem: Problem,
     values: Mapping[str, float],
-    free: tuple[Free, ...],
+    free: tuple[FreeParameter, ...],
     q: Array,
     states: Array,
     rows: Array,

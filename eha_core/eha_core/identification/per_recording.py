@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from eha_core.identification.freedom import Free
+from eha_core.identification.free_parameters import FreeParameter
 
 
 def named(name: str, number: int) -> str:
@@ -30,15 +30,15 @@ def values_of(values: Mapping[str, float], number: int) -> Mapping[str, float]:
 
 
 def in_each(
-    free: Sequence[Free], values: Mapping[str, float], marked: Iterable[str], recordings: int
-) -> tuple[tuple[Free, ...], dict[str, float]]:
+    free: Sequence[FreeParameter], values: Mapping[str, float], marked: Iterable[str], recordings: int
+) -> tuple[tuple[FreeParameter, ...], dict[str, float]]:
     """Free parameters and values with one more for each further recording, of those marked as per recording.
 
     A new one begins at the first recording's value. What is not marked has no value of its own anywhere.
     """
     known = {one.name for one in free}
     wanted = frozenset(marked)
-    more: list[Free] = []
+    more: list[FreeParameter] = []
     begun = {name: value for name, value in values.items() if base_name(name) in wanted or "@" not in name}
     for one in free:
         for number in range(2, recordings + 1 if one.name in wanted else 2):

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from eha_core.compiled import compiled
-from eha_core.identification.freedom import Free, values_at
+from eha_core.identification.free_parameters import FreeParameter, values_at
 from eha_core.identification.normal_matrix import NormalMatrix
 from eha_core.identification.numbers import Array, Flags, Integers
 from eha_core.identification.parallel import each, threads
@@ -25,7 +25,7 @@ LINK = np.array([3e-5, 3e-3, 3e4, 3e4])
 """How well a window's end meets the next one's start: m, m/s, Pa, Pa."""
 
 STATE_STEP = np.array([1e-6, 1e-4, 1e3, 1e3])
-STATE_TRUST = np.array([1.0, 10.0, 3e6, 3e6])
+STATE_PRIOR = np.array([1.0, 10.0, 3e6, 3e6])
 """A weak prior on the starts, which matters only where a pressure was not measured."""
 
 
@@ -119,7 +119,7 @@ def whole(shooting: Shooting) -> Problem:
 
 
 def simulate(
-    shooting: Shooting, values: Mapping[str, float], free: Sequence[Free], q: Array, states: Array
+    shooting: Shooting, values: Mapping[str, float], free: Sequence[FreeParameter], q: Array, states: Array
 ) -> tuple[Array, Array]:
     return shooting.simulate(values_at(values, free, q), states)
 
@@ -131,7 +131,9 @@ def residuals(shooting: Shooting, rows: Array) -> tuple[Array, ...]:
     )
 
 
-def objective_of(problem: Problem, free: Sequence[Free], q: Array, states: Array, rows: Array, ends: Array) -> float:
+def objective_of(
+    problem: Problem, free: Sequence[FreeParameter], q: Array, states: Array, rows: Array, ends: Array
+) -> float:
     used, shooting = problem.used(), problem.shooting
     total = 0.0
     for one, residual in zip(shooting.samplings, residuals(shooting, rows), strict=True):
@@ -139,15 +141,15 @@ def objective_of(problem: Problem, free: Sequence[Free], q: Array, states: Array
     links, size = problem.links(), shooting.free_states
     gaps = ((ends[links] - states[links + 1]) / problem.link)[:, :size]
     total += float(np.sum(gaps**2))
-    total += float(np.sum((((states - shooting.initial_states) / STATE_TRUST)[used, :size]) ** 2))
-    total += sum((float(at) / one.trust) ** 2 for one, at in zip(free, q, strict=True))
+    total += float(np.sum((((states - shooting.initial_states) / STATE_PRIOR)[used, :size]) ** 2))
+    total += sum((float(at) / one.prior_deviation) ** 2 for one, at in zip(free, q, strict=True))
     return total if np.isfinite(total) else np.inf
 
 
 def linearise(
     problem: Problem,
     values: Mapping[str, float],
-    free: Sequence[Free],
+    free: Sequence[FreeParameter],
     q: Array,
     states: Array,
     steps: Array | None = None,
@@ -231,7 +233,7 @@ def _sample_changes(
 
 
 def normal_equations(
-    problem: Problem, free: Sequence[Free], q: Array, states: Array, linear: Linearised
+    problem: Problem, free: Sequence[FreeParameter], q: Array, states: Array, linear: Linearised
 ) -> tuple[NormalMatrix, Array]:
     """J^T J and J^T r over (q, states of every window, windows out of use held by their prior)."""
     shooting, used = problem.shooting, problem.used()
@@ -256,9 +258,9 @@ def normal_equations(
     shared[links + 1, :size] -= by_parameter * weight[:, None]
     towards[links, :size] -= (by_start @ gap[:, :, None])[:, :, 0]
     towards[links + 1, :size] += gap * weight
-    prior = np.array([1.0 / one.trust**2 for one in free])
-    own += np.diag(1.0 / STATE_TRUST**2)
-    towards -= (states - shooting.initial_states) / STATE_TRUST**2
+    prior = np.array([1.0 / one.prior_deviation**2 for one in free])
+    own += np.diag(1.0 / STATE_PRIOR**2)
+    towards -= (states - shooting.initial_states) / STATE_PRIOR**2
     flat = by_parameter.reshape(gap.size, len(free))
     parameters = linear.by_parameter.T @ linear.by_parameter + flat.T @ flat + np.diag(prior)
     gradient = linear.by_parameter.T @ linear.residual - flat.T @ gap.ravel() - prior * q

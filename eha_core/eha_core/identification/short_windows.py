@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from eha_core.identification.fit import Fit, fit, fit_in_stages
-from eha_core.identification.freedom import Free
+from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
@@ -34,7 +34,7 @@ friction astray, which was right in the windows before."""
 
 
 def from_short_windows(
-    problem: Problem, shorter: Sequence[Shooting], values: Mapping[str, float], free: Sequence[Free]
+    problem: Problem, shorter: Sequence[Shooting], values: Mapping[str, float], free: Sequence[FreeParameter]
 ) -> Fit:
     """Fit `free` from `values` over `shorter`, the same recordings cut as SHORT says, and then over `problem`.
 

@@ -56,7 +56,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         expression = f": {law.expression}" if law.expression else ""
         yield "Recovered", f"a law over {law.function_of}{expression} (R² {law.r_squared:.3f})"
     changed = "; ".join(_changed(one) for one in diagnosis.parameters if one.changed)
-    yield "Parameters", f"biased, it may be, by what is missing: {changed}" if changed and diagnosis.bent else changed
+    yield "Parameters", f"biased, it may be, by what is missing: {changed}" if changed and diagnosis.biased else changed
     rivals = [f"{' + '.join(one.effects)} (evidence {one.evidence_gap:.1f} less)" for one in diagnosis.alternatives]
     yield "Not told", f"from {', nor from '.join(rivals)}" if rivals else ""
 

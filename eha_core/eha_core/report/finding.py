@@ -129,7 +129,7 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
         f"Likely cause{'s' if len(causes) > 1 else ''}: {likely}." if likely else "",
         f"This recording does not tell it from {rivals}." if rivals else "",
         f"Parameters that differ from the nominal model: {values}{' and others' if len(changed) > 3 else ''}."
-        if changed and not diagnosis.bent
+        if changed and not diagnosis.biased
         else "",
         explanation(diagnosis),
         *(one.statement for one in diagnosis.long_records),

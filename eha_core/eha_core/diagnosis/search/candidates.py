@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from eha_core.diagnosis.effect_freedom import effect_freedom
-from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.hypothesis import Hypothesis, neutral
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages, with_noise
-from eha_core.identification.freedom import Free
+from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.noise import residual_noise
 from eha_core.identification.numbers import Array
 from eha_core.identification.observation import RESOLVED
@@ -27,14 +27,14 @@ SAME_NOISE = 0.02
 
 
 @dataclass(frozen=True)
-class Guess:
+class Proposal:
     """Where a fit of a hypothesis begins: every value of the plant, what is free, and the windows' starts (None: those
     measured). `predicted` is the gain in chi^2 that a score test gives it. `in_stages`: the valve's dynamics stay
     where they are until the rest has converged."""
 
     hypothesis: Hypothesis
     values: Mapping[str, float]
-    free: tuple[Free, ...]
+    free: tuple[FreeParameter, ...]
     states: Array | None
     predicted: float = 0.0
     in_stages: bool = False
@@ -58,8 +58,8 @@ class Search:
     """What is searched, and all that was fitted on the way, by hypothesis. `shorter`: see `from_short_windows`."""
 
     problem: Problem
-    able: Sequence[Effect]
-    facts: Facts
+    applicable: Sequence[Effect]
+    scales: Scales
     progress: Progress = lambda _: None
     found: dict[Hypothesis, Fit] = field(default_factory=dict)
     shorter: Sequence[Shooting] = ()
@@ -71,13 +71,14 @@ class Search:
             self.found[hypothesis] = result
         return Candidate(hypothesis, self.found[hypothesis])
 
-    def try_guess(self, guess: Guess, iterations: int, give_up_above: float = float("inf")) -> Candidate:
-        """Fit a hypothesis from a guess, and keep what is better than before."""
-        run = fit_in_stages if guess.in_stages else fit
+    def try_proposal(self, proposal: Proposal, iterations: int, give_up_above: float = float("inf")) -> Candidate:
+        """Fit a hypothesis from a proposal, and keep what is better than before."""
+        run = fit_in_stages if proposal.in_stages else fit
         result = run(
-            self.problem, guess.values, guess.free, guess.states, iterations=iterations, give_up_above=give_up_above
-        )
-        return self.keep(guess.hypothesis, result)
+            self.problem, proposal.values, proposal.free, proposal.states,
+            iterations=iterations, give_up_above=give_up_above,
+        )  # fmt: skip
+        return self.keep(proposal.hypothesis, result)
 
     def go_on(self, candidate: Candidate, iterations: int, give_up_above: float = float("inf")) -> Candidate:
         """Fit a hypothesis further from where it stands."""
@@ -124,14 +125,16 @@ def in_noise_of(problem: Problem, before: Shooting, result: Fit) -> Fit:
     return replace(result, residuals=residuals, data=data, objective=result.objective - result.data + data)
 
 
-def with_effects(free: Sequence[Free], effects: Sequence[Effect], values: Mapping[str, float]) -> tuple[Free, ...]:
+def with_effects(
+    free: Sequence[FreeParameter], effects: Sequence[Effect], values: Mapping[str, float]
+) -> tuple[FreeParameter, ...]:
     """The free parameters with those of more effects, which are free about where `values` has them."""
-    extra = [one for effect in effects for one in effect_freedom(effect, values)]
+    extra = [one for effect in effects for one in free_effect_parameters(effect, values)]
     names = {one.name for one in extra}
     return (*(one for one in free if one.name not in names), *extra)
 
 
-def without_effect(result: Fit, effect: Effect) -> tuple[dict[str, float], tuple[Free, ...]]:
+def without_effect(result: Fit, effect: Effect) -> tuple[dict[str, float], tuple[FreeParameter, ...]]:
     """A fit's values with one effect off, and what is then free."""
     off = neutral(effect)
     values = {name: off.get(base_name(name), value) for name, value in result.values.items()}

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from eha_core.diagnosis.criteria import chance_gain, gain_to_go_on
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
+from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search
 from eha_core.diagnosis.search.grow import race
 from eha_core.diagnosis.search.proposals import at_the_fit
 from eha_core.diagnosis.search.prune import look_back, refit_without, wald
@@ -34,8 +34,8 @@ def weakest_first(candidate: Candidate) -> list[Member]:
     return sorted(candidate.hypothesis.members, key=lambda member: wald(candidate.fit, member.effect))
 
 
-def rivals_for(search: Search, best: Candidate, member: Member) -> list[Guess]:
+def rivals_for(search: Search, best: Candidate, member: Member) -> list[Proposal]:
     """What has the largest predicted gain in a member's place when the others are fitted without it."""
     rest = refit_without(search, best, member)
-    guesses = at_the_fit(search, rest, FOR_ONE_PLACE + 1)
-    return [one for one in guesses if one.hypothesis != best.hypothesis][:FOR_ONE_PLACE]
+    proposals = at_the_fit(search, rest, FOR_ONE_PLACE + 1)
+    return [one for one in proposals if one.hypothesis != best.hypothesis][:FOR_ONE_PLACE]

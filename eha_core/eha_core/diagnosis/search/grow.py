@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, UNFITTED, chance_gain, gain_to_go_on
-from eha_core.diagnosis.passing import passing_beside
 from eha_core.diagnosis.screen import ScoreTest, screen_in_time
-from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
-from eha_core.diagnosis.search.proposals import proposals, starts_beside
+from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search
+from eha_core.diagnosis.search.proposals import guesses_beside, proposals
 from eha_core.diagnosis.search.prune import look_back
 from eha_core.diagnosis.search.short_windows import set_with_friction
+from eha_core.diagnosis.time_limited import time_limited_beside
 
 LEGS = ((3, 4), (4, 2), (10, 1))
-"""A race: so many iterations for every guess, and so many then go on. The right ones lead after two or three."""
+"""A race: so many iterations for every proposal, and so many then go on. The right ones lead after two or three."""
 
 
 def grow(search: Search, best: Candidate) -> Candidate:
     """The best set that adding to `best` leads to; every set that was fitted stays with the search."""
     while len(best.hypothesis.members) < MOST_EFFECTS:
-        score_tests = screen_in_time(search.problem, best.fit, starts_beside(search, best))
+        score_tests = screen_in_time(search.problem, best.fit, guesses_beside(search, best))
         try_for_a_while(search, best, score_tests)
         race(search, proposals(search, best, score_tests, chance_gain(search.problem.count(), best.times_noise)))
         reached = min(search, key=lambda one: one.fit.objective)
@@ -41,21 +41,21 @@ def try_for_a_while(search: Search, best: Candidate, score_tests: Sequence[Score
     """Fit what may act for a while beside the best set, where windows in a row are predicted to gain as much as the
     next set must."""
     needed = gain_to_go_on(search.problem.count(), best.times_noise, best.fit.data - best.fit.count)
-    begin = starts_beside(search, best)
-    found = passing_beside(search.problem, best.hypothesis, best.fit, begin, score_tests, needed, search.progress)
+    begin = guesses_beside(search, best)
+    found = time_limited_beside(search.problem, best.hypothesis, best.fit, begin, score_tests, needed, search.progress)
     for hypothesis, result in found.items():
         search.keep(hypothesis, result)
 
 
-def race(search: Search, guesses: Iterable[Guess]) -> None:
-    """Fit every guess a little, and the better ones further."""
+def race(search: Search, proposals: Iterable[Proposal]) -> None:
+    """Fit every proposal a little, and the better ones further."""
     runners: dict[object, Candidate] = {}
     for iterations, kept in LEGS:
         if runners:
             runners = {name: search.go_on(one, iterations) for name, one in runners.items()}
         else:
-            for guess in guesses:
-                search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
-                runners[guess.hypothesis] = search.try_guess(guess, iterations)
+            for proposal in proposals:
+                search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
+                runners[proposal.hypothesis] = search.try_proposal(proposal, iterations)
         ahead = sorted(runners.items(), key=lambda pair: pair[1].fit.objective)[:kept]
         runners = dict(ahead)

@@ -1,4 +1,4 @@
-"""Initial guesses: which effects to add to a set, and from where to fit them.
+"""Proposals: which effects to add to a set, and from where to fit them.
 
 A score test says how much of what a fit leaves unexplained an effect could explain (`diagnosis.screen`). It is linear,
 so it is asked where the effects show best: at the fit itself; where that is far from the noise, at the nominal values,
@@ -8,16 +8,17 @@ which nothing has biased; and with the valve's dynamics held, which would imitat
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from statistics import fmean
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
-from eha_core.diagnosis.hypotheses import Start, starts
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.refine import as_given, set_free, with_dynamics_as_given
+from eha_core.diagnosis.initial_guesses import InitialGuess, initial_guesses
+from eha_core.diagnosis.nominal_start import at_nominal_values, set_free, with_dynamics_held
 from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
-from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, with_effects, without_effect
+from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search, with_effects, without_effect
 from eha_core.identification.fit import Fit
-from eha_core.identification.freedom import LATE
+from eha_core.identification.free_parameters import LATE
 from eha_core.identification.per_recording import is_one_of
 
 AT_THE_FIT = 8
@@ -33,13 +34,13 @@ HELD_SHARE = 0.25
 """With the dynamics held an effect is proposed where it predicts this share of what others must."""
 
 
-def proposals(search: Search, base: Candidate, score_tests: Sequence[ScoreTest], least: float) -> list[Guess]:
+def proposals(search: Search, base: Candidate, score_tests: Sequence[ScoreTest], least: float) -> list[Proposal]:
     """Guesses of the base's set with one effect more, the largest predicted gain first, of those above `least`.
 
-    score_tests: those of the starts beside the base, at its fit.
+    score_tests: those of the initial guesses beside the base, at its fit.
     """
-    begin = starts_beside(search, base)
-    guesses = [
+    begin = guesses_beside(search, base)
+    proposals = [
         *_at_the_fit(base, score_tests),
         *_at_nominal_values(search, base, begin),
         *_with_dynamics_held(search, base, begin),
@@ -47,13 +48,13 @@ def proposals(search: Search, base: Candidate, score_tests: Sequence[ScoreTest],
     # where only noise is left no other form can be better
     forms = in_another_form(search, base) if base.times_noise > NEAR_NOISE else ()
     new_forms = [one for one in forms if one.hypothesis not in search.found]
-    return [*new_forms, *(one for one in guesses if one.predicted > least)]
+    return [*new_forms, *(one for one in proposals if one.predicted > least)]
 
 
-def at_the_fit(search: Search, base: Candidate, most: int) -> list[Guess]:
+def at_the_fit(search: Search, base: Candidate, most: int) -> list[Proposal]:
     """Guesses of the base's set with one effect more, as a score test at its fit ranks them."""
-    score_tests = one_each(screen(search.problem, base.fit, starts_beside(search, base)), most)
-    return [_guess(base, base.fit, score_test) for score_test in score_tests]
+    score_tests = one_each(screen(search.problem, base.fit, guesses_beside(search, base)), most)
+    return [_proposal(base, base.fit, score_test) for score_test in score_tests]
 
 
 def _leading(score_tests: Sequence[ScoreTest], base: Candidate) -> Sequence[ScoreTest]:
@@ -63,45 +64,45 @@ def _leading(score_tests: Sequence[ScoreTest], base: Candidate) -> Sequence[Scor
     return [one for one in score_tests if one.gain > LEAST_PREDICTED * score_tests[0].gain]
 
 
-def starts_beside(search: Search, base: Candidate) -> list[Start]:
-    """The starts of every effect that the base's set admits."""
-    able = [effect for effect in search.able if base.hypothesis.admits(effect)]
-    return [start for effect in able for start in starts(effect, search.facts)]
+def guesses_beside(search: Search, base: Candidate) -> list[InitialGuess]:
+    """The initial guesses of every effect that the base's set admits."""
+    applicable = [effect for effect in search.applicable if base.hypothesis.admits(effect)]
+    return [guess for effect in applicable for guess in initial_guesses(effect, search.scales)]
 
 
-def _at_the_fit(base: Candidate, score_tests: Sequence[ScoreTest]) -> Iterator[Guess]:
+def _at_the_fit(base: Candidate, score_tests: Sequence[ScoreTest]) -> Iterator[Proposal]:
     always = [one for one in score_tests if one.windows is None]
     for score_test in _leading(one_each(always, AT_THE_FIT), base):
-        yield _guess(base, base.fit, score_test)
+        yield _proposal(base, base.fit, score_test)
 
 
-def _at_nominal_values(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
+def _at_nominal_values(search: Search, base: Candidate, begin: list[InitialGuess]) -> Iterator[Proposal]:
     if base.fit.data <= FAR_FROM_NOISE * base.fit.count:
         return
-    nominal = as_given(search.problem, base.fit)
+    nominal = at_nominal_values(search.problem, base.fit)
     for score_test in one_each(screen(search.problem, nominal, begin), AT_NOMINAL_VALUES):
-        yield _guess(base, nominal, score_test, in_stages=True)
+        yield _proposal(base, nominal, score_test, in_stages=True)
 
 
-def _with_dynamics_held(search: Search, base: Candidate, begin: list[Start]) -> Iterator[Guess]:
-    held = with_dynamics_as_given(search.problem, base.fit)
+def _with_dynamics_held(search: Search, base: Candidate, begin: list[InitialGuess]) -> Iterator[Proposal]:
+    held = with_dynamics_held(search.problem, base.fit)
     if held is None:
         return
     # what the dynamics could imitate shows only while they are held
     at = set_free(held, tuple(one for one in base.fit.free if not is_one_of(one.name, LATE)))
     for score_test in one_each(screen(search.problem, at, begin), WITH_DYNAMICS_HELD):
-        guess = _guess(base, held, score_test, in_stages=True)
-        yield Guess(guess.hypothesis, guess.values, guess.free, guess.states, guess.predicted / HELD_SHARE, True)
+        proposal = _proposal(base, held, score_test, in_stages=True)
+        yield replace(proposal, predicted=proposal.predicted / HELD_SHARE)
 
 
-def _guess(base: Candidate, at: Fit, score_test: ScoreTest, in_stages: bool = False) -> Guess:
-    effect = score_test.start.effect
+def _proposal(base: Candidate, at: Fit, score_test: ScoreTest, in_stages: bool = False) -> Proposal:
+    effect = score_test.guess.effect
     values: Mapping[str, float] = {**at.values, **scaled(score_test)}
     free = with_effects(base.fit.free, [effect], values)
-    return Guess(base.hypothesis.with_effects([effect]), values, free, at.states, score_test.gain, in_stages)
+    return Proposal(base.hypothesis.with_effects([effect]), values, free, at.states, score_test.gain, in_stages)
 
 
-def in_another_form(search: Search, base: Candidate) -> Iterator[Guess]:
+def in_another_form(search: Search, base: Candidate) -> Iterator[Proposal]:
     """The set with another form of a member's law, from its own values where they share a parameter.
 
     A law that acts for a while got its form when its interval was found.
@@ -109,30 +110,30 @@ def in_another_form(search: Search, base: Candidate) -> Iterator[Guess]:
     for member in (one for one in base.hypothesis.members if not one.limited):
         rest = base.hypothesis.without(member)
         values, free = without_effect(base.fit, member.effect)
-        forms = [effect for effect in search.able if member.effect.kind and effect.kind == member.effect.kind]
+        forms = [effect for effect in search.applicable if member.effect.kind and effect.kind == member.effect.kind]
         for effect in (one for one in forms if one.id != member.id):
-            for start in starts(effect, search.facts):
-                begun = {**values, **_as_large(start, member, base.fit)}
-                yield Guess(rest.with_effects([effect]), begun, with_effects(free, [effect], begun), base.fit.states)
+            for guess in initial_guesses(effect, search.scales):
+                begun = {**values, **_as_large(guess, member, base.fit)}
+                yield Proposal(rest.with_effects([effect]), begun, with_effects(free, [effect], begun), base.fit.states)
 
 
-def _as_large(start: Start, member: Member, result: Fit) -> dict[str, float]:
-    """A start of one form of a law with another form's values where both have the parameter, and its other sizes in
+def _as_large(guess: InitialGuess, member: Member, result: Fit) -> dict[str, float]:
+    """A guess of one form of a law with another form's values where both have the parameter, and its other sizes in
     proportion to the first size that both have.
 
     That is the mean of the other form's where it has more sizes: Coulomb's force for Stribeck's at rest and in motion.
     """
-    sizes = [row.name for row in start.effect.parameters if row.switches]
+    sizes = [row.name for row in guess.effect.parameters if row.switches]
     theirs = {row.name: result.values[f"{member.id}.{row.name}"] for row in member.effect.parameters}
     of_theirs = [row.name for row in member.effect.parameters if row.switches]
     common = next((name for name in sizes if name in of_theirs), None)
     if common is None:
-        return dict(start.values)
+        return dict(guess.values)
     if not set(of_theirs) <= set(sizes):
         theirs[common] = fmean(theirs[name] for name in of_theirs)
-    share = theirs[common] / start.values[f"{start.effect.id}.{common}"]
+    share = theirs[common] / guess.values[f"{guess.effect.id}.{common}"]
     found = {}
-    for name, value in start.values.items():
+    for name, value in guess.values.items():
         own = name.rsplit(".", 1)[1]
         found[name] = theirs.get(own, share * value if own in sizes else value)
     return found

@@ -15,7 +15,7 @@ from eha_core.diagnosis.criteria import (
     OF_SAMPLES_BESIDE_A_FORM,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Member, neutral
-from eha_core.diagnosis.search.candidates import Candidate, Guess, Search, without_effect
+from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search, without_effect
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.per_recording import base_name, is_one_of
@@ -48,7 +48,8 @@ def wald(result: Fit, effect: Effect) -> float:
 def refit_without(search: Search, candidate: Candidate, member: Member, iterations: int = REFITTED) -> Candidate:
     """The set without one member, fitted from where the whole set stands."""
     values, free = without_effect(candidate.fit, member.effect)
-    return search.try_guess(Guess(candidate.hypothesis.without(member), values, free, candidate.fit.states), iterations)
+    proposal = Proposal(candidate.hypothesis.without(member), values, free, candidate.fit.states)
+    return search.try_proposal(proposal, iterations)
 
 
 def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, UNFITTED
-from eha_core.diagnosis.refine import settle
 from eha_core.diagnosis.screen import screen_in_time
 from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.exchange import exchange
 from eha_core.diagnosis.search.grow import grow, try_for_a_while
-from eha_core.diagnosis.search.proposals import starts_beside
+from eha_core.diagnosis.search.proposals import guesses_beside
 from eha_core.diagnosis.search.prune import prune
 from eha_core.diagnosis.search.short_windows import forms_of_friction, set_in_each_form, sticks
 from eha_core.diagnosis.search.simpler_form import from_a_simpler_form
@@ -29,13 +29,13 @@ def beside_the_singles(search: Search) -> Candidate:
     for single in singles[:SINGLES]:
         if not single.hypothesis.limited and any(one.resolution > 0.0 for one in single.fit.free):
             # what sets in at an instant explains little beside the right one, and another for a while seems better
-            settled = settle(search.problem, {single.hypothesis: single.fit}, search.progress)
-            search.keep(single.hypothesis, settled[single.hypothesis])
+            converged = converge(search.problem, {single.hypothesis: single.fit}, search.progress)
+            search.keep(single.hypothesis, converged[single.hypothesis])
     best = min(search, key=lambda one: one.fit.objective)
     if best.times_noise < NEAR_NOISE:
         return best
     for single in map(search.again, singles[1:SINGLES]):  # beside the first it is looked for when the set grows
-        try_for_a_while(search, single, screen_in_time(search.problem, single.fit, starts_beside(search, single)))
+        try_for_a_while(search, single, screen_in_time(search.problem, single.fit, guesses_beside(search, single)))
     return min(search, key=lambda one: one.fit.objective)
 
 

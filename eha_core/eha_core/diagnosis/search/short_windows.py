@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import NEAR_NOISE
-from eha_core.diagnosis.facts import Facts
-from eha_core.diagnosis.hypotheses import starts
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
+from eha_core.diagnosis.initial_guesses import initial_guesses
 from eha_core.diagnosis.search.candidates import Candidate, Search, with_effects, without_effect
 from eha_core.effects import Effect
-from eha_core.identification.freedom import Free
+from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.short_windows import from_short_windows
 
@@ -24,9 +24,9 @@ STICKING = "dry friction"
 
 def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
     """The best so far when each form of dry friction was led from short windows to long ones, from nominal values."""
-    for effect in _that_stick(search.able):
+    for effect in _that_stick(search.applicable):
         search.progress(f"fitting {effect.id} from short windows to long ones")
-        values = {**_at_nominal(nominal.fit.values, nominal.fit.free), **_first_guess(effect, search.facts)}
+        values = {**_at_nominal(nominal.fit.values, nominal.fit.free), **_first_guess(effect, search.scales)}
         free = with_effects(nominal.fit.free, [effect], values)
         found = from_short_windows(search.problem, search.shorter, values, free)
         search.keep(NOTHING.with_effects([effect]), found)
@@ -36,15 +36,15 @@ def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
 def set_in_each_form(search: Search, best: Candidate) -> Candidate:
     """The best so far when each form of the set's dry friction was led from short windows to long ones beside the
     other members: from where the set stands, and where that does not reach the noise from the nominal values, which
-    another form has not bent."""
+    another form has not biased."""
     member = next(one for one in best.hypothesis.members if one.effect.kind == STICKING)
     rest = best.hypothesis.without(member)
     values, free = without_effect(best.fit, member.effect)
     plant = tuple(one for one in search.found[NOTHING].free if one in free)
     for begin in (values, _at_nominal(values, plant)):
-        for effect in _that_stick(search.able):
+        for effect in _that_stick(search.applicable):
             search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} from short windows to long ones")
-            begun = {**begin, **_first_guess(effect, search.facts)}
+            begun = {**begin, **_first_guess(effect, search.scales)}
             found = from_short_windows(search.problem, search.shorter, begun, with_effects(free, [effect], begun))
             search.keep(rest.with_effects([effect]), found)
         reached = min(search, key=lambda one: one.fit.objective)
@@ -63,18 +63,18 @@ def set_with_friction(search: Search, best: Candidate) -> Candidate:
         return best
     effect, *_ = _that_stick(best.hypothesis.effects)
     search.progress(f"fitting {' + '.join(best.hypothesis.ids)} from short windows to long ones")
-    values = {**best.fit.values, **_first_guess(effect, search.facts)}
+    values = {**best.fit.values, **_first_guess(effect, search.scales)}
     free = with_effects(best.fit.free, [effect], values)
     return search.keep(best.hypothesis, from_short_windows(search.problem, search.shorter, values, free))
 
 
-def _first_guess(effect: Effect, facts: Facts) -> dict[str, float]:
+def _first_guess(effect: Effect, scales: Scales) -> dict[str, float]:
     """The effect's last start, but a Stribeck velocity as large as the speeds: from one that is larger than its own a
     law narrows, from a smaller one no derivative leads back."""
-    values = dict(starts(effect, facts)[-1].values)
+    values = dict(initial_guesses(effect, scales)[-1].values)
     for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
         if row.relative_to == "speed":
-            origin, scale = facts.scales["speed"]
+            origin, scale = scales.by_quantity["speed"]
             values[name] = min(max(origin + scale, row.lower), row.upper)
     return values
 
@@ -89,5 +89,5 @@ def _that_stick(effects: Sequence[Effect]) -> list[Effect]:
     return [one for one in effects if one.kind == STICKING]
 
 
-def _at_nominal(values: Mapping[str, float], free: tuple[Free, ...]) -> dict[str, float]:
+def _at_nominal(values: Mapping[str, float], free: tuple[FreeParameter, ...]) -> dict[str, float]:
     return {**values, **{one.name: one.reference for one in free if base_name(one.name) in values}}

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from eha_core.diagnosis.criteria import parameter_cost
-from eha_core.diagnosis.effect_freedom import freedom_used
+from eha_core.diagnosis.effect_parameters import parameters_used
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.candidates import Candidate, Guess, Search
+from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search
 from eha_core.diagnosis.search.grow import grow
 from eha_core.diagnosis.search.proposals import in_another_form
 
@@ -28,7 +28,7 @@ ITERATIONS = 20
 
 def from_a_simpler_form(search: Search, best: Candidate) -> Candidate:
     """The best set, or what grows from it in a form with fewer parameters where that explains as much for its cost."""
-    simpler = [guess for guess in in_another_form(search, best) if len(guess.free) < len(best.fit.free)]
+    simpler = [proposal for proposal in in_another_form(search, best) if len(proposal.free) < len(best.fit.free)]
     behind = max(CLOSE, OF_EXPLAINED * (search.found[NOTHING].objective - best.fit.objective))
     close = [one for one in try_forms(search, best, simpler, behind) if one.fit.objective < best.fit.objective + behind]
     if not close:
@@ -38,13 +38,13 @@ def from_a_simpler_form(search: Search, best: Candidate) -> Candidate:
 
 
 def try_forms(
-    search: Search, best: Candidate, guesses: Iterable[Guess], behind: float = CLOSE
+    search: Search, best: Candidate, proposals: Iterable[Proposal], behind: float = CLOSE
 ) -> list[Candidate]:
-    """The guesses fitted, each given up where it must stay further behind the best set."""
+    """The proposals fitted, each given up where it must stay further behind the best set."""
     found = []
-    for guess in guesses:
-        search.progress(f"trying {' + '.join(guess.hypothesis.ids)}")
-        found.append(search.try_guess(guess, ITERATIONS, give_up_above=best.fit.objective + behind))
+    for proposal in proposals:
+        search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
+        found.append(search.try_proposal(proposal, ITERATIONS, give_up_above=best.fit.objective + behind))
     return found
 
 
@@ -52,4 +52,4 @@ def for_its_cost(search: Search, candidates: Sequence[Candidate]) -> Candidate:
     """The one of least chi^2 when every parameter that it makes use of has been paid for."""
     least = min(max(1.0, one.times_noise) for one in candidates)
     dear = parameter_cost(search.problem.count(), least)
-    return min(candidates, key=lambda one: one.fit.objective + dear * freedom_used(one.fit))
+    return min(candidates, key=lambda one: one.fit.objective + dear * parameters_used(one.fit))

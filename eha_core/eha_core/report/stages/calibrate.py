@@ -37,7 +37,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
     if held:
         stay = "it stays near its nominal value" if len(held) == 1 else "they stay near their nominal values"
         sentences.append(f"This recording says little about {listed([words(one.name) for one in held])}; {stay}.")
-    if diagnosis.bent and changed:
+    if diagnosis.biased and changed:
         sentences.append("What is missing may have biased these values: do not take them for the rig's.")
     picture = _picture(diagnosis.parameters)
     return Stage(

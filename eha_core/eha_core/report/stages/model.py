@@ -49,7 +49,7 @@ def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
         return _without_names(diagnosis)
     pictures = tuple(one for one in (_collapse(diagnosis), _intervals(diagnosis), correlations(diagnosis)) if one)
     named = effects_listed(diagnosis) if len(diagnosis.effects) <= IN_A_SENTENCE else names_listed(diagnosis)
-    headline, told, formula = _recovered(diagnosis.unknown, diagnosis.bent) if diagnosis.unknown else (named, (), "")
+    headline, told, formula = _recovered(diagnosis.unknown, diagnosis.biased) if diagnosis.unknown else (named, (), "")
     return Stage(
         "model",
         "Model",
@@ -65,17 +65,17 @@ def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
 def _without_names(diagnosis: Diagnosis) -> Stage:
     """The recovered law alone, or the model as it stands."""
     if diagnosis.unknown:
-        headline, told, formula = _recovered(diagnosis.unknown, diagnosis.bent)
+        headline, told, formula = _recovered(diagnosis.unknown, diagnosis.biased)
         return Stage("model", "Model", headline, told, code=formula)
     ending = "with the fitted parameters" if diagnosis.verdict == "parameters" else "as it was given"
     return Stage("model", "Model", f"The model stands {ending}", ("No physics was added.",))
 
 
-def _recovered(law: UnknownLaw, bent: bool) -> tuple[str, tuple[str, ...], str]:
+def _recovered(law: UnknownLaw, biased: bool) -> tuple[str, tuple[str, ...], str]:
     """The headline, the sentences and the formula of a recovered law."""
     told = (
         f"The law was recovered from the data; it explains {law.r_squared:.1%} of the mismatch.",
-        WITHOUT if bent else "",
+        WITHOUT if biased else "",
         "As a formula, it reads:" if law.expression else "No simple formula follows its curve.",
     )
     return f"A law over {law.function_of} is missing", told, law.expression

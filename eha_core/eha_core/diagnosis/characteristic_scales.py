@@ -1,4 +1,4 @@
-"""What the recording's motion is like, computed once: the scales in which the catalogue's searches begin."""
+"""What the recording's motion is like, computed once: the scales of the catalogue's initial guesses."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from eha_core.identification.segments import smooth
 from eha_core.identification.shooting import Shooting
 from eha_core.plant import COLUMNS
 
-SCALES = ("position", "time", "speed", "force", "spool", "pressure", "supply_flow", "leakage_flow")
-"""What a start can be relative to."""
+QUANTITIES = ("position", "time", "speed", "force", "spool", "pressure", "supply_flow", "leakage_flow")
+"""What an initial guess can be relative to."""
 
 
 @dataclass(frozen=True)
-class Facts:
-    """Origin and scale of each of SCALES, and the calibrated model's states over time (rows of COLUMNS, each a
+class Scales:
+    """Origin and scale of each of QUANTITIES, and the calibrated model's states over time (rows of COLUMNS, each a
     sample)."""
 
-    scales: Mapping[str, tuple[float, float]]
+    by_quantity: Mapping[str, tuple[float, float]]
     rows: Array
 
     def column(self, name: str) -> Array:
@@ -31,13 +31,13 @@ class Facts:
         return self.rows[:, COLUMNS.index(name)]
 
 
-def gather(observations: Sequence[Observation], shooting: Shooting, calibrated: Fit) -> Facts:
+def characteristic_scales(observations: Sequence[Observation], shooting: Shooting, calibrated: Fit) -> Scales:
     """Simulate the calibrated model once more, in full, and read the scales off it and off the measured positions."""
     positions = [channel for one in observations for channel in one.measured if channel.name == "position"]
     low, high = np.quantile(np.concatenate([one.values for one in positions]), [0.002, 0.998])
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
     speed = float(np.std(np.concatenate([smooth(one, 1) for one in positions])))
-    scales = {
+    by_quantity = {
         "position": (float(centre), float(half)),
         "time": (0.0, max(one.duration for one in observations)),
         "speed": (0.0, speed),
@@ -48,22 +48,22 @@ def gather(observations: Sequence[Observation], shooting: Shooting, calibrated: 
         difference = rows[:, COLUMNS.index("pressure_a")] - rows[:, COLUMNS.index("pressure_b")]
         pressure = float(np.std(difference))
         flow = float(np.std(rows[:, COLUMNS.index("flow_a")]))
-        scales["force"] = (0.0, area * pressure + calibrated.values["damping_coefficient"] * speed)
-        scales["spool"] = (0.0, float(np.std(rows[:, COLUMNS.index("spool_position")])))
-        scales["pressure"] = (0.0, max(pressure, 0.01 * calibrated.values["supply_pressure"]))
-        scales["supply_flow"] = (0.0, calibrated.values["supply_pressure"] / flow)
-        scales["leakage_flow"] = (0.0, flow / max(pressure, 1e5))
+        by_quantity["force"] = (0.0, area * pressure + calibrated.values["damping_coefficient"] * speed)
+        by_quantity["spool"] = (0.0, float(np.std(rows[:, COLUMNS.index("spool_position")])))
+        by_quantity["pressure"] = (0.0, max(pressure, 0.01 * calibrated.values["supply_pressure"]))
+        by_quantity["supply_flow"] = (0.0, calibrated.values["supply_pressure"] / flow)
+        by_quantity["leakage_flow"] = (0.0, flow / max(pressure, 1e5))
     else:
         rows = np.empty((0, len(COLUMNS)))
         drive = calibrated.values["piston_area"] * (shooting.inputs[0] - shooting.inputs[1])
-        scales["force"] = (0.0, float(np.std(drive)))
-    return Facts(scales, rows)
+        by_quantity["force"] = (0.0, float(np.std(drive)))
+    return Scales(by_quantity, rows)
 
 
-def facts_alone(shooting: Shooting, facts: Facts, number: int) -> Facts:
-    """The facts with the calibrated model's states in one recording only."""
-    if not len(facts.rows) or len(shooting.first_windows) == 1:
-        return facts
+def scales_alone(shooting: Shooting, scales: Scales, number: int) -> Scales:
+    """The scales with the calibrated model's states in one recording only."""
+    if not len(scales.rows) or len(shooting.first_windows) == 1:
+        return scales
     windows = shooting.recordings[number - 1]
     begin, end = (int(shooting.edges[window]) // shooting.every for window in (windows.start, windows.stop))
-    return replace(facts, rows=facts.rows[begin:end])
+    return replace(scales, rows=scales.rows[begin:end])

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from eha_core.identification.fit import Ending, Fit
-from eha_core.identification.freedom import Free, coordinates, values_at
+from eha_core.identification.free_parameters import FreeParameter, coordinates, values_at
 
-SLIDING = Free("sliding", 100.0, False, 100.0, 30.0, 0.0, 1e5)
-STATIC = Free("static", 0.0, False, 1.0, 30.0, 0.0, 3.0, above="sliding")
-MASS = Free("mass", 9.0, True, 0.0, 0.7, 2.0, 40.0)
+SLIDING = FreeParameter("sliding", 100.0, False, 100.0, 30.0, 0.0, 1e5)
+STATIC = FreeParameter("static", 0.0, False, 1.0, 30.0, 0.0, 3.0, above="sliding")
+MASS = FreeParameter("mass", 9.0, True, 0.0, 0.7, 2.0, 40.0)
 FREE = (STATIC, SLIDING, MASS)
 
 

@@ -1,4 +1,4 @@
-"""What could be missing: each effect of the catalogue, and the points from which a search for it starts."""
+"""What could be missing: each effect of the catalogue, and the values from which a fit with it begins."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from eha_core.diagnosis.effect_freedom import MOST_ABOVE
-from eha_core.diagnosis.facts import Facts
+from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.effect_parameters import MOST_ABOVE
 from eha_core.effects import Effect
 from eha_core.identification.observation import Observation
 from eha_core.parameter import Parameter
@@ -22,14 +22,14 @@ SITES_OF_DRIVE = {
 
 
 @dataclass(frozen=True)
-class Start:
+class InitialGuess:
     """An effect with values for its parameters (full names)."""
 
     effect: Effect
     values: Mapping[str, float]
 
 
-def candidates(observations: Sequence[Observation]) -> tuple[Effect, ...]:
+def applicable_effects(observations: Sequence[Observation]) -> tuple[Effect, ...]:
     """The effects that these recordings could show: those of examined sites whose sensor was there."""
     sites = SITES_OF_DRIVE[observations[0].drive]
     found = [effect for effect in observations[0].composition.effects if effect.site in sites and effect.named]
@@ -38,21 +38,21 @@ def candidates(observations: Sequence[Observation]) -> tuple[Effect, ...]:
     return tuple(found)
 
 
-def starts(effect: Effect, facts: Facts) -> tuple[Start, ...]:
-    """Every combination of the starts that the effect's parameters declare."""
+def initial_guesses(effect: Effect, scales: Scales) -> tuple[InitialGuess, ...]:
+    """Every combination of the starting values that the effect's parameters declare."""
     choices = []
     for row in effect.parameters:
-        origin, scale = facts.scales.get(row.relative_to, (0.0, row.typical))
+        origin, scale = scales.by_quantity.get(row.relative_to, (0.0, row.typical))
         choices.append([min(max(origin + scale * at, row.lower), row.upper) for at in row.starts])
     names = effect.parameter_names()
-    found = [Start(effect, dict(zip(names, values, strict=True))) for values in product(*choices)]
+    found = [InitialGuess(effect, dict(zip(names, values, strict=True))) for values in product(*choices)]
     return tuple(one for one in found if all(_may_be(one, row) for row in effect.parameters))
 
 
-def _may_be(start: Start, row: Parameter) -> bool:
-    """Whether a start has a parameter as far above another as a fit lets it be."""
-    own = start.effect.id
+def _may_be(guess: InitialGuess, row: Parameter) -> bool:
+    """Whether a guess has a parameter as far above another as a fit lets it be."""
+    own = guess.effect.id
     if not row.above:
         return True
-    share = start.values[f"{own}.{row.name}"] / start.values[f"{own}.{row.above}"] - 1.0
+    share = guess.values[f"{own}.{row.name}"] / guess.values[f"{own}.{row.above}"] - 1.0
     return 0.0 <= share <= MOST_ABOVE

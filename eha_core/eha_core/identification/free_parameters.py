@@ -1,4 +1,4 @@
-"""Which parameters a fit may move, in which coordinate, and how far it takes their nominal values on trust."""
+"""Which parameters a fit may move, in which coordinate, and the prior of their nominal values."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from eha_core.plant.parts import Source
 
 
 @dataclass(frozen=True)
-class Free:
+class FreeParameter:
     """One parameter that a fit moves, by q: value = reference exp(q) if logarithmic, else reference + scale q.
 
-    The prior says q = 0 with standard deviation `trust`. `lower` and `upper` bound the value. A derivative is taken
-    over no less than `resolution` in q: an instant acts from one step of the simulation to the next. Where `above`
-    names a parameter, q and the bounds are of the share by which this one exceeds that.
+    The prior of q has mean 0 and standard deviation `prior_deviation`; `lower` and `upper` bound the value. A slope is
+    taken over no less than `resolution` in q: an instant acts from one step of the simulation to the next. Where
+    `above` names a parameter, q and the bounds are of the share by which this one exceeds that.
     """
 
     name: str
     reference: float
     logarithmic: bool
     scale: float
-    trust: float
+    prior_deviation: float
     lower: float
     upper: float
     resolution: float = 0.0
@@ -60,12 +60,12 @@ class Free:
         return value if self.logarithmic else self.scale
 
 
-def coordinates(free: Sequence[Free], values: Mapping[str, float]) -> Array:
+def coordinates(free: Sequence[FreeParameter], values: Mapping[str, float]) -> Array:
     """The coordinates at which the free parameters have these values."""
     return np.array([one.coordinate(_own(one, values)) for one in free])
 
 
-def _own(one: Free, values: Mapping[str, float]) -> float:
+def _own(one: FreeParameter, values: Mapping[str, float]) -> float:
     """What the coordinate is of: the value, or the share above another, inside its bounds: past one is no slope."""
     if not one.above:
         return values[one.name]
@@ -73,7 +73,7 @@ def _own(one: Free, values: Mapping[str, float]) -> float:
     return min(max(share, one.lower), one.upper)
 
 
-def values_at(values: Mapping[str, float], free: Sequence[Free], q: Array) -> dict[str, float]:
+def values_at(values: Mapping[str, float], free: Sequence[FreeParameter], q: Array) -> dict[str, float]:
     """Every parameter's value: `values`, and the free ones at coordinates `q`."""
     found = {**values, **{one.name: one.value(float(at)) for one, at in zip(free, q, strict=True)}}
     for one in free:
@@ -83,31 +83,31 @@ def values_at(values: Mapping[str, float], free: Sequence[Free], q: Array) -> di
 
 
 @dataclass(frozen=True)
-class Trust:
-    """How far a nominal value is taken on trust: by `trust` in its coordinate, and never beyond a factor of `reach`.
+class Prior:
+    """How far off a nominal value may be: the standard `deviation` of its coordinate, and the factor that bounds it.
 
-    `scale` [SI] is the coordinate's unit where the parameter may be zero, and `reach` then counts such units (0: any);
-    a scale of 0 says that it moves by factors.
+    `scale` [SI] is the coordinate's unit where the parameter may be zero, and `bound_factor` then counts such units (0:
+    any); a scale of 0 says that it moves by factors.
     """
 
-    trust: float
-    reach: float
+    deviation: float
+    bound_factor: float
     scale: float = 0.0
 
 
-NOMINAL_TRUST: Mapping[str, Trust] = {
-    "coil_inductance": Trust(0.3, 2.0),
-    "valve_damping_ratio": Trust(0.3, 2.5),
-    "valve_natural_frequency": Trust(0.3, 2.0),
-    "valve_gain": Trust(0.7, 4.0),
-    "bulk_modulus": Trust(0.7, 5.0),
-    "supply_pressure": Trust(0.4, 2.0),
-    "return_pressure": Trust(1.0, 10.0, 1e5),
-    "spring_stiffness": Trust(1.0, 0.0, 2e4),
-    "actuator_displacement": Trust(0.3, 2.0),
-    "moving_mass": Trust(0.7, 5.0),
-    "damping_coefficient": Trust(1.0, 8.0),
-    "internal_leakage": Trust(1.0, 0.0, 3e-11),
+NOMINAL_PRIORS: Mapping[str, Prior] = {
+    "coil_inductance": Prior(0.3, 2.0),
+    "valve_damping_ratio": Prior(0.3, 2.5),
+    "valve_natural_frequency": Prior(0.3, 2.0),
+    "valve_gain": Prior(0.7, 4.0),
+    "bulk_modulus": Prior(0.7, 5.0),
+    "supply_pressure": Prior(0.4, 2.0),
+    "return_pressure": Prior(1.0, 10.0, 1e5),
+    "spring_stiffness": Prior(1.0, 0.0, 2e4),
+    "actuator_displacement": Prior(0.3, 2.0),
+    "moving_mass": Prior(0.7, 5.0),
+    "damping_coefficient": Prior(1.0, 8.0),
+    "internal_leakage": Prior(1.0, 0.0, 3e-11),
 }
 """Assumed: how far data sheets and hand-over notes are off.
 
@@ -126,24 +126,24 @@ oil."""
 TOUCHING = 0.985
 """Share of the stroke beyond which the piston has been at its end: then the stroke is seen, and not fitted."""
 
-NOT_KNOWN = Trust(2.3, 1000.0)
+NOT_KNOWN = Prior(2.3, 1000.0)
 """Of a value that nobody knows: a factor of ten either way is likely, a thousand impossible (assumed)."""
 
 FORCE_ONLY = ("spring_stiffness", "moving_mass", "damping_coefficient")
 """What a recording without the valve's command can tell."""
 
 
-def nominal_freedom(
+def free_nominal_parameters(
     nominal: Mapping[str, float], drive: str, travel: float, unknown: Collection[str] = (),
     composition: Composition = PAPER,
-) -> tuple[Free, ...]:  # fmt: skip
+) -> tuple[FreeParameter, ...]:  # fmt: skip
     """The nominal parameters that a recording with this drive may move; `travel` is the largest |position| seen [m].
 
     Of `unknown` ones the nominal value is only where the search begins.
     """
     free = []
-    for name, trust in {**NOMINAL_TRUST, **_trust_of(composition.source)}.items():
-        known = _not_known(trust) if name in unknown else trust
+    for name, prior in {**NOMINAL_PRIORS, **_priors_of(composition.source)}.items():
+        known = _not_known(prior) if name in unknown else prior
         if (drive not in WITH_OIL and name not in FORCE_ONLY) or name not in composition.place_rows:
             continue
         row = composition.place_rows[name]
@@ -153,41 +153,41 @@ def nominal_freedom(
         logarithmic = known.scale == 0.0 and reference > 0.0
         lower, upper = row.lower, row.upper
         if logarithmic:
-            lower, upper = max(lower, reference / known.reach), min(upper, reference * known.reach)
+            lower, upper = max(lower, reference / known.bound_factor), min(upper, reference * known.bound_factor)
         if name == "actuator_displacement":
             if travel > TOUCHING * reference:
                 continue
             lower = max(lower, 1.01 * travel)
         scale = 0.0 if logarithmic else max(known.scale or row.typical, abs(reference))
-        if not logarithmic and known.reach:
-            upper = min(upper, reference + known.reach * scale)
-        free.append(Free(name, reference, logarithmic, scale, known.trust, lower, max(lower, upper)))
+        if not logarithmic and known.bound_factor:
+            upper = min(upper, reference + known.bound_factor * scale)
+        free.append(FreeParameter(name, reference, logarithmic, scale, known.deviation, lower, max(lower, upper)))
     if nominal["piston_area_b"] != nominal["piston_area"] and drive in WITH_OIL:
         row = composition.place_rows["piston_area_b"]
-        free.append(Free(row.name, nominal[row.name], True, 0.0, 0.3, row.lower, row.upper))
+        free.append(FreeParameter(row.name, nominal[row.name], True, 0.0, 0.3, row.lower, row.upper))
     return tuple(free)
 
 
-def _trust_of(source: Source) -> dict[str, Trust]:
-    """How far the values of a source's own parameters are taken on trust; none of those that it holds."""
+def _priors_of(source: Source) -> dict[str, Prior]:
+    """The priors of a source's own parameters; none of those that it holds."""
     own = {row.name for row in source.own} - set(source.held)
     return {
-        row.name: Trust(*source.spread.get(row.name, USUAL_SPREAD), 0.0 if row.logarithmic else row.typical)
+        row.name: Prior(*source.spread.get(row.name, USUAL_SPREAD), 0.0 if row.logarithmic else row.typical)
         for row in source.parameters
         if row.name in own or row.name in source.spread
     }
 
 
-def _not_known(trust: Trust) -> Trust:
-    """The trust in the nominal value of a parameter that is not known."""
-    return replace(NOT_KNOWN, scale=trust.scale)
+def _not_known(prior: Prior) -> Prior:
+    """The prior of a parameter whose nominal value is not known."""
+    return replace(NOT_KNOWN, scale=prior.scale)
 
 
-def not_believed(one: Free, row: Parameter) -> Free:
+def not_believed(one: FreeParameter, row: Parameter) -> FreeParameter:
     """A nominal parameter as free as if nobody knew its value, within the limits of its `row` in the catalogue."""
-    reach = NOT_KNOWN.reach
+    bound_factor = NOT_KNOWN.bound_factor
     if one.logarithmic:
-        lower, upper = max(row.lower, one.reference / reach), min(row.upper, one.reference * reach)
+        lower, upper = max(row.lower, one.reference / bound_factor), min(row.upper, one.reference * bound_factor)
     else:
-        lower, upper = row.lower, min(row.upper, one.reference + reach * one.scale)
-    return replace(one, trust=NOT_KNOWN.trust, lower=lower, upper=upper)
+        lower, upper = row.lower, min(row.upper, one.reference + bound_factor * one.scale)
+    return replace(one, prior_deviation=NOT_KNOWN.deviation, lower=lower, upper=upper)

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from eha_core.diagnosis.criteria import NEXT_TO_NOTHING
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
-from eha_core.identification.freedom import Free
+from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import base_name
 from eha_core.parameters import catalogue
 
-EFFECT_TRUST = 30.0
+EFFECT_PRIOR = 30.0
 """An effect's parameter may move by this many times its starting size, or by e^3 where it moves by factors."""
 
 
@@ -23,21 +23,21 @@ SHORTEST_INSTANT = 0.01
 """s; over this much an instant is moved to see what that changes."""
 
 
-def effect_freedom(effect: Effect, start: Mapping[str, float]) -> tuple[Free, ...]:
+def free_effect_parameters(effect: Effect, start: Mapping[str, float]) -> tuple[FreeParameter, ...]:
     """An effect's parameters, free about `start` (full names)."""
     free = []
     for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
         value = start[name]
         if row.above:
             above = f"{effect.id}.{row.above}"
-            free.append(Free(name, 0.0, False, 1.0, EFFECT_TRUST, 0.0, MOST_ABOVE, above=above))
+            free.append(FreeParameter(name, 0.0, False, 1.0, EFFECT_PRIOR, 0.0, MOST_ABOVE, above=above))
             continue
         if row.logarithmic and value > 0.0:
-            free.append(Free(name, value, True, 0.0, 3.0, row.lower, row.upper))
+            free.append(FreeParameter(name, value, True, 0.0, 3.0, row.lower, row.upper))
         else:
             scale = abs(value - row.nominal) or abs(row.typical) or 1.0
             resolution = SHORTEST_INSTANT / scale if row.relative_to == "time" else 0.0
-            free.append(Free(name, value, False, scale, EFFECT_TRUST, row.lower, row.upper, resolution))
+            free.append(FreeParameter(name, value, False, scale, EFFECT_PRIOR, row.lower, row.upper, resolution))
     return tuple(free)
 
 
@@ -45,16 +45,16 @@ SPAN_SCALE = 0.3
 """s; the coordinate's unit of an instant from which, or until which, an effect acts."""
 
 
-def span_freedom(span: Mapping[str, float], bounds: Sequence[tuple[float, float]]) -> tuple[Free, ...]:
+def free_instants(span: Mapping[str, float], bounds: Sequence[tuple[float, float]]) -> tuple[FreeParameter, ...]:
     """The instants between which an effect acts, free about where they are taken to be, within bounds [s]."""
     resolution = SHORTEST_INSTANT / SPAN_SCALE
     return tuple(
-        Free(name, at, False, SPAN_SCALE, EFFECT_TRUST, *within, resolution)
+        FreeParameter(name, at, False, SPAN_SCALE, EFFECT_PRIOR, *within, resolution)
         for (name, at), within in zip(span.items(), bounds, strict=True)
     )
 
 
-def freedom_used(result: Fit) -> int:
+def parameters_used(result: Fit) -> int:
     """How many parameters a fit makes use of: a shape of an effect's that is next to nothing is none.
 
     A deadband with sharp edges has no rounding to pay for.

@@ -2,7 +2,7 @@
 
 Windows in a row in which an effect is predicted to gain far more than over the whole record tell where to look. The
 nominal equations, with the effects that are known to act always, are then fitted to the rest of the record alone, which
-has not bent their parameters, and the catalogue is screened once more from there.
+has not biased their parameters, and the catalogue is screened once more from there.
 """
 
 from __future__ import annotations
@@ -14,12 +14,14 @@ from math import log
 
 import numpy as np
 
+from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import NEAR_NOISE, OUTSTANDING, UNTOUCHED
-from eha_core.diagnosis.effect_freedom import effect_freedom, span_freedom
-from eha_core.diagnosis.hypotheses import Start
+from eha_core.diagnosis.effect_parameters import free_effect_parameters, free_instants
+from eha_core.diagnosis.found import OUT_OF_REACH, Found, Progress, best_first
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.refine import OUT_OF_REACH, Found, Progress, best_first, cross, settle
+from eha_core.diagnosis.initial_guesses import InitialGuess
 from eha_core.diagnosis.screen import ScoreTest, scaled, screen_in_time
+from eha_core.diagnosis.warm_start import warm_start
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages, refit_states
 from eha_core.identification.numbers import Array
@@ -44,10 +46,10 @@ TRIED = 4
 """How many effects are fitted with the span in which they act."""
 
 
-def passing_effects(
+def time_limited_effects(
     problem: Problem,
     calibrated: Fit,
-    initial_guesses: Sequence[Start],
+    initial_guesses: Sequence[InitialGuess],
     score_tests: Sequence[ScoreTest],
     least: float,
     progress: Progress = lambda _: None,
@@ -65,17 +67,17 @@ def passing_effects(
         outside = _at_the_whole(problem, fitted)
     progress("looking when an effect acts")
     found = _fitted(problem, NOTHING, outside, initial_guesses, calibrated.objective, progress)
-    crossed = cross(problem, settle(problem, found, progress))
-    sharpened = {hypothesis: _sharpened(problem, result) for hypothesis, result in crossed.items()}
+    warm_started = warm_start(problem, converge(problem, found, progress))
+    sharpened = {hypothesis: _sharpened(problem, result) for hypothesis, result in warm_started.items()}
     # half a millisecond beside another's instants a law would seem to explain less than a richer form of it
-    return cross(problem, sharpened)
+    return warm_start(problem, sharpened)
 
 
-def passing_beside(
+def time_limited_beside(
     problem: Problem,
     base: Hypothesis,
     fitted: Fit,
-    initial_guesses: Sequence[Start],
+    initial_guesses: Sequence[InitialGuess],
     score_tests: Sequence[ScoreTest],
     least: float,
     progress: Progress = lambda _: None,
@@ -110,7 +112,7 @@ def _outstanding(score_tests: Sequence[ScoreTest], least: float, times: float) -
 
 
 def _fitted(
-    problem: Problem, base: Hypothesis, outside: Fit, initial_guesses: Sequence[Start], reached: float,
+    problem: Problem, base: Hypothesis, outside: Fit, initial_guesses: Sequence[InitialGuess], reached: float,
     progress: Progress,
 ) -> Found:  # fmt: skip
     """What is predicted to gain most in windows in a row, added to `base` and fitted with the span in which it acts.
@@ -120,14 +122,17 @@ def _fitted(
         return {}
     begun = [_of_fixed_span(problem, outside, score_test) for score_test in chosen]
     nearest = min(range(len(begun)), key=lambda place: begun[place].objective)
-    instants = _located(problem, begun[nearest], chosen[nearest].start.effect)
+    instants = _located(problem, begun[nearest], chosen[nearest].guess.effect)
     found: Found = {}
     for score_test, beginning in zip(chosen, begun, strict=True):
-        effect = score_test.start.effect
+        effect = score_test.guess.effect
         progress(f"refitting with {effect.id} for a while")
         values = {**beginning.values, **instants.of(effect)}
-        free = (*outside.free, *effect_freedom(effect, values), *span_freedom(instants.of(effect), instants.bounds))
-        result = fit(problem, values, free, instants.states, iterations=25, give_up_above=reached + OUT_OF_REACH)
+        own = (*free_effect_parameters(effect, values), *free_instants(instants.of(effect), instants.bounds))
+        result = fit(
+            problem, values, (*outside.free, *own), instants.states,
+            iterations=25, give_up_above=reached + OUT_OF_REACH,
+        )  # fmt: skip
         reached = min(reached, result.objective)
         found[base.with_effects([effect], limited=True)] = result
     return found
@@ -158,19 +163,19 @@ def _one_each(score_tests: Sequence[ScoreTest]) -> list[ScoreTest]:
     """The best of each effect; none of one that has an instant of its own at which it sets in."""
     best: dict[str, ScoreTest] = {}
     for one in score_tests:
-        sets_in = any(row.relative_to == "time" for row in one.start.effect.parameters)
+        sets_in = any(row.relative_to == "time" for row in one.guess.effect.parameters)
         if one.windows is not None and not sets_in:
-            best.setdefault(one.start.effect.id, one)
+            best.setdefault(one.guess.effect.id, one)
     return list(best.values())[:TRIED]
 
 
 def _of_fixed_span(problem: Problem, base: Fit, score_test: ScoreTest) -> Fit:
     """The effect's own parameters fitted, in the span that the windows tell, and nothing else."""
     assert score_test.windows is not None
-    effect = score_test.start.effect
+    effect = score_test.guess.effect
     span = dict(zip(effect.acting_names(), _span_of(problem, score_test.windows), strict=True))
     values = {**base.values, **scaled(score_test), **span}
-    return fit(problem, values, effect_freedom(effect, values), base.states, iterations=8)
+    return fit(problem, values, free_effect_parameters(effect, values), base.states, iterations=8)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,95 @@
+"""The leaders fitted until they converge, from more than one start.
+
+A fit that stops short of its optimum makes its rivals look better than they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from eha_core.diagnosis.criteria import NEAR_NOISE
+from eha_core.diagnosis.found import Found, Progress, best_first
+from eha_core.diagnosis.nominal_start import NOMINAL_NAMES, with_dynamics_held
+from eha_core.identification.fit import Fit, fit
+from eha_core.identification.free_parameters import FreeParameter
+from eha_core.identification.per_recording import is_one_of
+from eha_core.identification.problem import Problem
+
+CONVERGED_LEADERS = 3
+
+CONVERGE_WITHIN = 300.0
+"""The best few are fitted to their end, those at least that came within this of the best, or half of what it left
+over."""
+
+INSTANT_REACHES = (2.4, 1.2, 0.6, 0.3)
+"""s; how far off an instant may be found to be before the rest is fitted to it again."""
+
+INSTANT_SHIFTS = (-0.12, 0.12, -0.04, 0.04, -0.01, 0.01, -0.004, 0.004, -0.0015, 0.0015)
+"""s; how far beside its optimum an instant is tried once more."""
+
+
+def converge(problem: Problem, found: Found, progress: Progress = lambda _: None) -> Found:
+    """The leaders fitted until they converge, with derivatives at the full step.
+
+    Where more than noise is left they are fitted from the nominal values, too: beginning at a calibration that is far
+    off, the nominal parameters can end in a local minimum.
+    """
+    exact = replace(problem, slope_step=problem.shooting.step_size)
+    best = np.inf
+    converged = dict(found)
+    for hypothesis in best_first(found)[:CONVERGED_LEADERS]:
+        result = found[hypothesis]
+        if result.objective > best + 0.5 * max(best - problem.count(), 0.0) + CONVERGE_WITHIN:
+            continue
+        progress(f"fitting {' and '.join(hypothesis.ids)}")
+        result = fit(exact, result.values, result.free, result.states, iterations=30)
+        if result.data > NEAR_NOISE * result.count:
+            untouched = {one.name: one.reference for one in result.free if is_one_of(one.name, NOMINAL_NAMES)}
+            again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
+            if again.objective < result.objective:
+                result = fit(exact, again.values, again.free, again.states, iterations=6)
+        dynamics_held = with_dynamics_held(problem, result)
+        if dynamics_held is not None:
+            again = fit(problem, dynamics_held.values, result.free, dynamics_held.states, iterations=10)
+            if again.objective < result.objective:
+                result = fit(exact, again.values, again.free, again.states, iterations=6)
+        result = _other_instants(problem, exact, result)
+        best = min(best, result.objective)
+        converged[hypothesis] = result
+    return converged
+
+
+def _other_instants(problem: Problem, exact: Problem, result: Fit) -> Fit:
+    """An instant that a fit moves can rest beside the right one, by far or by a little: try its surroundings."""
+    for one in result.free:
+        if one.resolution == 0.0:
+            continue
+        if result.data > NEAR_NOISE * result.count:
+            result = _far_instant(problem, exact, result, one)
+        for shift in INSTANT_SHIFTS:
+            moved = {**result.values, one.name: result.values[one.name] + shift}
+            again = fit(problem, moved, result.free, result.states, iterations=6, give_up_above=result.objective)
+            if again.objective < result.objective:
+                result = fit(exact, again.values, again.free, again.states, iterations=6)
+    return result
+
+
+def _far_instant(problem: Problem, exact: Problem, result: Fit, one: FreeParameter) -> Fit:
+    """The instant looked for far and wide with all else as it stands: between a wrong one and the right one the windows
+    alone are wrong."""
+    best, at = result.objective, result.values[one.name]
+    there = at
+    for reach in INSTANT_REACHES:
+        for instant in (there - reach, there + reach):
+            moved = {**result.values, one.name: min(max(instant, one.lower), one.upper)}
+            again = fit(problem, moved, (), result.states, iterations=3)
+            if again.objective < best:
+                best, at = again.objective, moved[one.name]
+        there = at
+    if best == result.objective:
+        return result
+    moved = {**result.values, one.name: at}
+    found = fit(exact, moved, result.free, result.states, iterations=12)
+    return found if found.objective < result.objective else result

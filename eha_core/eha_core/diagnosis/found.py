@@ -1,0 +1,26 @@
+"""What was fitted so far: the best fit of each hypothesis."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from eha_core.diagnosis.hypothesis import Hypothesis
+from eha_core.identification.fit import Fit
+
+OUT_OF_REACH = 200.0
+"""A hypothesis that cannot come within this of the best objective so far is not fitted to its end."""
+
+Progress = Callable[[str], None]
+Found = dict[Hypothesis, Fit]
+"""The best fit so far of each hypothesis."""
+
+
+def keep_better(found: Found, hypothesis: Hypothesis, result: Fit) -> None:
+    """Add a fitted hypothesis, or let it take the place of a worse fit of the same one."""
+    if hypothesis not in found or result.objective < found[hypothesis].objective:
+        found[hypothesis] = result
+
+
+def best_first(found: Found) -> list[Hypothesis]:
+    """The hypotheses in the order of their objectives, the lowest first."""
+    return sorted(found, key=lambda one: found[one].objective)

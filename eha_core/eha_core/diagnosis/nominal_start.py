@@ -1,0 +1,37 @@
+"""A fit taken back to nominal values, from where it can be fitted again without what biased them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from eha_core.identification.fit import Fit, fit
+from eha_core.identification.free_parameters import LATE, FreeParameter, coordinates
+from eha_core.identification.per_recording import is_one_of
+from eha_core.identification.problem import Problem
+from eha_core.parameters import NOMINAL
+
+BIASED = 0.02
+"""Share by which a calibration must have moved the valve's dynamics for a delay or a lag to be what it imitated."""
+
+NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
+
+
+def with_dynamics_held(problem: Problem, calibrated: Fit) -> Fit | None:
+    """The calibration with the valve's dynamics at their nominal values; None where it hardly moved them."""
+    late = {one.name: one.reference for one in calibrated.free if is_one_of(one.name, LATE)}
+    if all(abs(calibrated.values[name] / given - 1.0) < BIASED for name, given in late.items()):
+        return None
+    rest = [one for one in calibrated.free if one.name not in late]
+    held = fit(problem, {**calibrated.values, **late}, rest, calibrated.states, iterations=5)
+    return set_free(held, calibrated.free)
+
+
+def at_nominal_values(problem: Problem, calibrated: Fit) -> Fit:
+    """The calibration with every nominal parameter back at its nominal value, only the windows' starts fitted again."""
+    given = {one.name: one.reference for one in calibrated.free if is_one_of(one.name, NOMINAL_NAMES)}
+    return set_free(fit(problem, {**calibrated.values, **given}, (), calibrated.states, iterations=5), calibrated.free)
+
+
+def set_free(held: Fit, free: tuple[FreeParameter, ...]) -> Fit:
+    """A fit as a point at which all of `free` may move again."""
+    return replace(held, free=free, q=coordinates(free, held.values))

@@ -1,0 +1,89 @@
+"""Which single effects are refitted, and from which values: those of the fit, or the nominal ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE
+from eha_core.diagnosis.effect_parameters import free_effect_parameters
+from eha_core.diagnosis.found import OUT_OF_REACH
+from eha_core.diagnosis.initial_guesses import InitialGuess
+from eha_core.diagnosis.nominal_start import NOMINAL_NAMES, at_nominal_values, set_free, with_dynamics_held
+from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
+from eha_core.effects import Effect
+from eha_core.identification.fit import Fit, fit, fit_in_stages
+from eha_core.identification.free_parameters import LATE, FreeParameter
+from eha_core.identification.per_recording import is_one_of
+from eha_core.identification.problem import Problem
+
+TRIED_WITH_DYNAMICS_HELD = 2
+DYNAMICS_HELD_SHARE = 0.25
+"""Where the calibration moved the valve's dynamics, so many hypotheses are tried with the dynamics held, too, if their
+predicted gain is this share of what others need."""
+
+
+@dataclass(frozen=True)
+class PlannedRefit:
+    """An effect that is worth a refit, the fit it is added to, and whether the refit begins at the nominal values."""
+
+    base: Fit
+    score_test: ScoreTest
+    from_nominal: bool
+
+
+def refit_on(base: Fit, score_test: ScoreTest) -> PlannedRefit:
+    """A refit from the values of `base`; from the nominal values where that is far from noise, as its parameters are
+    biased by what is missing."""
+    return PlannedRefit(base, score_test, base.data > FAR_FROM_NOISE * base.count)
+
+
+def planned_refits(
+    problem: Problem,
+    base: Fit,
+    initial_guesses: Sequence[InitialGuess],
+    score_tests: Sequence[ScoreTest],
+    most: int,
+    least: float,
+) -> tuple[PlannedRefit, ...]:
+    """What to try on top of a fit: the effects of its own largest predicted gains, then those of the fit with the
+    dynamics as given.
+
+    What is predicted to gain too little is left out; where the dynamics would have to bend back first, that says less.
+    The parameters of a fit that is far from noise are biased; what is missing shows against the nominal ones first.
+    """
+    leading = one_each(score_tests, most)
+    if base.data > FAR_FROM_NOISE * base.count:
+        straight = one_each(screen(problem, at_nominal_values(problem, base), initial_guesses), most)
+        leading = one_each((*straight, *leading), 2 * most)
+    chosen = [refit_on(base, score_test) for score_test in leading if score_test.gain > least]
+    dynamics_held = with_dynamics_held(problem, base)
+    if dynamics_held is None:
+        return tuple(chosen)
+    # what the dynamics could imitate shows only while they are held
+    held = set_free(dynamics_held, tuple(one for one in base.free if not is_one_of(one.name, LATE)))
+    again = one_each(screen(problem, held, initial_guesses), TRIED_WITH_DYNAMICS_HELD)
+    known = {one.score_test.guess.effect.id for one in chosen if one.from_nominal}
+    from_nominal = [PlannedRefit(dynamics_held, one, True) for one in again if one.guess.effect.id not in known]
+    return (*chosen, *(one for one in from_nominal if one.score_test.gain > DYNAMICS_HELD_SHARE * least))
+
+
+def refit_with(problem: Problem, planned: PlannedRefit, best: float) -> Fit:
+    """Fit the effect, giving up when it cannot come near the `best` objective so far."""
+    base, score_test = planned.base, planned.score_test
+    effect = score_test.guess.effect
+    if planned.from_nominal:
+        untouched = {one.name: one.reference for one in base.free if is_one_of(one.name, NOMINAL_NAMES)}
+        values = {**base.values, **untouched, **score_test.guess.values}
+        free = _with_effect(base.free, effect, values)
+        return fit_in_stages(problem, values, free, give_up_above=best + OUT_OF_REACH)
+    values = {**base.values, **scaled(score_test)}
+    free = _with_effect(base.free, effect, values)
+    return fit(problem, values, free, base.states, iterations=25, give_up_above=best + OUT_OF_REACH)
+
+
+def _with_effect(
+    free: tuple[FreeParameter, ...], effect: Effect, values: Mapping[str, float]
+) -> tuple[FreeParameter, ...]:
+    extra = free_effect_parameters(effect, values)
+    return (*(one for one in free if one.name not in {own.name for own in extra}), *extra)
