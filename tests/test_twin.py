@@ -71,7 +71,7 @@ def test_leakage_turned_up_is_raised_within_two_seconds_in_the_chambers() -> Non
 def test_dry_friction_is_raised_in_the_force_balance_alone() -> None:
     found = beside(rig(4.0, parameters={"coulomb_friction.force": 100.0}), Twin())
     assert [list(comparison.departs) for _, comparison in found] == [["force balance"]] * 3
-    # 100 N against what 10 kPa of noise on 645 mm^2, two chambers, leave in a bump of 120 ms
+    # 100 N against what 10 kPa of noise on 645 mm^2, two chambers, leave in a test function of 120 ms
     assert all(20 < comparison.ratios["force balance"] < 80 for _, comparison in found)
 
 

@@ -37,7 +37,7 @@ def test_a_function_that_leaves_more_than_it_explains_is_no_law(share, told):
     knots = tuple((float(speed), 3000.0 * float(speed)) for speed in speeds)
     evidence = SimpleNamespace(
         decision=SimpleNamespace(verdict="unknown_physics"),
-        balances=(),
+        equation_residuals=(),
         recovery=Recovery(CURVE, "velocity", NOTHING.with_effects([CURVE]), explanation({}), 500.0, share, knots),
     )
     law = _unknown(evidence)
@@ -53,7 +53,7 @@ def test_a_curve_that_no_expression_fits_is_told_by_its_knots_alone():
     knots = tuple(zip(speeds.tolist(), forces.tolist(), strict=True))
     evidence = SimpleNamespace(
         decision=SimpleNamespace(verdict="unknown_physics"),
-        balances=(),
+        equation_residuals=(),
         recovery=Recovery(CURVE, "velocity", NOTHING.with_effects([CURVE]), explanation({}), 500.0, 0.8, knots),
     )
     law = _unknown(evidence)
@@ -93,20 +93,21 @@ BALANCED = UnknownLaw("force", "velocity, times the load", "", 0.7, ())
     [
         ("force", 0.71, False, "velocity"),
         ("force", 0.69, False, BALANCED.function_of),
-        ("force", 0.70, False, BALANCED.function_of),  # the balances stand where the curve explains no more
+        ("force", 0.70, False, BALANCED.function_of),  # the residuals' law stands where the curve explains no more
         ("chamber", 0.99, False, BALANCED.function_of),  # another site's curve only makes up for the law
-        ("force", 0.60, True, "velocity"),  # the balances lack what is named, too
+        ("force", 0.60, True, "velocity"),  # the residuals lack what is named, too
     ],
 )
 def test_the_law_is_the_balances_unless_a_curve_of_their_site_explains_more(site, share, named, found, monkeypatch):
-    monkeypatch.setattr(conclude, "weak_law", lambda balances: BALANCED)
+    monkeypatch.setattr(conclude, "weak_law", lambda residuals: BALANCED)
     curve = next(effect for effect in effects() if not effect.named and effect.site == site)
     friction = [effect for effect in effects() if effect.id == "coulomb_friction" and named]
     knots = tuple((0.1 * k, 500.0 * k) for k in range(-5, 6))
     recovery = Recovery(
         curve, "velocity", NOTHING.with_effects([*friction, curve]), explanation({}), 500.0, share, knots
     )
-    evidence = SimpleNamespace(decision=SimpleNamespace(verdict="unknown_physics"), balances=(), recovery=recovery)
+    decision = SimpleNamespace(verdict="unknown_physics")
+    evidence = SimpleNamespace(decision=decision, equation_residuals=(), recovery=recovery)
     law = _unknown(evidence)
     assert (law.site, law.function_of) == ("force", found)
     assert _unknown(replace_in(evidence, recovery=None)) == BALANCED
@@ -119,8 +120,9 @@ def replace_in(evidence, **changes):
 
 @pytest.mark.parametrize("r_squared", [0.5, 0.49])
 def test_a_law_explains_half_at_least(r_squared, monkeypatch):
-    monkeypatch.setattr(conclude, "weak_law", lambda balances: replace(BALANCED, r_squared=r_squared))
-    evidence = SimpleNamespace(decision=SimpleNamespace(verdict="unknown_physics"), balances=(), recovery=None)
+    monkeypatch.setattr(conclude, "weak_law", lambda residuals: replace(BALANCED, r_squared=r_squared))
+    decision = SimpleNamespace(verdict="unknown_physics")
+    evidence = SimpleNamespace(decision=decision, equation_residuals=(), recovery=None)
     assert (_unknown(evidence) is None) is (r_squared < 0.5)
 
 
@@ -239,7 +241,7 @@ def _fitted_elsewhere(monkeypatch):
     monkeypatch.setattr(conclude, "propose", lambda *given: "a test")
     order = ("nominal", "coulomb_friction", "constant_load")
     monkeypatch.setattr(conclude, "ladder", lambda *given: (tuple(Step(name, None) for name in order), {}))
-    monkeypatch.setattr(conclude, "weak_law", lambda balances: BALANCED)
+    monkeypatch.setattr(conclude, "weak_law", lambda residuals: BALANCED)
 
 
 def concluded(verdict: str, *names: str, rivals=(), lead: int = 1, damaged=(None, None)):

@@ -12,7 +12,13 @@ from eha_core.diagnosis.law import express, weak_law
 from eha_core.identification.observation import Measured, observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
-from eha_core.weak_form.balance import Balance, balances, bumps, continuity_balance, force_balance
+from eha_core.weak_form.equation_residuals import (
+    EquationResidual,
+    continuity_residual,
+    equation_residuals,
+    force_residual,
+)
+from eha_core.weak_form.grid import make_grid
 
 AREA, MASS, DAMPING = 645e-6, 9.0, 2000.0
 DURATION, STEP = 16.0, 1e-3
@@ -35,7 +41,7 @@ def motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return x.sum(axis=0), v.sum(axis=0), a.sum(axis=0)
 
 
-def force_lacking(law, noise: float = 1.0, seed: int = 3) -> Balance:
+def force_lacking(law, noise: float = 1.0, seed: int = 3) -> EquationResidual:
     """The force balance of a piston that moves so under a law (t, x, v) -> N; noise 1 is 10 um and 0.01 MPa."""
     random = np.random.default_rng(seed)
     times = np.arange(0.0, DURATION, STEP)
@@ -46,7 +52,7 @@ def force_lacking(law, noise: float = 1.0, seed: int = 3) -> Balance:
     measured = x + noises[0] * random.standard_normal(len(x))
     states = {"position": measured, "velocity": v, "pressure difference": a - b, "time": times}
     channel = Measured("position", 0, times, measured, noises[0])
-    return force_balance(bumps(DURATION, STEP, (channel,)), states, a, b, noises, VALUES)
+    return force_residual(make_grid(DURATION, STEP, (channel,)), states, a, b, noises, VALUES)
 
 
 def test_a_ripple_over_position_is_found_with_its_pitch():
@@ -87,11 +93,11 @@ def test_a_balance_that_holds_gives_no_law():
     assert weak_law([()]) is None
 
 
-def test_a_bump_that_spans_a_gap_is_left_out():
+def test_a_test_function_that_spans_a_gap_is_left_out():
     times = np.arange(0.0, DURATION, STEP)
     kept = (times < 4.0) | (times > 4.05)
-    whole = bumps(DURATION, STEP, (Measured("position", 0, times, times, 1.0),))
-    torn = bumps(DURATION, STEP, (Measured("position", 0, times[kept], times[kept], 1.0),))
+    whole = make_grid(DURATION, STEP, (Measured("position", 0, times, times, 1.0),))
+    torn = make_grid(DURATION, STEP, (Measured("position", 0, times[kept], times[kept], 1.0),))
     missing = set(whole.centres()) - set(torn.centres())
     assert missing
     assert all(3.9 < one < 4.15 for one in missing)
@@ -114,9 +120,9 @@ def test_a_leak_that_depends_on_position_is_found_in_the_chamber():
     noises = (1e-5, 1e4, 1e4)
     x, a, b = (one + size * random.standard_normal(len(x)) for one, size in zip((x, a, b), noises, strict=True))
     states = {"position": x, "velocity": v, "pressure difference": a - b, "spool position": spool, "time": times}
-    grid = bumps(DURATION, STEP, (Measured("position", 0, times, x, 1e-5),))
+    grid = make_grid(DURATION, STEP, (Measured("position", 0, times, x, 1e-5),))
     held = force_lacking(lambda t, x, v: 0.0 * x)
-    law = weak_law([(held, continuity_balance(grid, states, "a", a, b, noises, VALUES))])
+    law = weak_law([(held, continuity_residual(grid, states, "a", a, b, noises, VALUES))])
     assert (law.site, law.function_of) == ("chamber", "position, times pressure difference")
     assert numbers(law.expression) == pytest.approx([2e-11, -0.008, 0.01], rel=0.05)
 
@@ -132,7 +138,7 @@ def test_a_ripple_in_the_plant_itself_is_found_behind_wrong_parameters():
     observation = observe(recording)
     calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
     models = (calibration.fitted, calibration.nominal)
-    alternatives = [balances(observation, calibration.shooting, model) for model in models]
+    alternatives = [equation_residuals(observation, calibration.shooting, model) for model in models]
     law = weak_law(alternatives)
     assert (law.site, law.function_of) == ("force", "position")
     assert law.r_squared > 0.98

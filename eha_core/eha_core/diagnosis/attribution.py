@@ -15,7 +15,7 @@ from eha_core.diagnosis.locate import stated, whereabouts
 from eha_core.diagnosis.model_comparison import ModelComparison
 from eha_core.diagnosis.result import Location
 from eha_core.identification.fit import Fit
-from eha_core.weak_form.balance import Balance
+from eha_core.weak_form.equation_residuals import EquationResidual
 
 
 def attribute(
@@ -23,7 +23,7 @@ def attribute(
     nominal: Fit,
     scales: Scales,
     comparison: ModelComparison,
-    equations: Sequence[Balance],
+    equations: Sequence[EquationResidual],
     recording: int = 1,
 ) -> tuple[Location, ...]:
     """The sites by the share of the unexplained chi^2 that their best hypothesis takes away, the largest first.
@@ -43,7 +43,7 @@ def attribute(
     return tuple(found)
 
 
-def _site_gains(comparison: ModelComparison, equations: Sequence[Balance]) -> dict[str, float]:
+def _site_gains(comparison: ModelComparison, equations: Sequence[EquationResidual]) -> dict[str, float]:
     """The refitted gain of each site's best hypothesis, or else the predicted one, which never counts as much."""
     gains: dict[str, float] = {}
     nominal = comparison.nominal.fit

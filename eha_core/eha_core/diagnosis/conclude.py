@@ -172,13 +172,13 @@ def _unknown(evidence: Evidence) -> UnknownLaw | None:
 
 
 def _best_law(evidence: Evidence) -> UnknownLaw | None:
-    """The law as the weak balances hold it, or as the simulated curve where that explains more.
+    """The law as the equations' residuals hold it, or as the simulated curve where that explains more.
 
-    The balances tell the site; a curve of another site only makes up for what it does not describe.
+    The residuals tell the site; a curve of another site only makes up for what it does not describe.
     """
-    law, curve = weak_law(evidence.balances), evidence.recovery
+    law, curve = weak_law(evidence.equation_residuals), evidence.recovery
     if curve is not None and curve.named:
-        law = None  # the balances lack what is named, too
+        law = None  # the residuals lack what is named, too
     if curve is not None and (law is None or (curve.effect.site == law.site and curve.share > law.r_squared)):
         x, y = np.array(curve.knots, dtype=np.float64).reshape(-1, 2).T
         text = express(x, y, curve.variable, UNITS_OF_LAWS[curve.effect.site]).text

@@ -17,7 +17,7 @@ from eha_core.identification.fit import Fit
 from eha_core.identification.observation import Observation
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.together import fit_alone, recording_alone
-from eha_core.weak_form.balance import Balance
+from eha_core.weak_form.equation_residuals import EquationResidual
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,7 @@ class Evidence:
 
     Attributes:
         observations: one a recording; `lead` is the number, counted from one, of that which the report draws.
-        equations: the balances of the lead that lack least; `balances`: those of each model that they were chosen
-        from.
+        equation_residuals: of the lead, those that each model leaves; `equations`: the smallest of them.
     """
 
     observations: tuple[Observation, ...]
@@ -35,8 +34,8 @@ class Evidence:
     nominal: Mapping[str, float]
     calibration: Calibration
     scales: Scales
-    equations: tuple[Balance, ...]
-    balances: tuple[tuple[Balance, ...], ...]
+    equations: tuple[EquationResidual, ...]
+    equation_residuals: tuple[tuple[EquationResidual, ...], ...]
     comparison: ModelComparison
     recovery: Recovery | None
     decision: Decision

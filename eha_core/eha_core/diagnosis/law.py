@@ -1,7 +1,7 @@
-"""An unknown law in words: a recovered curve as an expression, and the law that the weak balances hold.
+"""An unknown law in words: a recovered curve as an expression, and the law that the equations' residuals hold.
 
 The weak form needs no simulation: what an equation lacks is regressed on functions of the measured states, each
-integrated under the same bumps and freed of what the equation's own coefficients can take over, so that the
+integrated with the same test functions and freed of what the equation's own coefficients can take over, so that the
 coefficients found are those of the law itself.
 """
 
@@ -15,9 +15,9 @@ import numpy as np
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.result import UnknownLaw
 from eha_core.identification.numbers import Array
-from eha_core.weak_form.balance import Balance
+from eha_core.weak_form.equation_residuals import EquationResidual
 from eha_core.weak_form.library import best_wave, powers, searched
-from eha_core.weak_form.terms import Sighting, Sum, Term, fewest
+from eha_core.weak_form.terms import RegressionData, Sum, Term, sparsest
 
 SIMPLE = 0.95
 """R^2 that an expression has to reach."""
@@ -26,7 +26,7 @@ PERIODIC = (0.5, 10.0)
 """Hz; the forces over time that are looked for."""
 
 TOLD = 0.9
-"""R^2 from which a law of the balances is written out: noise in the states it is over lowers it."""
+"""R^2 from which a law of the residuals is written out: noise in the states it is over lowers it."""
 
 WORTH_A_FORMULA = 0.5
 """An expression is looked for where a curve explains this share of what the best law before it does."""
@@ -38,10 +38,10 @@ MOST_WAVES = 0.25
 """Cycles a knot of a curve: four knots draw a wave."""
 
 MOST_RIPPLES = 15.0
-"""Most cycles over the travel that are looked for in a balance."""
+"""Most cycles over the travel that are looked for in a residual."""
 
 VIOLATED = 1.5
-"""Chi^2 a degree of freedom above which a balance is looked into."""
+"""Chi^2 a degree of freedom above which a residual is looked into."""
 
 MORE = 0.02
 """R^2 that a law must have over a simpler one before it."""
@@ -56,7 +56,7 @@ DRAWN = 800
 """Samples of a law that was found as an expression: eight a cycle at 5 Hz over 20 s."""
 
 OVERLAP = 2.0
-"""Neighbouring bumps overlap: so many of them count as one independent row (assumed)."""
+"""Neighbouring test functions overlap: so many of them count as one independent row (assumed)."""
 
 SYMBOLS = {
     "position": ("x", "m"),
@@ -68,7 +68,7 @@ SYMBOLS = {
 """How each variable is written, and its unit."""
 
 UNITS = {"force": "N", "chamber": "m^3/s", "orifice": "A"}
-"""What a law of each site gives: force on the piston, flow from chamber 1 to 2, opening of the valve."""
+"""What a law of each site gives: force on the piston, flow from chamber A to B, opening of the valve."""
 
 
 DIRECTION = "direction of motion"
@@ -120,28 +120,28 @@ def express(x: Array, y: Array, name: str, unit_y: str) -> Expression:
     if len(x) < 8 or not total > 0.0:
         return Expression("", 0.0)
     symbol, unit = SYMBOLS[name]
-    sighting = Sighting(x, y, lambda values: values, total, float(len(x)))
+    data = RegressionData(x, y, lambda values: values, total, float(len(x)))
     reach = float(np.ptp(x))
     waves = (FEWEST_WAVES / reach, MOST_WAVES * len(x) / reach)
-    found = fewest(sighting, _library(sighting, name, waves))
+    found = sparsest(data, _library(data, name, waves))
     if found.r_squared < SIMPLE:
         return Expression("", max(found.r_squared, 0.0))
     return Expression(f"{found.written()} [{unit_y}], {symbol.strip('()')} in {unit}", found.r_squared)
 
 
-def _library(sighting: Sighting, name: str, waves: tuple[float, float]) -> tuple[Term, ...]:
+def _library(data: RegressionData, name: str, waves: tuple[float, float]) -> tuple[Term, ...]:
     """The terms that a law over a variable may have; over time only what comes back, as the rest would be drift."""
     symbol = SYMBOLS[name][0]
     if name == "time":
-        return (powers(symbol)[0], best_wave(sighting, symbol, *waves, pitch=False))
-    return (*powers(symbol), *searched(sighting, symbol), best_wave(sighting, symbol, *waves, pitch=True))
+        return (powers(symbol)[0], best_wave(data, symbol, *waves, pitch=False))
+    return (*powers(symbol), *searched(data, symbol), best_wave(data, symbol, *waves, pitch=True))
 
 
-def weak_law(alternatives: Sequence[Sequence[Balance]]) -> UnknownLaw | None:
-    """The law that explains most of what the balances lack; None where they hold, or nothing explains any of it.
+def weak_law(alternatives: Sequence[Sequence[EquationResidual]]) -> UnknownLaw | None:
+    """The law that explains most of what the residuals lack; None where they hold, or nothing explains any of it.
 
-    `alternatives`: balances made with different models, each of the force and then of the chambers. A law is looked for
-    in each of them, and the one that leaves least counts.
+    `alternatives`: residuals made with different models, each of the force and then of the chambers. A law is looked
+    for in each of them, and the one that leaves least counts.
     """
     best: UnknownLaw | None = None
     most = 0.0
@@ -161,43 +161,43 @@ def weak_law(alternatives: Sequence[Sequence[Balance]]) -> UnknownLaw | None:
     return best
 
 
-def _law(form: Form, balances: Sequence[Balance], least_share: float = 0.0) -> UnknownLaw | None:
+def _law(form: Form, residuals: Sequence[EquationResidual], least_share: float = 0.0) -> UnknownLaw | None:
     """The best law of a form, as an expression if that is as good as its curve; None if a curve explains too little."""
-    sighting = _sighting(form, balances)
-    reach = float(np.ptp(sighting.at))
+    data = _regression_data(form, residuals)
+    reach = float(np.ptp(data.at))
     if not reach > 0.0:
         return None
-    curve, share = _curve(sighting) if form.variable != "time" else ((), 0.0)
+    curve, share = _curve(data) if form.variable != "time" else ((), 0.0)
     if form.variable != "time" and share < least_share:
         return None
     waves = PERIODIC if form.variable == "time" else (FEWEST_WAVES / reach, MOST_RIPPLES / reach)
-    found = fewest(sighting, _library(sighting, form.variable, waves))
+    found = sparsest(data, _library(data, form.variable, waves))
     if not found.terms and share <= 0.0:
         return None
-    beyond = sighting.total / max(sighting.total - len(sighting.seen), 1.0)
+    beyond = data.total / max(data.total - len(data.seen), 1.0)
     told, drawn = min(found.r_squared * beyond, 1.0), min(share * beyond, 1.0)
     if told < SIMPLE * drawn:
         return UnknownLaw(form.site, form.title, "", drawn, curve)
-    return UnknownLaw(form.site, form.title, _text(form, found) if told >= TOLD else "", told, _drawn(sighting, found))
+    return UnknownLaw(form.site, form.title, _text(form, found) if told >= TOLD else "", told, _drawn(data, found))
 
 
-def _sighting(form: Form, balances: Sequence[Balance]) -> Sighting:
-    """The balances as sightings of the form's function, in units of noise."""
-    bases = [np.linalg.qr(one.terms)[0] for one in balances]
-    factors = [_factor(form, one) / one.noise for one in balances]
+def _regression_data(form: Form, residuals: Sequence[EquationResidual]) -> RegressionData:
+    """The residuals as observations of the form's function, in units of noise."""
+    bases = [np.linalg.qr(one.terms)[0] for one in residuals]
+    factors = [_factor(form, one) / one.noise for one in residuals]
 
     def rows(values: Array) -> Array:
         return np.concatenate(
             [
-                _freed(one.bumps.average(values * factor), basis)
-                for one, factor, basis in zip(balances, factors, bases, strict=True)
+                _freed(one.grid.average(values * factor), basis)
+                for one, factor, basis in zip(residuals, factors, bases, strict=True)
             ],
             axis=-1,
         )
 
-    seen = np.concatenate([one.missing / one.noise for one in balances])
-    at = balances[0].states[form.variable]
-    return Sighting(at, seen, rows, float(seen @ seen), len(seen) / OVERLAP)
+    seen = np.concatenate([one.missing / one.noise for one in residuals])
+    at = residuals[0].states[form.variable]
+    return RegressionData(at, seen, rows, float(seen @ seen), len(seen) / OVERLAP)
 
 
 def _freed(rows: Array, basis: Array) -> Array:
@@ -207,36 +207,36 @@ def _freed(rows: Array, basis: Array) -> Array:
     return np.asarray(np.where(kept, left, 0.0))
 
 
-def _factor(form: Form, balance: Balance) -> Array | float:
-    """What the form's function is multiplied by where it enters a balance."""
-    into = {"continuity_a": -1.0, "continuity_b": 1.0}.get(balance.equation, 1.0)
+def _factor(form: Form, residual: EquationResidual) -> Array | float:
+    """What the form's function is multiplied by where it enters a residual."""
+    into = {"continuity_a": -1.0, "continuity_b": 1.0}.get(residual.equation, 1.0)
     if form.site == "orifice":
-        return balance.states["flow_an_ampere"]
+        return residual.states["flow_an_ampere"]
     if not form.times:
         return into
     if form.times == DIRECTION:
-        speed = balance.states["velocity"]
+        speed = residual.states["velocity"]
         return into * np.asarray(np.tanh(speed / (REVERSING * float(np.std(speed)) or 1.0)))
-    return into * balance.states[form.times]
+    return into * residual.states[form.times]
 
 
-def _curve(sighting: Sighting) -> tuple[tuple[tuple[float, float], ...], float]:
+def _curve(data: RegressionData) -> tuple[tuple[tuple[float, float], ...], float]:
     """The function as a curve through evenly spaced knots, and the share that it explains, its freedom paid for."""
-    low, high = np.quantile(sighting.at, [0.002, 0.998])
+    low, high = np.quantile(data.at, [0.002, 0.998])
     places = np.linspace(low, high, KNOTS)
-    away = np.abs(np.clip(sighting.at, low, high) - places[:, None])
-    columns = sighting.rows(np.maximum(1.0 - away * (KNOTS - 1) / (high - low), 0.0)).T
-    heights, *_ = np.linalg.lstsq(columns, sighting.seen, rcond=1e-3)
-    left = sighting.seen - columns @ heights
-    freedom = (sighting.independent - 1.0) / max(sighting.independent - KNOTS, 1.0)
-    share = 1.0 - float(left @ left) / sighting.total * freedom
+    away = np.abs(np.clip(data.at, low, high) - places[:, None])
+    columns = data.rows(np.maximum(1.0 - away * (KNOTS - 1) / (high - low), 0.0)).T
+    heights, *_ = np.linalg.lstsq(columns, data.seen, rcond=1e-3)
+    left = data.seen - columns @ heights
+    freedom = (data.independent - 1.0) / max(data.independent - KNOTS, 1.0)
+    share = 1.0 - float(left @ left) / data.total * freedom
     samples = zip(places, heights, np.linalg.norm(columns, axis=0) > 0.0, strict=True)
     return tuple((float(place), float(height)) for place, height, told in samples if told), share
 
 
-def _drawn(sighting: Sighting, found: Sum) -> tuple[tuple[float, float], ...]:
+def _drawn(data: RegressionData, found: Sum) -> tuple[tuple[float, float], ...]:
     """An expression as samples over the range that was visited."""
-    low, high = np.quantile(sighting.at, [0.002, 0.998])
+    low, high = np.quantile(data.at, [0.002, 0.998])
     places = np.linspace(low, high, DRAWN)
     return tuple(zip(places.tolist(), found.values(places).tolist(), strict=True))
 

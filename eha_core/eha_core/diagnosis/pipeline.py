@@ -27,7 +27,7 @@ from eha_core.identification.per_recording import base_name
 from eha_core.identification.together import check_alike, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
 from eha_core.recording import Recording
-from eha_core.weak_form.balance import balances, least
+from eha_core.weak_form.equation_residuals import equation_residuals, smallest
 
 Progress = Callable[[str], None]
 
@@ -91,7 +91,7 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
     scales = characteristic_scales(observations, shooting, fitted)
     lead = telling_most(shooting, fitted)
     alternatives = tuple(
-        balances(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, model, lead))
+        equation_residuals(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, model, lead))
         for model in (fitted, calibration.nominal)
     )
     applicable = applicable_effects(observations)
@@ -99,7 +99,7 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
     calibration, comparison = with_sets(calibration, comparison, applicable, scales, progress)
     recovery = recover(calibration.problem, comparison, scales, progress)
     decision = decide(calibration, model.values, comparison, recovery)
-    equations = least(alternatives)
+    equations = smallest(alternatives)
     location = attribute(calibration, comparison.nominal.fit, scales, comparison, equations, lead)
     return Evidence(
         observations, lead, model.values, calibration, scales, equations, alternatives, comparison, recovery, decision,

@@ -8,7 +8,7 @@ from math import exp, log, pi
 import numpy as np
 from scipy.optimize import minimize
 
-from eha_core.weak_form.terms import Sighting, Term, fitted, number, signed
+from eha_core.weak_form.terms import RegressionData, Term, fitted, number, signed
 
 WIDTHS = (0.003, 0.01, 0.03, 0.1, 0.3)
 """Widths of a smooth step that are tried, as shares of the largest value of the variable."""
@@ -40,10 +40,10 @@ def powers(symbol: str) -> tuple[Term, ...]:
     )
 
 
-def searched(sighting: Sighting, symbol: str) -> tuple[Term, ...]:
+def searched(data: RegressionData, symbol: str) -> tuple[Term, ...]:
     """A smooth sign, a contact and a bell, each where it explains most."""
-    low, reach = float(np.min(sighting.at)), float(np.ptp(sighting.at))
-    largest = float(np.max(np.abs(sighting.at)))
+    low, reach = float(np.min(data.at)), float(np.ptp(data.at))
+    largest = float(np.max(np.abs(data.at)))
     places = [low + share * reach for share in PLACES]
 
     def smooth_sign(logarithm: float) -> Term:
@@ -60,13 +60,13 @@ def searched(sighting: Sighting, symbol: str) -> tuple[Term, ...]:
 
     bells = [(place, log(share * reach)) for place in places for share in BELLS]
     return (
-        _best(sighting, symbol, smooth_sign, [(log(share * largest),) for share in WIDTHS], (0.5,)),
-        _best(sighting, symbol, contact, [(place,) for place in places], (0.02 * reach,)),
-        _best(sighting, symbol, bell, bells, (0.02 * reach, 0.2)),
+        _best(data, symbol, smooth_sign, [(log(share * largest),) for share in WIDTHS], (0.5,)),
+        _best(data, symbol, contact, [(place,) for place in places], (0.02 * reach,)),
+        _best(data, symbol, bell, bells, (0.02 * reach, 0.2)),
     )
 
 
-def best_wave(sighting: Sighting, symbol: str, slowest: float, fastest: float, pitch: bool) -> Term:
+def best_wave(data: RegressionData, symbol: str, slowest: float, fastest: float, pitch: bool) -> Term:
     """The sine whose frequency explains most: the peak of the periodogram, made exact.
 
     `slowest` and `fastest`: cycles a unit of the variable. `pitch`: write the wave's length and not its frequency.
@@ -77,14 +77,14 @@ def best_wave(sighting: Sighting, symbol: str, slowest: float, fastest: float, p
         text = f"2π {symbol} / {number(1.0 / frequency)}" if pitch else f"2π·{number(frequency)} {symbol}"
         return Term(text, (lambda z: np.sin(turns * z), lambda z: np.cos(turns * z)), 1)
 
-    step = FREQUENCY_STEP / float(np.ptp(sighting.at))
+    step = FREQUENCY_STEP / float(np.ptp(data.at))
     return _best(
-        sighting, symbol, wave, [(float(one),) for one in np.arange(slowest, fastest + step, step)], (0.3 * step,)
+        data, symbol, wave, [(float(one),) for one in np.arange(slowest, fastest + step, step)], (0.3 * step,)
     )
 
 
 def _best(
-    sighting: Sighting,
+    data: RegressionData,
     symbol: str,
     family: Callable[..., Term],
     starts: Iterable[tuple[float, ...]],
@@ -94,7 +94,7 @@ def _best(
     beside = powers(symbol)[:2]
 
     def criterion(numbers: Sequence[float]) -> float:
-        return fitted(sighting, [*beside, family(*(float(one) for one in numbers))]).criterion
+        return fitted(data, [*beside, family(*(float(one) for one in numbers))]).criterion
 
     start = min(starts, key=criterion)
     simplex = np.array(start) + np.vstack([np.zeros(len(start)), np.diag(steps)])

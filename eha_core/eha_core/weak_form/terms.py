@@ -56,7 +56,7 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Sighting:
+class RegressionData:
     """What was seen of an unknown function of `at` (times,).
 
     `rows` turns any function's values (..., times) into what would be seen of them (..., n), of which `seen` (n,) was
@@ -93,14 +93,14 @@ class Sum:
         return " + ".join(term.written(sizes, times) for term, sizes in pairs).replace("+ -", "- ")
 
 
-def fewest(sighting: Sighting, terms: Sequence[Term]) -> Sum:
+def sparsest(data: RegressionData, terms: Sequence[Term]) -> Sum:
     """The sum of fewest terms that is not clearly worse than a longer one; of no term where none is worth it."""
-    columns = [_columns(sighting, term) for term in terms]
+    columns = [_columns(data, term) for term in terms]
     sums = [
-        _solved(sighting, [terms[k] for k in support], [columns[k] for k in support])
-        for support in _supports(sighting, columns)
+        _solved(data, [terms[k] for k in support], [columns[k] for k in support])
+        for support in _supports(data, columns)
     ]
-    best = _solved(sighting, [], [])
+    best = _solved(data, [], [])
     for count in range(1, MOST_TERMS + 1):
         nearest = min((one for one in sums if len(one.terms) == count), key=lambda one: one.criterion, default=best)
         if nearest.criterion < best.criterion - WORTH and nearest.r_squared > best.r_squared + SLIGHT:
@@ -108,18 +108,18 @@ def fewest(sighting: Sighting, terms: Sequence[Term]) -> Sum:
     return best
 
 
-def fitted(sighting: Sighting, terms: Sequence[Term]) -> Sum:
+def fitted(data: RegressionData, terms: Sequence[Term]) -> Sum:
     """Least squares over the parts of the terms."""
-    return _solved(sighting, terms, [_columns(sighting, term) for term in terms])
+    return _solved(data, terms, [_columns(data, term) for term in terms])
 
 
-def _columns(sighting: Sighting, term: Term) -> Array:
+def _columns(data: RegressionData, term: Term) -> Array:
     """What would be seen of each part of a term: (parts, n)."""
-    return sighting.rows(np.stack([part(sighting.at) for part in term.parts]))
+    return data.rows(np.stack([part(data.at) for part in term.parts]))
 
 
-def _solved(sighting: Sighting, terms: Sequence[Term], columns: Sequence[Array]) -> Sum:
-    left = sighting.seen
+def _solved(data: RegressionData, terms: Sequence[Term], columns: Sequence[Array]) -> Sum:
+    left = data.seen
     solved = np.empty(0)
     if terms:
         matrix = np.concatenate(columns).T
@@ -127,15 +127,15 @@ def _solved(sighting: Sighting, terms: Sequence[Term], columns: Sequence[Array])
         lengths = np.where(lengths > 0.0, lengths, 1.0)
         solved = np.linalg.lstsq(matrix / lengths, left, rcond=None)[0] / lengths
         left = left - matrix @ solved
-    share = float(left @ left) / sighting.total
+    share = float(left @ left) / data.total
     numbers = len(solved) + sum(term.searched for term in terms)
-    criterion = sighting.independent * log(share + PRECISION) + numbers * log(sighting.independent)
+    criterion = data.independent * log(share + PRECISION) + numbers * log(data.independent)
     sizes = iter(float(one) for one in solved)
     coefficients = tuple(tuple(next(sizes) for _ in term.parts) for term in terms)
     return Sum(tuple(terms), coefficients, 1.0 - share, criterion)
 
 
-def _supports(sighting: Sighting, columns: Sequence[Array]) -> list[tuple[int, ...]]:
+def _supports(data: RegressionData, columns: Sequence[Array]) -> list[tuple[int, ...]]:
     """Sets of terms to try: each alone, each pair, and the longer ones that greedy optimisers pass through."""
     from pysindy.optimizers import FROLS, SSR  # takes a second to import, and few recordings need it
 
@@ -143,16 +143,16 @@ def _supports(sighting: Sighting, columns: Sequence[Array]) -> list[tuple[int, .
     stacked = np.concatenate(columns)
     lengths = np.linalg.norm(stacked, axis=1)
     unit = stacked / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-    able = _apart(unit)
-    if not able or not np.any(sighting.seen):
+    distinct = _apart(unit)
+    if not distinct or not np.any(data.seen):
         return []
-    there = sorted({owners[k] for k in able})
+    there = sorted({owners[k] for k in distinct})
     found = {*combinations(there, 1), *combinations(there, 2)}
-    target = sighting.seen[:, None] / np.linalg.norm(sighting.seen)
-    most = min(MOST_TERMS + 1, len(able))
-    for optimiser in (FROLS(max_iter=most, alpha=1e-9), SSR(max_iter=len(able), alpha=1e-9)):
-        for used in _passed(optimiser, unit[able].T, target):
-            support = tuple(sorted({owners[able[k]] for k in used}))
+    target = data.seen[:, None] / np.linalg.norm(data.seen)
+    most = min(MOST_TERMS + 1, len(distinct))
+    for optimiser in (FROLS(max_iter=most, alpha=1e-9), SSR(max_iter=len(distinct), alpha=1e-9)):
+        for used in _passed(optimiser, unit[distinct].T, target):
+            support = tuple(sorted({owners[distinct[k]] for k in used}))
             if 0 < len(support) <= MOST_TERMS:
                 found.add(support)
     return sorted(found)

@@ -12,7 +12,7 @@ from eha_core.report.laws.law import NOTHING, Axis, Law, band, span_of
 from eha_core.report.laws.models import Models, contribution, in_order
 from eha_core.report.stage import SURE
 from eha_core.report.wording import capital, effect_title
-from eha_core.weak_form.balance import Bumps
+from eha_core.weak_form.grid import Grid
 
 DIFFERENCE = Axis("pressure difference A − B", "Pa")
 PRESSURE = Axis("chamber pressure", "Pa")
@@ -128,7 +128,7 @@ def _bulk(models: Models, effect: NamedEffect, title: str, x: Array) -> Law:
     return Law(title, PRESSURE, Axis("Bulk modulus", "Pa"), x, y, low, high, nominal)
 
 
-def lost_flows(models: Models, grid: Bumps) -> tuple[Array, Array]:
+def lost_flows(models: Models, grid: Grid) -> tuple[Array, Array]:
     """What more leaves each chamber than the final model says, integrated under each test function [m^3]."""
     measured = models.on_grid(models.diagnosis.pictures.measured)
     x, _, a, b = models.modelled
@@ -138,7 +138,7 @@ def lost_flows(models: Models, grid: Bumps) -> tuple[Array, Array]:
     )
 
 
-def _lost(grid: Bumps, models: Models, side: float, x: Array, a: Array, b: Array) -> Array:
+def _lost(grid: Grid, models: Models, side: float, x: Array, a: Array, b: Array) -> Array:
     """What flows into a chamber (A: side 1, B: -1) by the nominal valve, less what its motion and oil take in."""
     p, spool = models.fitted, models.spool
     assert spool is not None
@@ -147,7 +147,7 @@ def _lost(grid: Bumps, models: Models, side: float, x: Array, a: Array, b: Array
     inflow = side * p["valve_gain"] * spool * np.sqrt(np.maximum(filling, 0.0))
     volume = p["line_volume"] + area * (p["actuator_displacement"] + side * x)
     speed = np.gradient(x, grid.step)
-    # V dP/dt integrates by parts to -(slope V + bump dV/dt) P
-    squeezed = -(grid.integrate(grid.slope, volume * own) + grid.integrate(grid.bump, side * area * speed * own))
+    # V dP/dt integrates by parts to -(slope V + weight dV/dt) P
+    squeezed = -(grid.integrate(grid.slope, volume * own) + grid.integrate(grid.weight, side * area * speed * own))
     swept = -side * area * grid.integrate(grid.slope, x)
-    return np.asarray(grid.integrate(grid.bump, inflow) - swept - squeezed / p["bulk_modulus"])
+    return np.asarray(grid.integrate(grid.weight, inflow) - swept - squeezed / p["bulk_modulus"])

@@ -13,7 +13,7 @@ from eha_core.report.laws.law import NOTHING, Axis, Law, band, span_of
 from eha_core.report.laws.models import Models, contribution, in_order
 from eha_core.report.stage import SURE
 from eha_core.report.wording import capital, effect_title
-from eha_core.weak_form.balance import Bumps
+from eha_core.weak_form.grid import Grid
 
 STEP = 1e-4  # s
 SETTLED = 4000
@@ -113,10 +113,10 @@ def _along(effect: NamedEffect, values: Mapping[str, float], position: Array, ve
     return np.interp(velocity, table, opposing(effect, values, 0.0 * table, table, beside))
 
 
-def missing_force(grid: Bumps, values: Mapping[str, float], x: Array, a: Array, b: Array) -> Array:
+def missing_force(grid: Grid, values: Mapping[str, float], x: Array, a: Array, b: Array) -> Array:
     """The force against motion [N] that the nominal terms lack under each test function."""
-    pressures = grid.integrate(grid.bump, values["piston_area"] * a - values["piston_area_b"] * b)
+    pressures = grid.integrate(grid.weight, values["piston_area"] * a - values["piston_area_b"] * b)
     inertia = values["moving_mass"] * grid.integrate(grid.curvature, x)
     viscous = -values["damping_coefficient"] * grid.integrate(grid.slope, x)
-    spring = values["spring_stiffness"] * grid.integrate(grid.bump, x)
+    spring = values["spring_stiffness"] * grid.integrate(grid.weight, x)
     return np.asarray((pressures - inertia - viscous - spring) / grid.area)

@@ -1,7 +1,7 @@
 """The models behind a diagnosis, and the weak form that measured channels are held against them in.
 
 Each equation is multiplied by a smooth test function in time and integrated by parts, so that no measured channel is
-differentiated (see `eha_core.weak_form.balance`). A law's point is the law itself under that test function plus what
+differentiated (see `eha_core.weak_form.grid`). A law's point is the law itself under that test function plus what
 the equation's residual, measured less modelled, adds to it: the component-plus-residual plot of W. A. Larsen and
 S. J. McCleary, Technometrics 14 (1972). All other terms of the equation, named effects included, cancel out.
 """
@@ -20,7 +20,7 @@ from eha_core.diagnosis.result import Diagnosis, NamedEffect
 from eha_core.identification.numbers import Array
 from eha_core.identification.observation import Measured
 from eha_core.parameters import nominal_values
-from eha_core.weak_form.balance import HOPS, Bumps, bumps
+from eha_core.weak_form.grid import HOPS, Grid, make_grid
 
 POINT_WIDTH = 0.02
 """s, half the width of a point's test function: some ten samples, and short against the time between reversals."""
@@ -43,7 +43,7 @@ class Models:
         }
 
     @cached_property
-    def grid(self) -> Bumps | None:
+    def grid(self) -> Grid | None:
         """The test functions; None where position or a pressure was not measured."""
         pictures = self.diagnosis.pictures
         if not all(name in pictures.after for name in LIQUID):
@@ -51,7 +51,7 @@ class Models:
         begin, end = self.diagnosis.drawn
         channels = [Measured(name, 0, pictures.time[name] - begin, pictures.measured[name], 0.0) for name in LIQUID]
         step = max(float(np.median(np.diff(one.time))) for one in channels)
-        return bumps(end - begin, step, channels, POINT_WIDTH)
+        return make_grid(end - begin, step, channels, POINT_WIDTH)
 
     def on_grid(self, source: Mapping[str, Array]) -> tuple[Array, ...]:
         """Position and both pressures of `pictures.measured` or of a model, on the grid."""
@@ -71,8 +71,8 @@ class Models:
         """The test functions under which the piston goes one way all the time."""
         assert self.grid is not None
         speed = np.abs(self.modelled[1])
-        under = np.lib.stride_tricks.sliding_window_view(speed, len(self.grid.bump))
-        under = under[:: len(self.grid.bump) // HOPS][self.grid.sound]
+        under = np.lib.stride_tricks.sliding_window_view(speed, len(self.grid.weight))
+        under = under[:: len(self.grid.weight) // HOPS][self.grid.gap_free]
         return np.asarray(under.min(axis=-1) > SLOWEST * under.mean(axis=-1))
 
     @cached_property

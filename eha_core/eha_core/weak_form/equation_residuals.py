@@ -1,8 +1,8 @@
 """The equations held against the measured channels themselves, without simulating: the weak form.
 
-Each equation is multiplied by a smooth bump in time and integrated; by parts, derivatives fall on the bump and no
-measured channel is differentiated. What its coefficients, regressed anew, cannot bring to zero is the equation's
-residual. A wrong flow equation leaves the force balance's residual at the noise, and the other way round, so the
+Each equation is multiplied by a test function in time and integrated; by parts, derivatives fall on the test function
+and no measured channel is differentiated. What its coefficients, regressed anew, cannot bring to zero is the equation's
+residual. A wrong flow equation leaves the force equation's residual at the noise, and the other way round, so the
 residuals tell the equations apart before any hypothesis is made. After D. A. Messenger and D. M. Bortz, "Weak SINDy",
 Multiscale Modeling & Simulation 19 (2021).
 """
@@ -13,23 +13,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
-from eha_core.identification.observation import Measured, Observation
+from eha_core.identification.observation import Observation
 from eha_core.identification.segments import smooth
 from eha_core.identification.shooting import Shooting
 from eha_core.plant import COLUMNS
-
-HALF_WIDTH = 0.06
-"""s; wide enough to average noise, narrow against a reversal's duration."""
-
-HOPS = 4
-"""Bumps that begin within one bump's length: 33 a second, so that a force of 10 Hz is not taken for a slower one."""
-
-GAP = 0.01
-"""s without a sample of a channel that a bump may not span: a straight line across is no measurement."""
+from eha_core.weak_form.grid import Grid, make_grid
 
 SPEED_SPAN = 0.04
 """s; the position is smoothed over this to give the speed that laws are over."""
@@ -38,51 +29,18 @@ EQUATIONS = ("force", "continuity_a", "continuity_b")
 
 
 @dataclass(frozen=True)
-class Bumps:
-    """An even grid of times [s], and the bump with its derivatives on it; `sound` marks those without a gap under
-    them."""
-
-    time: Array
-    step: float
-    sound: NDArray[np.bool_]
-    bump: Array
-    slope: Array
-    curvature: Array
-
-    @property
-    def area(self) -> float:
-        """The bump's integral [s]."""
-        return float(np.sum(self.bump)) * self.step
-
-    def integrate(self, weight: Array, values: Array) -> Array:
-        """The integral of weight times values (..., times) about each bump's centre."""
-        windows = np.lib.stride_tricks.sliding_window_view(values, len(weight), axis=-1)
-        sums = windows[..., :: len(weight) // HOPS, :] @ weight
-        return np.asarray(sums[..., self.sound]) * self.step
-
-    def average(self, values: Array) -> Array:
-        """The mean of values (..., times) under each bump."""
-        return self.integrate(self.bump, values) / self.area
-
-    def centres(self) -> Array:
-        """Times of the bumps' centres."""
-        half = len(self.bump) // 2
-        return self.time[half : len(self.time) - half][:: len(self.bump) // HOPS][self.sound]
-
-
-@dataclass(frozen=True)
-class Balance:
-    """What one equation lacks, averaged under each bump.
+class EquationResidual:
+    """What one equation lacks, averaged with each test function.
 
     Attributes:
         equation: one of EQUATIONS.
-        time: (n,) of the bumps' centres [s].
+        time: (n,) of the test functions' centres [s].
         missing: (n,) the force on the piston [N], or the flow into the chamber [m^3/s], that its terms do not bring.
         noise: standard deviation of `missing` that the sensors' noise makes.
         terms: (n, k) the terms whose coefficients were regressed; `missing` has no part along them.
-        bumps: the grid and its bumps.
+        grid: the grid and its test functions.
         states: position [m], velocity [m/s], pressure difference [Pa], spool position [A] and time [s] on the grid,
-            and in a chamber's balance the `flow_an_ampere` of opening [m^3/(s A)] into it.
+            and in a chamber's equation the `flow_an_ampere` of opening [m^3/(s A)] into it.
     """
 
     equation: str
@@ -90,7 +48,7 @@ class Balance:
     missing: Array
     noise: float
     terms: Array
-    bumps: Bumps
+    grid: Grid
     states: Mapping[str, Array]
 
     @property
@@ -105,35 +63,11 @@ class Balance:
         return float(np.mean(self.residual**2)) if len(self.missing) else 0.0
 
 
-def bumps(duration: float, step: float, channels: Sequence[Measured], half_width: float = HALF_WIDTH) -> Bumps:
-    """Bumps of `half_width` [s] all over a duration [s], on a grid of `step` [s], for channels that may have gaps."""
-    half = max(8, round(half_width / step))
-    at = np.arange(-half, half + 1) / half
-    inside = 1.0 - at**2
-    width = half * step
-    bump = inside**4
-    slope = -8.0 * at * inside**3 / width
-    curvature = (48.0 * at**2 * inside**2 - 8.0 * inside**3) / width**2
-    time = np.asarray(np.arange(0.0, duration, step), dtype=np.float64)
-    centres = time[half : len(time) - half][:: len(at) // HOPS]
-    sound = np.all([_measured_about(channel, centres, width, step) for channel in channels], axis=0)
-    return Bumps(time, step, sound, *(np.asarray(one) for one in (bump, slope, curvature)))
-
-
-def _measured_about(channel: Measured, centres: Array, width: float, step: float) -> NDArray[np.bool_]:
-    """Whether a channel has no gap within `width` of each centre."""
-    times = np.concatenate([[-np.inf], channel.time, [np.inf]])
-    wide = np.flatnonzero(np.diff(times) > max(GAP, 2.5 * step))
-    ends_before = np.searchsorted(times[wide + 1], centres - width)
-    starts_before = np.searchsorted(times[wide], centres + width)
-    return np.asarray(ends_before == starts_before)
-
-
-def least(alternatives: Sequence[tuple[Balance, ...]]) -> tuple[Balance, ...]:
-    """Of balances made with several models, the force balance and the pair of continuities that lack least.
+def smallest(alternatives: Sequence[tuple[EquationResidual, ...]]) -> tuple[EquationResidual, ...]:
+    """Of residuals made with several models, the smallest of the force equation and the smallest pair of continuities.
 
     What is not regressed (areas, pressures of the lines, stroke, the valve's motion) comes from the model. Fitted
-    values are right where nothing is missing, and may be bent out of shape where something is.
+    values are right where nothing is missing, and may be biased where something is.
     """
     found = [one for one in alternatives if one]
     if not found:
@@ -142,14 +76,14 @@ def least(alternatives: Sequence[tuple[Balance, ...]]) -> tuple[Balance, ...]:
     return (force, *min((one[1:] for one in found), key=lambda pair: sum(one.chi_square for one in pair)))
 
 
-def balances(observation: Observation, shooting: Shooting, model: Fit) -> tuple[Balance, ...]:
-    """The balance of every equation whose channels were measured; none where position or a pressure is missing."""
+def equation_residuals(observation: Observation, shooting: Shooting, model: Fit) -> tuple[EquationResidual, ...]:
+    """The residual of every equation whose channels were measured; none where position or a pressure is missing."""
     pressure_a, pressure_b = observation.channel("pressure_a"), observation.channel("pressure_b")
     position = observation.channel("position")
     if position is None or pressure_a is None or pressure_b is None:
         return ()
     spacing = max(float(np.median(np.diff(one.time))) for one in (position, pressure_a, pressure_b))
-    grid = bumps(observation.duration, spacing, (position, pressure_a, pressure_b))
+    grid = make_grid(observation.duration, spacing, (position, pressure_a, pressure_b))
     rows, _ = shooting.simulate(model.values, model.states, full=True)
     row_times = (np.arange(len(rows)) + 1) * shooting.step_size * shooting.every
     a = np.interp(grid.time, pressure_a.time, pressure_a.values)
@@ -168,53 +102,53 @@ def balances(observation: Observation, shooting: Shooting, model: Fit) -> tuple[
         entering["a"] = np.interp(grid.time, row_times, rows[:, COLUMNS.index("flow_a")])
         entering["b"] = -np.interp(grid.time, row_times, rows[:, COLUMNS.index("flow_b")])
     return (
-        force_balance(grid, states, a, b, noises, model.values),
+        force_residual(grid, states, a, b, noises, model.values),
         *(
-            continuity_balance(grid, states, side, a, b, noises, model.values, leaked, entering[side])
+            continuity_residual(grid, states, side, a, b, noises, model.values, leaked, entering[side])
             for side in ("a", "b")
         ),
     )
 
 
 def _regressed(
-    grid: Bumps, equation: str, left: Array, columns: list[Array], noise: float, states: Mapping[str, Array]
-) -> Balance:
-    """The balance of an equation whose left side and terms were integrated under each bump."""
+    grid: Grid, equation: str, left: Array, columns: list[Array], noise: float, states: Mapping[str, Array]
+) -> EquationResidual:
+    """The residual of an equation whose left side and terms were integrated with each test function."""
     matrix = np.stack(columns, axis=1)
     scale = np.linalg.norm(matrix, axis=0)
     matrix = matrix / np.where(scale > 0.0, scale, 1.0)
     solution, *_ = np.linalg.lstsq(matrix, left, rcond=None)
     missing = (left - matrix @ solution) / grid.area
-    return Balance(equation, grid.centres()[: len(left)], missing, noise / grid.area, matrix, grid, states)
+    return EquationResidual(equation, grid.centres()[: len(left)], missing, noise / grid.area, matrix, grid, states)
 
 
-def force_balance(
-    grid: Bumps,
+def force_residual(
+    grid: Grid,
     states: Mapping[str, Array],
     a: Array,
     b: Array,
     noises: tuple[float, ...],
     values: Mapping[str, float],
-) -> Balance:
+) -> EquationResidual:
     """The piston's: M x'' + B x' + K x - (A_a P_a - A_b P_b), its coefficients free, is the force that is missing.
 
     `a` and `b`: pressures on the grid [Pa]; `noises`: of position [m] and of both pressures [Pa].
     """
     x, area_a, area_b = states["position"], values["piston_area"], values["piston_area_b"]
-    left = grid.integrate(grid.bump, area_b * b - area_a * a)
-    columns = [grid.integrate(grid.curvature, x), -grid.integrate(grid.slope, x), grid.integrate(grid.bump, x)]
+    left = grid.integrate(grid.weight, area_b * b - area_a * a)
+    columns = [grid.integrate(grid.curvature, x), -grid.integrate(grid.slope, x), grid.integrate(grid.weight, x)]
     position_weight = (
         values["moving_mass"] * grid.curvature
         - values["damping_coefficient"] * grid.slope
-        + values["spring_stiffness"] * grid.bump
+        + values["spring_stiffness"] * grid.weight
     )
-    variance = float(np.sum(grid.bump**2)) * ((area_a * noises[1]) ** 2 + (area_b * noises[2]) ** 2)
+    variance = float(np.sum(grid.weight**2)) * ((area_a * noises[1]) ** 2 + (area_b * noises[2]) ** 2)
     variance += float(np.sum(position_weight**2)) * noises[0] ** 2
     return _regressed(grid, "force", left, columns, float(np.sqrt(variance)) * grid.step, states)
 
 
-def continuity_balance(
-    grid: Bumps,
+def continuity_residual(
+    grid: Grid,
     states: Mapping[str, Array],
     side: str,
     a: Array,
@@ -223,10 +157,10 @@ def continuity_balance(
     values: Mapping[str, float],
     leaked: Array | None = None,
     given: Array | None = None,
-) -> Balance:
+) -> EquationResidual:
     """A chamber's: what it is swept by, less the valve's flow, compression and leakage, is the flow that is missing.
 
-    `leaked`: the flow from chamber 1 to 2 [m^3/s] that was turned on while recording. `given`: what enters it [m^3/s]
+    `leaked`: the flow from chamber A to B [m^3/s] that was turned on while recording. `given`: what enters it [m^3/s]
     where no valve's spool makes it.
     """
     x, speed, spool = states["position"], states["velocity"], states["spool position"]
@@ -236,13 +170,13 @@ def continuity_balance(
     volume = values["line_volume"] + area * (values["actuator_displacement"] + sign * x)
     left = -sign * area * grid.integrate(grid.slope, x)
     if leaked is not None:
-        left = left + sign * grid.integrate(grid.bump, leaked)
+        left = left + sign * grid.integrate(grid.weight, leaked)
     filling = np.where(sign * spool >= 0.0, values["supply_pressure"] - own, own - values["return_pressure"])
     flow_an_ampere = sign * values["valve_gain"] * np.sqrt(np.maximum(filling, 0.0))
     entering = flow_an_ampere * spool if given is None else given
-    # V dP/dt integrates by parts to -(slope V + bump dV/dt) P
-    squeezed = -(grid.integrate(grid.slope, volume * own) + grid.integrate(grid.bump, sign * area * speed * own))
-    columns = [grid.integrate(grid.bump, entering), squeezed, grid.integrate(grid.bump, a - b)]
+    # V dP/dt integrates by parts to -(slope V + weight dV/dt) P
+    squeezed = -(grid.integrate(grid.slope, volume * own) + grid.integrate(grid.weight, sign * area * speed * own))
+    columns = [grid.integrate(grid.weight, entering), squeezed, grid.integrate(grid.weight, a - b)]
     weight = grid.slope * float(np.mean(volume)) / values["bulk_modulus"]
     variance = float(np.sum(weight**2)) * noise**2 + float(np.sum(grid.slope**2)) * (area * noises[0]) ** 2
     noise = float(np.sqrt(variance)) * grid.step

@@ -1,10 +1,8 @@
 """Which of the model's equations a measurement departs from, beside a simulation of the same command.
 
 With e = measured - simulated, the difference of the two sets of equations, linear in e, is held against the measured
-channels in its weak form: multiplied by a smooth bump in time and integrated, derivatives fall on the bump. What one
-equation lacks is then left in that equation alone, in units of what the sensors' noise leaves in it, and where the
-simulation was started from cancels out. After D. A. Messenger and D. M. Bortz, "Weak SINDy", Multiscale Modeling &
-Simulation 19 (2021).
+channels in its weak form (see `weighting`). What one equation lacks is then left in that equation alone, in units of
+what the sensors' noise leaves in it, and where the simulation was started from cancels out.
 """
 
 from __future__ import annotations
@@ -15,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.plant import Trajectory
+from eha_core.weak_form.weighting import weighting
 
 Array = NDArray[np.float64]
 
 CHANNELS = ("position", "pressure_a", "pressure_b")
 EQUATIONS = ("force balance", "chamber A", "chamber B")
 
-_HALF_WIDTH = 0.06  # s of the bumps: averages noise, and is short against the time between two reversals
 _LOWEST_DROP = 1e5  # Pa over an orifice below which its flow is not corrected for the measured pressure
 
 
@@ -40,16 +38,12 @@ def equation_residuals(
         model: the simulated rows, n of them, `period` [s] apart.
         parameters: the model's.
 
-    Returns (n - 2 half,) values each, at the bumps' centres; nothing where the rows are shorter than a bump.
+    Returns (n - 2 half,) values each, at the centres of the test
+    functions; nothing where the rows are shorter than one.
     """
-    half = max(8, round(_HALF_WIDTH / period))
-    if len(model.time) <= 2 * half:
+    weight, slope, curvature = weighting(period)
+    if len(model.time) < len(weight):
         return {}
-    at = np.arange(-half, half + 1) / half
-    width = half * period
-    inside = 1.0 - at**2
-    bump, slope = inside**4, -8.0 * at * inside**3 / width
-    curvature = (48.0 * at**2 * inside**2 - 8.0 * inside**3) / width**2
     x, a, b = (errors[name] for name in CHANNELS)
     bulk, leak, outside = (parameters[name] for name in ("bulk_modulus", "internal_leakage", "external_leakage"))
     area_a, area_b = parameters["piston_area"], parameters["piston_area_b"]
@@ -58,21 +52,21 @@ def equation_residuals(
     volume_a = line + area_a * (stroke + model.position)
     volume_b = line + area_b * (stroke - model.position)
     more_a, more_b = _flow_changes(model, a, b)
-    inertia = mass * curvature - damping * slope + spring * bump
+    inertia = mass * curvature - damping * slope + spring * weight
     terms = {
-        "force balance": ((bump, area_a * a - area_b * b), (-inertia, x)),
+        "force balance": ((weight, area_a * a - area_b * b), (-inertia, x)),
         "chamber A": (
-            (bump, more_a - leak * (a - b) - outside * a + area_a / bulk * model.velocity * a),
+            (weight, more_a - leak * (a - b) - outside * a + area_a / bulk * model.velocity * a),
             (slope, area_a * x + volume_a / bulk * a),
         ),
         "chamber B": (
-            (bump, -more_b + leak * (a - b) - outside * b - area_b / bulk * model.velocity * b),
+            (weight, -more_b + leak * (a - b) - outside * b - area_b / bulk * model.velocity * b),
             (slope, -area_b * x + volume_b / bulk * b),
         ),
     }
     of_x, of_a, of_b = (noises[name] for name in CHANNELS)
     variances = {
-        "force balance": _power(bump, (area_a * of_a) ** 2 + (area_b * of_b) ** 2) + _power(inertia, of_x**2),
+        "force balance": _power(weight, (area_a * of_a) ** 2 + (area_b * of_b) ** 2) + _power(inertia, of_x**2),
         "chamber A": _power(slope, (area_a * of_x) ** 2 + (float(np.mean(volume_a)) / bulk * of_a) ** 2),
         "chamber B": _power(slope, (area_b * of_x) ** 2 + (float(np.mean(volume_b)) / bulk * of_b) ** 2),
     }
