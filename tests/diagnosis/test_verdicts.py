@@ -12,7 +12,7 @@ from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.criteria import TIE
 from eha_core.exam.cases import draw_case
 from eha_core.exam.measuring import measure, simulate_case
-from eha_core.identification.observation import observe, reaching
+from eha_core.identification.observation import observe, with_sufficient_stroke
 from eha_core.nominal import NominalModel
 from eha_core.parameters import load_parameters, nominal_values
 from eha_core.recording import Channel, Recording
@@ -107,7 +107,7 @@ def test_a_force_that_no_name_fits_is_located_and_not_named():
 
 def test_a_piston_beyond_the_nominal_stroke_is_said_to_be_there():
     nominal = {**nominal_values(), "actuator_displacement": 0.005}
-    observation, reached = reaching(observe(recorded({})), NominalModel(nominal))
+    observation, reached = with_sufficient_stroke(observe(recorded({})), NominalModel(nominal))
     farthest = np.max(np.abs(observation.channel("position").values))
     assert reached.values["actuator_displacement"] == pytest.approx(1.05 * farthest)
     assert any("beyond the nominal actuator_displacement" in remark for remark in observation.remarks)

@@ -10,7 +10,7 @@ import pytest
 from eha_core.errors import EhaError
 from eha_core.exam.files import read_answer
 from eha_core.exam.page import as_html
-from eha_core.exam.run_exam import Exam, open_answers, run_tool, sit
+from eha_core.exam.run_exam import Exam, open_answers, run_exam, run_tool
 from eha_core.exam.summary import summarise
 from eha_core.exam.tables import as_json, as_markdown
 from eha_core.recording import read_recording
@@ -56,7 +56,7 @@ def tools(exam: Exam) -> dict[str, str]:
 
 def test_known_answers_get_the_marks_they_deserve(exam: Exam, tools: dict[str, str]) -> None:
     scored = {name: tools[name] for name in ("silent", "loud", "broken")}
-    marks = sit(exam, scored, Workers(), quiet)
+    marks = run_exam(exam, scored, Workers(), quiet)
     assert [m.outcome for m in marks["silent"]] == ["right", "right"]
     assert [(m.outcome, m.discovery) for m in marks["loud"]] == [("wrong", True)] * 2
     assert [m.outcome for m in marks["broken"]] == ["failed", "failed"]
@@ -71,7 +71,7 @@ def test_known_answers_get_the_marks_they_deserve(exam: Exam, tools: dict[str, s
 
 
 def test_recordings_say_nothing_of_what_is_concealed(exam: Exam, tools: dict[str, str]) -> None:
-    sit(exam, {"silent": tools["silent"]}, Workers(), quiet)
+    run_exam(exam, {"silent": tools["silent"]}, Workers(), quiet)
     names = sorted(path.name for path in (exam.folder / "recordings").iterdir())
     assert all("null" not in name for name in names)
     answers = [read_answer(path.read_text()) for path in sorted((exam.folder / "sealed").iterdir())]
@@ -88,25 +88,25 @@ def test_recordings_say_nothing_of_what_is_concealed(exam: Exam, tools: dict[str
 
 def test_an_interrupted_exam_goes_on_where_it_stopped(exam: Exam, tools: dict[str, str]) -> None:
     only = {"silent": tools["silent"]}
-    sit(exam, only, Workers(), quiet)
+    run_exam(exam, only, Workers(), quiet)
     kept, lost = sorted((exam.folder / "answers" / "silent").iterdir())
     before = kept.stat().st_mtime_ns
     lost.unlink()
     stages = []
-    sit(exam, only, Workers(), lambda stage, done, of: stages.append((stage, done, of)))
+    run_exam(exam, only, Workers(), lambda stage, done, of: stages.append((stage, done, of)))
     assert stages == [("recordings", 2, 2), ("silent", 1, 2), ("silent", 2, 2)]
     assert kept.stat().st_mtime_ns == before
 
 
 def test_a_prescribed_test_is_run_and_both_recordings_are_diagnosed(exam: Exam, tools: dict[str, str]) -> None:
-    marks = sit(exam, {"unsure": tools["unsure"]}, Workers(), quiet)["unsure"]
+    marks = run_exam(exam, {"unsure": tools["unsure"]}, Workers(), quiet)["unsure"]
     assert [(m.outcome, m.resolved) for m in marks] == [("abstained", True)] * 2
     second = sorted((exam.folder / "answers" / "unsure" / "second").glob("*.mcap"))
     assert [read_recording(path).duration for path in second] == [10.0, 10.0]
 
 
 def test_an_answer_that_was_changed_is_refused(exam: Exam, tools: dict[str, str]) -> None:
-    sit(exam, {"silent": tools["silent"]}, Workers(), quiet)
+    run_exam(exam, {"silent": tools["silent"]}, Workers(), quiet)
     path = next(iter(sorted((exam.folder / "sealed").iterdir())))
     sealed = path.read_text()
     path.write_text(sealed.replace("null_parameters", "null"))
@@ -116,14 +116,14 @@ def test_an_answer_that_was_changed_is_refused(exam: Exam, tools: dict[str, str]
 
 
 def test_a_folder_with_another_exam_is_refused(exam: Exam, tools: dict[str, str]) -> None:
-    sit(exam, {"silent": tools["silent"]}, Workers(), quiet)
+    run_exam(exam, {"silent": tools["silent"]}, Workers(), quiet)
     with pytest.raises(EhaError, match="another exam"):
-        sit(Exam(exam.folder, 2, 6, exam.tier), tools, Workers(), quiet)
+        run_exam(Exam(exam.folder, 2, 6, exam.tier), tools, Workers(), quiet)
 
 
 def test_a_tool_that_does_not_exist_is_said_in_one_line(exam: Exam) -> None:
     with pytest.raises(EhaError, match="cannot be started"):
-        sit(exam, {"ghost": f"{sys.executable}-none {{recording}} {{answer}}"}, Workers(), quiet)
+        run_exam(exam, {"ghost": f"{sys.executable}-none {{recording}} {{answer}}"}, Workers(), quiet)
 
 
 def test_a_tool_is_held_to_one_core() -> None:

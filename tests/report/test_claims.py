@@ -14,7 +14,7 @@ import pytest
 from eha_core.diagnosis.result import ChannelFit, Diagnosis, Location
 from eha_core.report.claims import WHITE, equations_hold, improvement, is_noise, left_over, noise_floor
 from eha_core.report.finding import headline, supporting
-from eha_core.report.stages import story
+from eha_core.report.stages import report_stages
 
 SCALES = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3, "m": 1.0}
 
@@ -47,7 +47,7 @@ def test_noise_is_claimed_where_size_and_whiteness_bear_it(
 ) -> None:
     made = diagnosis_with(friction, ratio, whiteness)
     assert left_over(made) == said
-    assert {one.name: one for one in story(made)}["show"].headline == said
+    assert {one.name: one for one in report_stages(made)}["show"].headline == said
     assert is_noise(made) == (said == "What is left is noise")
 
 
@@ -111,7 +111,7 @@ def test_equations_are_said_to_hold_where_their_residuals_are_noise(consistent: 
         pictures = replace(consistent.pictures, equations={"force": (time, residual)})
         made = replace(consistent, pictures=pictures)
         assert equations_hold(made) == (float(np.mean(residual**2)) < 1.5)
-        return {one.name: one for one in story(made)}["locate"].headline
+        return {one.name: one for one in report_stages(made)}["locate"].headline
 
     assert headline_of(generator.standard_normal(200)) == "No equation is violated"
     assert headline_of(30.0 * generator.standard_normal(200)) != "No equation is violated"
@@ -120,8 +120,8 @@ def test_equations_are_said_to_hold_where_their_residuals_are_noise(consistent: 
 def test_no_further_test_is_said_to_be_needed_only_where_something_is_settled(
     friction: Diagnosis, unknown: Diagnosis
 ) -> None:
-    assert story(friction)[-1].headline == "No further experiment is needed"
-    assert story(unknown)[-1].headline == "No test is proposed"
+    assert report_stages(friction)[-1].headline == "No further experiment is needed"
+    assert report_stages(unknown)[-1].headline == "No test is proposed"
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,7 @@ def test_an_explanation_that_is_not_complete_says_so_first(friction: Diagnosis) 
 
 def test_predictions_stand_in_a_table_in_their_own_units(friction: Diagnosis) -> None:
     ahead = SimpleNamespace(ahead={0.25: 1.2e-5, 1.0: 3.4e-5}, free_running=2.5e-3)
-    stage = {one.name: one for one in story(explaining(friction, prediction={"position": ahead}))}["show"]
+    stage = {one.name: one for one in report_stages(explaining(friction, prediction={"position": ahead}))}["show"]
     table = stage.tables[-1]
     assert table.headings == ("channel", "250 ms ahead", "1.00 s ahead", "free run, the whole record")
     assert table.rows == (("position", "12.0 µm", "34.0 µm", "2.50 mm"),)

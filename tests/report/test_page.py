@@ -27,7 +27,7 @@ from eha_core.report.html import page
 from eha_core.report.laws.law import Axis, Law
 from eha_core.report.picture import Bars, Line, Upright
 from eha_core.report.provenance import with_provenance
-from eha_core.report.stages import story
+from eha_core.report.stages import report_stages
 from eha_core.report.wording import words
 
 ORDER = ["read", "calibrate", "locate", "name", "model", "show", "next"]
@@ -104,7 +104,7 @@ def test_every_plot_is_data_that_parses(friction: Diagnosis) -> None:
 
 
 def test_the_ladder_has_every_rung_its_distance_and_the_model_that_adds_nothing(friction: Diagnosis) -> None:
-    (picture,) = {one.name: one for one in story(friction)}["name"].pictures
+    (picture,) = {one.name: one for one in report_stages(friction)}["name"].pictures
     panel = picture.groups[0].panels[0]
     assert panel.names == (
         "Coulomb friction", "Stribeck friction", "nothing added (recalibrated model)", "end stop",
@@ -152,7 +152,7 @@ def test_numbers_on_the_page_are_those_of_the_diagnosis(friction: Diagnosis) -> 
     ],
 )
 def test_headlines(kind: str, stage: str, headline: str, request: pytest.FixtureRequest) -> None:
-    found = {one.name: one for one in story(request.getfixturevalue(kind))}
+    found = {one.name: one for one in report_stages(request.getfixturevalue(kind))}
     assert found[stage].headline == headline
 
 
@@ -185,7 +185,7 @@ def test_a_per_cent_sign_stands_apart_from_its_number(friction: Diagnosis) -> No
 def test_parameters_that_are_hardly_told_are_as_many_as_the_sentence_says(friction: Diagnosis) -> None:
     def said(*names: str) -> str:
         told = tuple(replace(one, note="held" if one.name in names else "") for one in friction.parameters)
-        stage = {one.name: one for one in story(replace(friction, parameters=told))}["calibrate"]
+        stage = {one.name: one for one in report_stages(replace(friction, parameters=told))}["calibrate"]
         return " ".join(stage.sentences)
 
     first, second = (one.name for one in friction.parameters[:2])
@@ -223,14 +223,14 @@ def test_where_nothing_is_named_no_hypothesis_has_the_colour_of_a_name(unknown: 
 
 
 def test_an_unknown_law_is_drawn_and_written(unknown: Diagnosis) -> None:
-    stage = {one.name: one for one in story(unknown)}["model"]
+    stage = {one.name: one for one in report_stages(unknown)}["model"]
     assert stage.code == "250 tanh(20 v)"
     assert "the simulation goes on without it" in " ".join(stage.sentences)
-    assert "may have biased" in " ".join({one.name: one for one in story(unknown)}["calibrate"].sentences)
+    assert "may have biased" in " ".join({one.name: one for one in report_stages(unknown)}["calibrate"].sentences)
     assert unknown.unknown is not None
     product = replace(unknown.unknown, function_of="position, times velocity")
     simulated = replace(unknown, unknown=product, fitted_values={"recovered_force.knot_00": 3.0})
-    stage = {one.name: one for one in story(simulated)}["model"]
+    stage = {one.name: one for one in report_stages(simulated)}["model"]
     assert "without it" not in " ".join(stage.sentences)
     picture = law_picture(simulated)
     assert picture is not None
@@ -239,7 +239,7 @@ def test_an_unknown_law_is_drawn_and_written(unknown: Diagnosis) -> None:
 
 
 def test_the_proposed_test_is_drawn_with_the_commands_that_run_it(ambiguous: Diagnosis) -> None:
-    stage = story(ambiguous)[-1]
+    stage = report_stages(ambiguous)[-1]
     line = stage.pictures[0].groups[0].panels[0].marks[0]
     assert np.allclose(line.y, 20.0 * np.sin(2 * np.pi * 3.0 * line.x), atol=0.05)  # mV
     assert "ros2 launch eha_sim_node next_experiment.launch.yaml file:=next_experiment.yaml" in stage.code
@@ -247,7 +247,7 @@ def test_the_proposed_test_is_drawn_with_the_commands_that_run_it(ambiguous: Dia
 
 
 def test_every_stage_with_something_to_see_has_a_figure(friction: Diagnosis, tmp_path: Path) -> None:
-    drawn = [*pictures(friction), *(picture for stage in story(friction) for picture in stage.pictures)]
+    drawn = [*pictures(friction), *(picture for stage in report_stages(friction) for picture in stage.pictures)]
     written = write_figures(drawn, tmp_path / "figures")
     assert {path.name[0] for path in written} == set("0123456")
     assert len({path.name for path in written}) == len(drawn)

@@ -14,7 +14,7 @@ from eha_core.report.evidence import rung
 from eha_core.report.finding import headline, told_parameters, warnings
 from eha_core.report.html import page
 from eha_core.report.picture import Bars, Cells, Upright
-from eha_core.report.stages import story
+from eha_core.report.stages import report_stages
 from eha_core.report.summary import summarise
 from eha_core.report.worth import effect_table, ladder_picture, step_table, worth
 
@@ -79,7 +79,7 @@ def test_what_an_effect_is_worth_is_said_in_the_figures_own_numbers(several: Dia
 
 
 def test_the_story_has_a_part_for_each_effect_with_its_law(several: Diagnosis) -> None:
-    stage = {one.name: one for one in story(several)}["model"]
+    stage = {one.name: one for one in report_stages(several)}["model"]
     assert [part.title.partition(":")[0] for part in stage.parts] == [
         "1. Valve deadband", "2. Coulomb friction", "3. Constant load",
     ]  # fmt: skip
@@ -125,7 +125,7 @@ def test_what_is_not_told_from_nothing_is_no_finding(several: Diagnosis) -> None
     assert set(told_parameters(replace(overlap, parameters=neither))) == {"half_width", "rounding"}
     for text in (account(several), str(summarise(several)), headline(several)):
         assert "rounding" not in text
-    table = {one.name: one for one in story(several)}["model"].tables[0]
+    table = {one.name: one for one in report_stages(several)}["model"].tables[0]
     assert table.rows[1][0] == "valve_deadband.rounding"
     assert table.rows[1][-1] == "not told from zero"
 

@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _run_real(arguments)
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
     from eha_core.exam.page import as_html
-    from eha_core.exam.run_exam import Exam, report_lost, sit
+    from eha_core.exam.run_exam import Exam, report_lost, run_exam
     from eha_core.exam.shipped import show_bags
     from eha_core.exam.summary import summarise
     from eha_core.exam.tables import as_json, as_markdown
@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise EhaError(f"--opened {arguments.opened}: give 0 or more")
     exam = Exam(arguments.out, arguments.cases, arguments.seed, arguments.tier, arguments.opened)
     tools = _tools(arguments)
-    marks = sit(exam, tools, Workers(arguments.jobs, arguments.dask), _show)
+    marks = run_exam(exam, tools, Workers(arguments.jobs, arguments.dask), _show)
     summaries = [summarise(tool, marks[tool]) for tool in tools]
     shown = show_bags(arguments.bags, _show) if arguments.bags else []
     reports = report_lost(exam, summaries[0].lost[: arguments.lost])

@@ -21,7 +21,7 @@ from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import not_believed
-from eha_core.identification.observation import observe, reaching
+from eha_core.identification.observation import observe, with_sufficient_stroke
 from eha_core.identification.parallel import side_by_side
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.together import check_alike, fit_alone, recording_alone
@@ -84,7 +84,7 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
     seen = [observe(recording, model.composition) for recording in recordings]
     check_alike(seen)
     for number, observation in enumerate(seen):
-        seen[number], model = reaching(observation, model)
+        seen[number], model = with_sufficient_stroke(observation, model)
     progress("calibrating the nominal equations")
     observations, calibration = calibrate_but_for_the_ends(seen, model)
     shooting, fitted = calibration.shooting, calibration.fitted

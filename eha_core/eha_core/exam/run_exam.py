@@ -1,4 +1,4 @@
-"""Sitting the exam: make recordings, seal the answers, have a tool diagnose every recording, open the answers.
+"""Running the exam: make recordings, seal the answers, have a tool diagnose every recording, open the answers.
 
 The three steps are apart in time and in folders, and each skips what it finds done, so an interrupted exam goes on.
 A tool is a command line; it sees a recording's path and where its diagnosis is to be written, and nothing else.
@@ -51,7 +51,7 @@ ONE_CORE = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 @dataclass(frozen=True)
 class Exam:
-    """What is sat: how many cases, from which seed, of one tier or (None) of all, in which folder; after the `opened`
+    """What is run: how many cases, from which seed, of one tier or (None) of all, in which folder; after the `opened`
     first of that seed, whose outcome is known."""
 
     folder: Path
@@ -66,7 +66,7 @@ class Exam:
         return plan(self.opened + self.cases, self.tier)[self.opened :]
 
 
-def sit(exam: Exam, tools: Mapping[str, str], workers: Workers, progress: Progress) -> dict[str, list[Mark]]:
+def run_exam(exam: Exam, tools: Mapping[str, str], workers: Workers, progress: Progress) -> dict[str, list[Mark]]:
     """Run the whole exam and return the marks of each tool, by its name."""
     members = exam.members
     _claim(exam)

@@ -153,7 +153,7 @@ def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:
     return tuple((time, value - first) for time, value in told if 0.0 < time < recording.duration and value != first)
 
 
-def reaching(observation: Observation, model: NominalModel) -> tuple[Observation, NominalModel]:
+def with_sufficient_stroke(observation: Observation, model: NominalModel) -> tuple[Observation, NominalModel]:
     """The nominal model with a stroke that reaches as far as the piston was seen; a remark where it had to grow."""
     position = observation.channel("position")
     assert position is not None

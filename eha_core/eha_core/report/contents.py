@@ -9,7 +9,7 @@ from eha_core.report.first_screen import pictures
 from eha_core.report.laws import laws
 from eha_core.report.picture import Picture
 from eha_core.report.stage import Stage
-from eha_core.report.stages import story
+from eha_core.report.stages import report_stages
 
 
 @dataclass(frozen=True)
@@ -28,4 +28,4 @@ class Contents:
 def contents_of(diagnosis: Diagnosis) -> Contents:
     """Everything that there is to see of a diagnosis."""
     found = laws(diagnosis)
-    return Contents(pictures(diagnosis, found), story(diagnosis, found))
+    return Contents(pictures(diagnosis, found), report_stages(diagnosis, found))

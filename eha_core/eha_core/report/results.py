@@ -15,7 +15,7 @@ from eha_core.report.first_screen import law_picture, residual_picture
 from eha_core.report.motion_given import law_picture as law_of_motion
 from eha_core.report.motion_given import write_motion_given
 from eha_core.report.picture import Picture
-from eha_core.report.stages import story
+from eha_core.report.stages import report_stages
 from eha_core.report.stages.model import correlations
 from eha_core.report.summary import Summary, summarise
 from eha_core.report.worth import ladder_picture
@@ -26,7 +26,7 @@ class Plots:
 
     def __init__(self, diagnosis: Diagnosis) -> None:
         self._diagnosis = diagnosis
-        self._stages = {stage.name: stage for stage in story(diagnosis)}
+        self._stages = {stage.name: stage for stage in report_stages(diagnosis)}
 
     def recording(self) -> Drawn:
         """What was recorded, with the spans that were kept from the fit."""

@@ -10,7 +10,7 @@ from eha_core.report.stage import Stage
 from eha_core.report.stages import calibrate, locate, model, name, next_experiment, read, show
 
 
-def story(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tuple[Stage, ...]:
+def report_stages(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tuple[Stage, ...]:
     """The stages in the order in which the diagnosis came to its verdict, with the laws if they are found already."""
     found = laws(diagnosis) if found is None else found
     return (
