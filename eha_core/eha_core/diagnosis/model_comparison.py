@@ -72,7 +72,7 @@ def compete(
     found: Found = {}
     best = min([calibrated.objective, *(result.objective for result in limited.values())])
     nearly_all = problem.count() + OVER * (calibrated.objective - problem.count())
-    # a share of what a hopeless calibration leaves is still far from noise
+    # a share of what a calibration that is far off leaves is still far from noise
     enough = max(ADEQUATE * problem.count(), min(nearly_all, FAR_FROM_NOISE * problem.count()))
     for planned in planned_refits(problem, calibrated, guesses, score_tests, REFINED, ENOUGH):
         effect = planned.score_test.guess.effect
@@ -82,7 +82,7 @@ def compete(
         result = refit_with(problem, planned, best)
         keep_better(found, NOTHING.with_effects([effect]), result)
         best = min(best, result.objective)
-    # single effects that are far off are not worth their last digits
+    # single effects that are far off need not converge
     if best < FAR_FROM_NOISE * problem.count() or limited:
         found = warm_start(problem, converge(problem, found, progress))
     return _ranked(problem, calibrated, {**limited, **found}, score_tests)

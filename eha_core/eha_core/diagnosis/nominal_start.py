@@ -13,6 +13,11 @@ from eha_core.parameters import NOMINAL
 BIASED = 0.02
 """Share by which a calibration must have moved the valve's dynamics for a delay or a lag to be what it imitated."""
 
+TRIED_WITH_DYNAMICS_HELD = 2
+HELD_SHARE = 0.25
+"""So many effects are tried with the valve's dynamics held, if their predicted gain is this share of what others need: a
+linear prediction says less where the dynamics have to come back first (assumed)."""
+
 NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 
 

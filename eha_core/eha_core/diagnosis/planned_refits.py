@@ -9,18 +9,20 @@ from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.found import OUT_OF_REACH
 from eha_core.diagnosis.initial_guesses import InitialGuess
-from eha_core.diagnosis.nominal_start import NOMINAL_NAMES, at_nominal_values, set_free, with_dynamics_held
+from eha_core.diagnosis.nominal_start import (
+    HELD_SHARE,
+    NOMINAL_NAMES,
+    TRIED_WITH_DYNAMICS_HELD,
+    at_nominal_values,
+    set_free,
+    with_dynamics_held,
+)
 from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages
 from eha_core.identification.free_parameters import LATE, FreeParameter
 from eha_core.identification.per_recording import is_one_of
 from eha_core.identification.problem import Problem
-
-TRIED_WITH_DYNAMICS_HELD = 2
-DYNAMICS_HELD_SHARE = 0.25
-"""Where the calibration moved the valve's dynamics, so many hypotheses are tried with the dynamics held, too, if their
-predicted gain is this share of what others need."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def planned_refits(
     again = one_each(screen(problem, held, initial_guesses), TRIED_WITH_DYNAMICS_HELD)
     known = {one.score_test.guess.effect.id for one in chosen if one.from_nominal}
     from_nominal = [PlannedRefit(dynamics_held, one, True) for one in again if one.guess.effect.id not in known]
-    return (*chosen, *(one for one in from_nominal if one.score_test.gain > DYNAMICS_HELD_SHARE * least))
+    return (*chosen, *(one for one in from_nominal if one.score_test.gain > HELD_SHARE * least))
 
 
 def refit_with(problem: Problem, planned: PlannedRefit, best: float) -> Fit:

@@ -50,7 +50,7 @@ def with_sets(
             before, best = best.hypothesis, _against_its_rivals(search, best)
             if best.hypothesis == before:
                 break
-            # it leads for where its fit came to rest, maybe, and not for its new member
+            # it may lead because its fit converged further, and not because of its new member
             best = prune(search, grow(search, best))
     calibration = _in_noise_of(search, calibration)
     found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
@@ -67,7 +67,7 @@ def with_sets(
         worse = [hypothesis for hypothesis in singles if best.hypothesis.holds(hypothesis)]
         found = {hypothesis: result for hypothesis, result in found.items() if hypothesis not in worse}
     elif best.times_noise > FAR_FROM_NOISE and not best.hypothesis.limited:
-        # no set came near either: the single effects are worth their last digits after all, as far as they lack them
+        # no set came near the noise either: the single effects are compared, and have to converge for that
         always = {hypothesis: result for hypothesis, result in found.items() if not hypothesis.limited}
         found |= warm_start(search.problem, converge(search.problem, always, progress))
     nominal = refit_nominal(search.problem, search.found[NOTHING], list(found.values()))
@@ -99,7 +99,7 @@ def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
         leading = for_its_cost(search, [one for one in search if len(one.hypothesis.members) == size])
         if leading.hypothesis == best.hypothesis:
             return leading
-        # where friction sticks a simpler form may have rested above its optimum, and goes on from here
+        # where friction sticks, the fit of a simpler form may have stopped above its optimum, and goes on from here
         best = leading
 
 

@@ -69,7 +69,7 @@ def time_limited_effects(
     found = _fitted(problem, NOTHING, outside, initial_guesses, calibrated.objective, progress)
     warm_started = warm_start(problem, converge(problem, found, progress))
     sharpened = {hypothesis: _sharpened(problem, result) for hypothesis, result in warm_started.items()}
-    # half a millisecond beside another's instants a law would seem to explain less than a richer form of it
+    # with instants that are off by half a millisecond a law would seem to explain less than a richer form of it
     return warm_start(problem, sharpened)
 
 

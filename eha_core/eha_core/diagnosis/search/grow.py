@@ -24,7 +24,7 @@ def grow(search: Search, best: Candidate) -> Candidate:
         race(search, proposals(search, best, score_tests, chance_gain(search.problem.count(), best.times_noise)))
         reached = min(search, key=lambda one: one.fit.objective)
         if reached.hypothesis != best.hypothesis and reached.times_noise > UNFITTED:
-            # what stopped short would have the next effect make up for it
+            # the next effect would make up for what a fit that stopped short leaves
             reached = set_with_friction(search, reached)
         if reached.times_noise < FAR_FROM_NOISE:
             search.measure_noise(reached)

@@ -2,7 +2,7 @@
 
 A score test says how much of what a fit leaves unexplained an effect could explain (`diagnosis.screen`). It is linear,
 so it is asked where the effects show best: at the fit itself; where that is far from the noise, at the nominal values,
-which nothing has biased; and with the valve's dynamics held, which would imitate a delay or a lag.
+which nothing has biased; and with the valve's dynamics held, which can imitate a delay or a lag.
 """
 
 from __future__ import annotations
@@ -14,7 +14,13 @@ from statistics import fmean
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import Member
 from eha_core.diagnosis.initial_guesses import InitialGuess, initial_guesses
-from eha_core.diagnosis.nominal_start import at_nominal_values, set_free, with_dynamics_held
+from eha_core.diagnosis.nominal_start import (
+    HELD_SHARE,
+    TRIED_WITH_DYNAMICS_HELD,
+    at_nominal_values,
+    set_free,
+    with_dynamics_held,
+)
 from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
 from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search, with_effects, without_effect
 from eha_core.identification.fit import Fit
@@ -23,24 +29,20 @@ from eha_core.identification.per_recording import is_one_of
 
 AT_THE_FIT = 8
 AT_NOMINAL_VALUES = 6
-WITH_DYNAMICS_HELD = 2
 """How many effects are taken from each score test."""
 
 LEAST_PREDICTED = 0.02
 """Where the fit is not far from the noise, so that predictions hold, an effect that predicts less than this share of
 what the first predicts is left for a later round: it is asked again once the first has been added (assumed)."""
 
-HELD_SHARE = 0.25
-"""With the dynamics held an effect is proposed where it predicts this share of what others must."""
-
 
 def proposals(search: Search, base: Candidate, score_tests: Sequence[ScoreTest], least: float) -> list[Proposal]:
-    """Guesses of the base's set with one effect more, the largest predicted gain first, of those above `least`.
+    """The base's set with one effect more, the largest predicted gain first, of those above `least`.
 
     score_tests: those of the initial guesses beside the base, at its fit.
     """
     begin = guesses_beside(search, base)
-    proposals = [
+    added = [
         *_at_the_fit(base, score_tests),
         *_at_nominal_values(search, base, begin),
         *_with_dynamics_held(search, base, begin),
@@ -48,11 +50,11 @@ def proposals(search: Search, base: Candidate, score_tests: Sequence[ScoreTest],
     # where only noise is left no other form can be better
     forms = in_another_form(search, base) if base.times_noise > NEAR_NOISE else ()
     new_forms = [one for one in forms if one.hypothesis not in search.found]
-    return [*new_forms, *(one for one in proposals if one.predicted > least)]
+    return [*new_forms, *(one for one in added if one.predicted > least)]
 
 
 def at_the_fit(search: Search, base: Candidate, most: int) -> list[Proposal]:
-    """Guesses of the base's set with one effect more, as a score test at its fit ranks them."""
+    """The base's set with one effect more, as a score test at its fit ranks them."""
     score_tests = one_each(screen(search.problem, base.fit, guesses_beside(search, base)), most)
     return [_proposal(base, base.fit, score_test) for score_test in score_tests]
 
@@ -90,7 +92,7 @@ def _with_dynamics_held(search: Search, base: Candidate, begin: list[InitialGues
         return
     # what the dynamics could imitate shows only while they are held
     at = set_free(held, tuple(one for one in base.fit.free if not is_one_of(one.name, LATE)))
-    for score_test in one_each(screen(search.problem, at, begin), WITH_DYNAMICS_HELD):
+    for score_test in one_each(screen(search.problem, at, begin), TRIED_WITH_DYNAMICS_HELD):
         proposal = _proposal(base, held, score_test, in_stages=True)
         yield replace(proposal, predicted=proposal.predicted / HELD_SHARE)
 

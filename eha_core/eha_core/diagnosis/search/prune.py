@@ -53,7 +53,7 @@ def refit_without(search: Search, candidate: Candidate, member: Member, iteratio
 
 
 def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
-    """The set without the members that have become of no use, as far as the curvature tells and a refit confirms."""
+    """The set without the members that it no longer needs, by the curvature and a refit that confirms it."""
     while len(candidate.hypothesis.members) > 1:
         costs = {member: wald(candidate.fit, member.effect) for member in candidate.hypothesis.members}
         least = min(costs, key=lambda member: costs[member])
@@ -69,8 +69,8 @@ def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
 def prune(search: Search, best: Candidate) -> Candidate:
     """The set without the members that do not earn their place beside the others, by what a refit without each loses.
 
-    A refit that loses much goes on while it may come near enough; to its end where the curvature says that it can:
-    along a flat valley much changes together, such as all pressures' scale, and it takes long.
+    A refit that loses much goes on while it may come near enough; until it converges where the curvature says that it
+    will: where many parameters change together, such as all pressures' scale, that takes many iterations.
     """
     while len(best.hypothesis.members) > 1:
         simpler = {member: refit_without(search, best, member) for member in best.hypothesis.members}
@@ -113,7 +113,7 @@ def asked_of(member: Member, worth: Mapping[Member, float], best: Candidate, exp
     """Chi^2 that a member must be worth beside the others, which are worth so much each, and `explained` together.
 
     It rises with what the set leaves unexplained: a law of another form always leaves something for others that act in
-    the same balance.
+    the same equation.
     """
     beside = [other for other in worth if other != member and other.effect.approximate and meet(member, other)]
     forms = [worth[other] for other in beside]
@@ -126,6 +126,6 @@ def asked_of(member: Member, worth: Mapping[Member, float], best: Candidate, exp
 
 
 def meet(member: Member, other: Member) -> bool:
-    """Whether two effects act in one balance, of the piston's forces or of the oil's flow; a sensor shows both."""
+    """Whether two effects act in one equation, of the piston's forces or of the oil's flow; a sensor shows both."""
     sites = (member.effect.site, other.effect.site)
     return any(site in ("sensor", "schedule") for site in sites) or (sites[0] == "force") == (sites[1] == "force")

@@ -35,7 +35,7 @@ def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
 
 def set_in_each_form(search: Search, best: Candidate) -> Candidate:
     """The best so far when each form of the set's dry friction was led from short windows to long ones beside the
-    other members: from where the set stands, and where that does not reach the noise from the nominal values, which
+    other members: from the set's values, and where that does not reach the noise from the nominal values, which
     another form has not biased."""
     member = next(one for one in best.hypothesis.members if one.effect.kind == STICKING)
     rest = best.hypothesis.without(member)
@@ -56,8 +56,8 @@ def set_in_each_form(search: Search, best: Candidate) -> Candidate:
 def set_with_friction(search: Search, best: Candidate) -> Candidate:
     """A set with a law that sticks, led from short windows to long ones; the set as it is where it has none.
 
-    That law begins at its first guess: what it had become in long windows is where it came to rest, and its shape may
-    be lost (a Stribeck velocity of next to nothing), from which no derivative leads back.
+    That law begins at its first guess. In long windows its shape may have been lost (a Stribeck velocity of next to
+    nothing), from where no derivative leads back.
     """
     if not sticks(best.hypothesis):
         return best
@@ -69,8 +69,8 @@ def set_with_friction(search: Search, best: Candidate) -> Candidate:
 
 
 def _first_guess(effect: Effect, scales: Scales) -> dict[str, float]:
-    """The effect's last start, but a Stribeck velocity as large as the speeds: from one that is larger than its own a
-    law narrows, from a smaller one no derivative leads back."""
+    """The effect's last initial guess, but a Stribeck velocity as large as the speeds: a fit finds its way from one that
+    is too large, and from one that is too small no derivative leads back."""
     values = dict(initial_guesses(effect, scales)[-1].values)
     for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
         if row.relative_to == "speed":
