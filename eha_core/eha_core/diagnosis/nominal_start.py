@@ -15,8 +15,8 @@ BIASED = 0.02
 
 TRIED_WITH_DYNAMICS_HELD = 2
 HELD_SHARE = 0.25
-"""So many effects are tried with the valve's dynamics held, if their predicted gain is this share of what others need: a
-linear prediction says less where the dynamics have to come back first (assumed)."""
+"""So many effects are tried with the valve's dynamics held, if their predicted gain is this share of what others need:
+a linear prediction says less where the dynamics have to come back first (assumed)."""
 
 NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 

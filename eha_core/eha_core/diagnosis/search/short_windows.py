@@ -69,8 +69,8 @@ def set_with_friction(search: Search, best: Candidate) -> Candidate:
 
 
 def _first_guess(effect: Effect, scales: Scales) -> dict[str, float]:
-    """The effect's last initial guess, but a Stribeck velocity as large as the speeds: a fit finds its way from one that
-    is too large, and from one that is too small no derivative leads back."""
+    """The effect's last initial guess, but a Stribeck velocity as large as the speeds: a fit finds its way from one
+    that is too large, and from one that is too small no derivative leads back."""
     values = dict(initial_guesses(effect, scales)[-1].values)
     for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
         if row.relative_to == "speed":
