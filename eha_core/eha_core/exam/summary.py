@@ -235,7 +235,8 @@ def _within(statement: str, aim: str, reached: Proportion, least: float, most: f
 
 
 def _at_least(statement: str, goal: float, reached: Proportion) -> Target:
-    return _within(statement, f"at least {100 * goal:.0f} %", reached, goal, 1.0)
+    aim = f"at least {100 * goal:.0f} %" if goal < 1.0 else "100 %"
+    return _within(statement, aim, reached, goal, 1.0)
 
 
 def _at_most(statement: str, goal: float, reached: Proportion) -> Target:
