@@ -138,7 +138,8 @@ def _jacobian_row() -> Row:
     coarse, states = problem.slopes, problem.shooting.initial_states
     values = nominal_values()
     moved: list[Point] = [
-        ({**values, one.name: 1.001 * values[one.name]}, states) for one in free_nominal_parameters(values, "voltage", 0.05)
+        ({**values, one.name: 1.001 * values[one.name]}, states)
+        for one in free_nominal_parameters(values, "voltage", 0.05)
     ]
     moved += [(values, states + step) for step in np.diag(STATE_STEP)]
 

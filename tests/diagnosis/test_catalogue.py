@@ -5,13 +5,13 @@ from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
-from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import ENOUGH
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.initial_guesses import applicable_effects, initial_guesses
-from eha_core.diagnosis.model_comparison import REFINED
-from eha_core.diagnosis.planned_refits import planned_refits, refit_with
-from eha_core.diagnosis.screen import screen
+from eha_core.diagnosis.search.converge import converge
+from eha_core.diagnosis.search.initial_guesses import applicable_effects, initial_guesses
+from eha_core.diagnosis.search.model_comparison import REFINED
+from eha_core.diagnosis.search.planned_refits import planned_refits, refit_with
+from eha_core.diagnosis.search.screening import screen
 from eha_core.effects import effects
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel

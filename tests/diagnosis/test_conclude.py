@@ -12,12 +12,12 @@ from test_experiment import explanation
 from eha_core.diagnosis import conclude
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.conclude import _led_by, _ordered, _unknown
-from eha_core.diagnosis.discrimination import RATE
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.experiment.discrimination import RATE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.result import ChannelFit, Correlation, Explained, Location, Step, UnknownLaw
+from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects

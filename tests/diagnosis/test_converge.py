@@ -4,9 +4,9 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.search.converge import converge
 from eha_core.effects import effects
 from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe

@@ -3,7 +3,7 @@
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.nominal_start import at_nominal_values
+from eha_core.diagnosis.search.nominal_start import at_nominal_values
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values

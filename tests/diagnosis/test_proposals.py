@@ -7,8 +7,8 @@ import pytest
 
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.initial_guesses import initial_guesses
 from eha_core.diagnosis.search.candidates import Candidate, Search
+from eha_core.diagnosis.search.initial_guesses import initial_guesses
 from eha_core.diagnosis.search.proposals import in_another_form
 from eha_core.effects import effects
 from eha_core.identification.fit import Ending, Fit

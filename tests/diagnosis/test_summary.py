@@ -6,8 +6,8 @@ import pytest
 from test_experiment import explanation
 
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.model_comparison import Entry
 from eha_core.diagnosis.result import Explained, NamedEffect
+from eha_core.diagnosis.search.model_comparison import Entry
 from eha_core.diagnosis.summary import kind_alone, summary
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects

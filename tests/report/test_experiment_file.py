@@ -7,7 +7,7 @@ from pathlib import Path
 
 import yaml
 
-from eha_core.diagnosis.experiment import not_proposed
+from eha_core.diagnosis.experiment.design import not_proposed
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.report.experiment_file import experiment_file
 from eha_core.report.files import write_report

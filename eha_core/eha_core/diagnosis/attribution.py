@@ -12,8 +12,8 @@ import numpy as np
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.locate import stated, whereabouts
-from eha_core.diagnosis.model_comparison import ModelComparison
 from eha_core.diagnosis.result import Location
+from eha_core.diagnosis.search.model_comparison import ModelComparison
 from eha_core.identification.fit import Fit
 from eha_core.weak_form.equation_residuals import EquationResidual
 

@@ -9,17 +9,16 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEAST_OF_A_LAW
-from eha_core.diagnosis.discrimination import RATE
 from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, predicted_recordings
 from eha_core.diagnosis.evidence import Evidence
-from eha_core.diagnosis.experiment import not_proposed, propose
+from eha_core.diagnosis.experiment.design import not_proposed, propose
+from eha_core.diagnosis.experiment.discrimination import RATE
 from eha_core.diagnosis.explained import explained, predictions
 from eha_core.diagnosis.fitted_values import changed_values, fitted_parameters, named_effects
 from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.locate import stated
-from eha_core.diagnosis.model_comparison import Entry
 from eha_core.diagnosis.pictures import pictures
 from eha_core.diagnosis.result import (
     Alternative,
@@ -29,6 +28,7 @@ from eha_core.diagnosis.result import (
     Location,
     UnknownLaw,
 )
+from eha_core.diagnosis.search.model_comparison import Entry
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import SITES

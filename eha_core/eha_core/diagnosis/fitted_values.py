@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eha_core.diagnosis.calibrate import has_changed, identifiable
-from eha_core.diagnosis.model_comparison import Entry
 from eha_core.diagnosis.result import FittedParameter, FittedValue, NamedEffect
+from eha_core.diagnosis.search.model_comparison import Entry
 from eha_core.diagnosis.search.prune import wald
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit

@@ -13,10 +13,10 @@ from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.criteria import NEAR_NOISE, chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
-from eha_core.diagnosis.initial_guesses import applicable_effects
-from eha_core.diagnosis.model_comparison import compete
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.diagnosis.sets import with_sets
+from eha_core.diagnosis.search.initial_guesses import applicable_effects
+from eha_core.diagnosis.search.model_comparison import compete
+from eha_core.diagnosis.search.sets import with_sets
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
 from eha_core.identification.fit import Fit, fit

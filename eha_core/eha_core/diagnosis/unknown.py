@@ -13,8 +13,8 @@ from eha_core.curve import KNOTS
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CONVINCING, LEFT_OVER, UNFITTED, chance_gain, parameter_cost
 from eha_core.diagnosis.hypothesis import Hypothesis
-from eha_core.diagnosis.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.search.candidates import without_effect
+from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.search.prune import REFITTED
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, UNFITTED, chance_gain, gain_to_go_on
-from eha_core.diagnosis.screen import ScoreTest, screen_in_time
 from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search
 from eha_core.diagnosis.search.proposals import guesses_beside, proposals
 from eha_core.diagnosis.search.prune import look_back
+from eha_core.diagnosis.search.screening import ScoreTest, screen_in_time
 from eha_core.diagnosis.search.short_windows import set_with_friction
-from eha_core.diagnosis.time_limited import time_limited_beside
+from eha_core.diagnosis.search.time_limited import time_limited_beside
 
 LEGS = ((3, 4), (4, 2), (10, 1))
 """A race: so many iterations for every proposal, and so many then go on. The right ones lead after two or three."""

@@ -1,6 +1,6 @@
 """Proposals: which effects to add to a set, and from where to fit them.
 
-A score test says how much of what a fit leaves unexplained an effect could explain (`diagnosis.screen`). It is linear,
+A score test says how much of what a fit leaves unexplained an effect could explain (`screening`). It is linear,
 so it is asked where the effects show best: at the fit itself; where that is far from the noise, at the nominal values,
 which nothing has biased; and with the valve's dynamics held, which can imitate a delay or a lag.
 """
@@ -13,16 +13,16 @@ from statistics import fmean
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.initial_guesses import InitialGuess, initial_guesses
-from eha_core.diagnosis.nominal_start import (
+from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search, with_effects, without_effect
+from eha_core.diagnosis.search.initial_guesses import InitialGuess, initial_guesses
+from eha_core.diagnosis.search.nominal_start import (
     HELD_SHARE,
     TRIED_WITH_DYNAMICS_HELD,
     at_nominal_values,
     set_free,
     with_dynamics_held,
 )
-from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
-from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search, with_effects, without_effect
+from eha_core.diagnosis.search.screening import ScoreTest, one_each, scaled, screen
 from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import LATE
 from eha_core.identification.per_recording import is_one_of

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, UNFITTED
-from eha_core.diagnosis.screen import screen_in_time
 from eha_core.diagnosis.search.candidates import Candidate, Search
+from eha_core.diagnosis.search.converge import converge
 from eha_core.diagnosis.search.exchange import exchange
 from eha_core.diagnosis.search.grow import grow, try_for_a_while
 from eha_core.diagnosis.search.proposals import guesses_beside
 from eha_core.diagnosis.search.prune import prune
+from eha_core.diagnosis.search.screening import screen_in_time
 from eha_core.diagnosis.search.short_windows import forms_of_friction, set_in_each_form, sticks
 from eha_core.diagnosis.search.simpler_form import from_a_simpler_form
 

@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.initial_guesses import initial_guesses
 from eha_core.diagnosis.search.candidates import Candidate, Search, with_effects, without_effect
+from eha_core.diagnosis.search.initial_guesses import initial_guesses
 from eha_core.effects import Effect
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import base_name

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from eha_core.diagnosis.criteria import NEAR_NOISE
-from eha_core.diagnosis.found import Found, Progress, best_first
-from eha_core.diagnosis.nominal_start import NOMINAL_NAMES, with_dynamics_held
+from eha_core.diagnosis.search.found import Found, Progress, best_first
+from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES, with_dynamics_held
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import is_one_of

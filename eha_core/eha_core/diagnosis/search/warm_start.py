@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from eha_core.diagnosis.found import OUT_OF_REACH, Found, best_first, keep_better
 from eha_core.diagnosis.hypothesis import Hypothesis
-from eha_core.diagnosis.nominal_start import NOMINAL_NAMES
+from eha_core.diagnosis.search.found import OUT_OF_REACH, Found, best_first, keep_better
+from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.per_recording import is_one_of

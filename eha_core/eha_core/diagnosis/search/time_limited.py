@@ -14,14 +14,14 @@ from math import log
 
 import numpy as np
 
-from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import NEAR_NOISE, OUTSTANDING, UNTOUCHED
 from eha_core.diagnosis.effect_parameters import free_effect_parameters, free_instants
-from eha_core.diagnosis.found import OUT_OF_REACH, Found, Progress, best_first
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.initial_guesses import InitialGuess
-from eha_core.diagnosis.screen import ScoreTest, scaled, screen_in_time
-from eha_core.diagnosis.warm_start import warm_start
+from eha_core.diagnosis.search.converge import converge
+from eha_core.diagnosis.search.found import OUT_OF_REACH, Found, Progress, best_first
+from eha_core.diagnosis.search.initial_guesses import InitialGuess
+from eha_core.diagnosis.search.screening import ScoreTest, scaled, screen_in_time
+from eha_core.diagnosis.search.warm_start import warm_start
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages, refit_states
 from eha_core.identification.numbers import Array

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
-from eha_core.diagnosis.found import OUT_OF_REACH
-from eha_core.diagnosis.initial_guesses import InitialGuess
-from eha_core.diagnosis.nominal_start import (
+from eha_core.diagnosis.search.found import OUT_OF_REACH
+from eha_core.diagnosis.search.initial_guesses import InitialGuess
+from eha_core.diagnosis.search.nominal_start import (
     HELD_SHARE,
     NOMINAL_NAMES,
     TRIED_WITH_DYNAMICS_HELD,
@@ -17,7 +17,7 @@ from eha_core.diagnosis.nominal_start import (
     set_free,
     with_dynamics_held,
 )
-from eha_core.diagnosis.screen import ScoreTest, one_each, scaled, screen
+from eha_core.diagnosis.search.screening import ScoreTest, one_each, scaled, screen
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages
 from eha_core.identification.free_parameters import LATE, FreeParameter

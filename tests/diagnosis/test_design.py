@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from eha_core.diagnosis.experiment import propose
+from eha_core.diagnosis.experiment.design import propose
 from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.parameters import nominal_values

@@ -11,19 +11,19 @@ from dataclasses import replace
 
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
-from eha_core.diagnosis.found import Found, Progress
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.model_comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.search.candidates import Candidate, Search, in_noise_of
+from eha_core.diagnosis.search.converge import converge
 from eha_core.diagnosis.search.exchange import rivals_for
+from eha_core.diagnosis.search.found import Found, Progress
 from eha_core.diagnosis.search.grow import grow
+from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.search.proposals import at_the_fit, in_another_form
 from eha_core.diagnosis.search.prune import prune
 from eha_core.diagnosis.search.search import search_sets
 from eha_core.diagnosis.search.simpler_form import CLOSE, for_its_cost, try_forms
-from eha_core.diagnosis.warm_start import refit_nominal, warm_start
+from eha_core.diagnosis.search.warm_start import refit_nominal, warm_start
 from eha_core.effects import Effect
 
 ROUNDS = 3

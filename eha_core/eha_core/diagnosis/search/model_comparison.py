@@ -9,16 +9,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.converge import converge
 from eha_core.diagnosis.criteria import ADEQUATE, ENOUGH, FAR_FROM_NOISE, HARDLY, OVER, parameter_cost
 from eha_core.diagnosis.effect_parameters import parameters_used
-from eha_core.diagnosis.found import Found, Progress, keep_better
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.initial_guesses import initial_guesses
-from eha_core.diagnosis.planned_refits import planned_refits, refit_with
-from eha_core.diagnosis.screen import ScoreTest, screen_in_time
-from eha_core.diagnosis.time_limited import time_limited_effects
-from eha_core.diagnosis.warm_start import refit_nominal, warm_start
+from eha_core.diagnosis.search.converge import converge
+from eha_core.diagnosis.search.found import Found, Progress, keep_better
+from eha_core.diagnosis.search.initial_guesses import initial_guesses
+from eha_core.diagnosis.search.planned_refits import planned_refits, refit_with
+from eha_core.diagnosis.search.screening import ScoreTest, screen_in_time
+from eha_core.diagnosis.search.time_limited import time_limited_effects
+from eha_core.diagnosis.search.warm_start import refit_nominal, warm_start
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.problem import Problem

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.initial_guesses import InitialGuess
+from eha_core.diagnosis.search.initial_guesses import InitialGuess
 from eha_core.identification.fit import Fit
 from eha_core.identification.normal_matrix import Eliminated
 from eha_core.identification.numbers import Array, Integers

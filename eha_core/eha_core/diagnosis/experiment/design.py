@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.diagnosis.discrimination import STEP, separation
+from eha_core.diagnosis.experiment.discrimination import STEP, separation
 from eha_core.diagnosis.result import Experiment
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
