@@ -11,7 +11,7 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.search.found import Found, Progress, best_first
-from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES, with_dynamics_held
+from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES, is_improbable, with_dynamics_held
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import is_one_of
@@ -33,8 +33,8 @@ INSTANT_SHIFTS = (-0.12, 0.12, -0.04, 0.04, -0.01, 0.01, -0.004, 0.004, -0.0015,
 def converge(problem: Problem, found: Found, progress: Progress = lambda _: None) -> Found:
     """The leaders fitted until they converge, with derivatives at the full step.
 
-    Where more than noise is left they are fitted from the nominal values, too: beginning at a calibration that is far
-    off, the nominal parameters can end in a local minimum.
+    Where more than noise is left, or a nominal parameter went improbably far, they are fitted from the nominal values,
+    too: beginning at a calibration that is far off, the nominal parameters can end in a local minimum.
     """
     exact = replace(problem, slope_step=problem.shooting.step_size)
     best = np.inf
@@ -45,7 +45,7 @@ def converge(problem: Problem, found: Found, progress: Progress = lambda _: None
             continue
         progress(f"fitting {' and '.join(hypothesis.ids)}")
         result = fit(exact, result.values, result.free, result.states, iterations=30)
-        if result.data > NEAR_NOISE * result.count:
+        if result.data > NEAR_NOISE * result.count or is_improbable(result):
             untouched = {one.name: one.reference for one in result.free if is_one_of(one.name, NOMINAL_NAMES)}
             again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
             if again.objective < result.objective:

@@ -18,6 +18,10 @@ HELD_SHARE = 0.25
 """So many effects are tried with the valve's dynamics held, if their predicted gain is this share of what others need:
 a linear prediction says less where the dynamics have to come back first (assumed)."""
 
+IMPROBABLE = 2.0
+"""Prior standard deviations by which a nominal parameter must have moved for a fit to be suspected of a local minimum.
+Assumed; nominal values that are off by 30 % are off by one at most."""
+
 NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 
 
@@ -35,6 +39,15 @@ def at_nominal_values(problem: Problem, calibrated: Fit) -> Fit:
     """The calibration with every nominal parameter back at its nominal value, only the windows' starts fitted again."""
     given = {one.name: one.reference for one in calibrated.free if is_one_of(one.name, NOMINAL_NAMES)}
     return set_free(fit(problem, {**calibrated.values, **given}, (), calibrated.states, iterations=5), calibrated.free)
+
+
+def is_improbable(result: Fit) -> bool:
+    """Whether a fit took a nominal parameter further from its nominal value than that is likely to be off."""
+    return any(
+        abs(float(at)) > IMPROBABLE * one.prior_deviation
+        for one, at in zip(result.free, result.q, strict=True)
+        if is_one_of(one.name, NOMINAL_NAMES)
+    )
 
 
 def set_free(held: Fit, free: tuple[FreeParameter, ...]) -> Fit:
