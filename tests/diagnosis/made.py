@@ -1,12 +1,15 @@
-"""Recordings made from the plant itself, with noise, for tests that need to know the answer."""
+"""Recordings made from the plant itself, with noise, for tests that need to know the answer; and fits."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from eha_core.identification.fit import Ending, Fit
+from eha_core.identification.free_parameters import FreeParameter
+from eha_core.parameters import nominal_values
 from eha_core.plant import Plant
 from eha_core.recording import Channel, Recording
 from eha_core.signals import make_signal
@@ -47,3 +50,11 @@ def recorded(
         if name in channels
     }
     return Recording(Path("made.mcap"), made, 0, duration, {}, (), None, ())
+
+
+def explanation(changes: Mapping[str, float], free: Sequence[FreeParameter] = ()) -> Fit:
+    """A fit as the comparison hands it over, of a plant with these parameters."""
+    values = {**nominal_values(), **changes}
+    n = len(free)
+    q = np.array([one.coordinate(values[one.name]) for one in free])
+    return Fit(tuple(free), q, values, np.zeros((1, 4)), 0.0, 0.0, 1, (), np.eye(n), Ending.CONVERGED, 0)

@@ -4,9 +4,9 @@ import re
 
 import numpy as np
 import pytest
+from made import explanation
 
 from eha_core.diagnosis.experiment.design import propose
-from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant
@@ -15,14 +15,6 @@ from eha_core.signals import make_signal
 NOISE = {"position": 1e-5}
 LIMIT = 2.0
 SAMPLE = 1e-3
-
-
-def explanation(changes, free=()):
-    """A fit as the comparison hands it over, of a plant with these parameters."""
-    values = {**nominal_values(), **changes}
-    n = len(free)
-    q = np.array([one.coordinate(values[one.name]) for one in free])
-    return Fit(free, q, values, np.zeros((1, 4)), 0.0, 0.0, 1, (), np.eye(n), True, 0)
 
 
 def voltage_of(experiment):

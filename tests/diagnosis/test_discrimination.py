@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_experiment import explanation
+from made import explanation
 
 from eha_core.diagnosis.experiment.discrimination import STEP, separation
 from eha_core.identification.free_parameters import free_nominal_parameters

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_experiment import explanation
+from made import explanation
 
 from eha_core.diagnosis.effect_parameters import free_effect_parameters, parameters_used
 from eha_core.effects import effects

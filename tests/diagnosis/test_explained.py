@@ -7,8 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from made import recorded
-from test_experiment import explanation
+from made import explanation, recorded
 
 from eha_core.diagnosis import explained as stage
 from eha_core.diagnosis.explained import explained, predictions

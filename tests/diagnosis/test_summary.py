@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from test_experiment import explanation
+from made import explanation
 
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import Explained, NamedEffect

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from test_experiment import explanation
+from made import explanation
 
 from eha_core.diagnosis import criteria, verdict
 from eha_core.diagnosis.hypothesis import NOTHING
