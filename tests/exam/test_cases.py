@@ -115,6 +115,14 @@ def test_what_the_oracle_sees_beside_another_effect_is_what_that_does_not_explai
     assert consult(case, truth, spring).beyond_rival < 1.0
 
 
+def test_the_oracle_lets_the_shape_of_another_law_imitate_a_sensors_scale() -> None:
+    """A position that reads 8 % short moves a worn place and makes it narrower, and is no longer told from that."""
+    worn = ("bore_wear_leakage", {"coefficient": 4e-11, "centre": 0.01, "width": 0.008})
+    case = short("single", 12, duration=3.0, effects=(worn, ("position_sensor_scale", {"ratio": -0.08})))
+    truth = simulate_case(case)
+    assert seen_beside_the_others(case, truth) == ("bore_wear_leakage",)
+
+
 def test_a_made_case_is_kept_and_found_again(tmp_path: object, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("EHA_CACHE_DIR", str(tmp_path))
     first = make_case("null", 0, 11)

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.exam.case import POSITION_NOISE, PRESSURE_NOISE, Case
-from eha_core.exam.concealed import SIZES
 from eha_core.exam.plants import RIG_MISTAKES, UNCERTAIN
 from eha_core.exam.truth import resume_truth
 from eha_core.exam.truth.record import Effect
@@ -37,6 +36,8 @@ FREE = 1e3
 DECIDABLE = 25.0
 """Nats. A case from which the oracle gains less is undecidable: several hypotheses with free sizes compete, and each
 parameter they spend costs half the logarithm of the number of samples, about 5 nats."""
+NO_LIMIT = 1e30
+"""A parameter as large as this says that the law has no such limit."""
 SHIFTS = {"position": 1e-5, "velocity": 1e-3, "pressure_a": 1e4, "pressure_b": 1e4}
 
 
@@ -65,7 +66,7 @@ def consult(
 ) -> Insight:
     """Ask what the recording of a case can tell, and how much of that a rival effect does not explain at any size.
 
-    Effects that are `kept` stay in the model, each at any size: what is asked is what the others show beside them.
+    Effects that are `kept` stay in the model, with any parameters: what is asked is what the others show beside them.
     """
     starts = _telling_windows(case, truth, kept)
     names = (*UNCERTAIN, *RIG_MISTAKES, *VOLUMES)
@@ -83,7 +84,7 @@ def consult(
 
 
 def seen_beside_the_others(case: Case, truth: Mapping[str, Array]) -> tuple[str, ...]:
-    """The concealed effects that the recording can show, each beside all the others at any size."""
+    """The concealed effects that the recording can show, each beside all the others with any parameters."""
     seen = []
     for effect in case.effects:
         others = [other for other in case.effects if other is not effect]
@@ -130,6 +131,11 @@ def _mark(case: Case, truth: Mapping[str, Array], first: int, kept: Sequence[Eff
     return _scaled(case, there) - _scaled(case, resume_truth(case.plant, kept, truth, first, last))
 
 
+def _doubted(values: Mapping[str, object]) -> list[str]:
+    """The parameters of an effect that a diagnosis has to fit: its sizes, and the shape of its law."""
+    return [name for name, value in values.items() if isinstance(value, float) and 0.0 < abs(value) < NO_LIMIT]
+
+
 def _window(
     case: Case,
     truth: Mapping[str, Array],
@@ -140,7 +146,7 @@ def _window(
 ) -> tuple[Array, Array]:
     """The effect's mark in one window and the columns that can imitate it, free of the window's initial state.
 
-    Columns: one for each nominal parameter (relative change), one for each kept effect's size, one for the rival.
+    Columns: one for each nominal parameter and each parameter of a kept effect (relative changes), one for the rival.
     """
     last = first + _length(case)
     there = _scaled(case, {name: column[first : last + 1] for name, column in truth.items()})
@@ -150,10 +156,10 @@ def _window(
         nudged = {**case.plant, name: case.plant[name] * (1.0 + STEP)}
         columns.append((_scaled(case, resume_truth(nudged, kept, truth, first, last)) - nominal) / STEP)
     for place, (name, values) in enumerate(kept):
-        for size in SIZES.get(name, ()):
-            larger = (name, {**values, size: float(values[size]) * (1.0 + STEP)})
-            resized = (*kept[:place], larger, *kept[place + 1 :])
-            columns.append((_scaled(case, resume_truth(case.plant, resized, truth, first, last)) - nominal) / STEP)
+        for parameter in _doubted(values):
+            larger = (name, {**values, parameter: float(values[parameter]) * (1.0 + STEP)})
+            changed = (*kept[:place], larger, *kept[place + 1 :])
+            columns.append((_scaled(case, resume_truth(case.plant, changed, truth, first, last)) - nominal) / STEP)
     if rival is not None:
         columns.append(_scaled(case, resume_truth(case.plant, (*kept, rival), truth, first, last)) - nominal)
     states = [
