@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, cast
+from typing import IO, Any, NamedTuple, cast
 
 from mcap.writer import CompressionType, Writer
 
@@ -37,13 +38,22 @@ class OfferedQuality:
         )
 
 
+class _Message(NamedTuple):
+    topic: str
+    type_name: str
+    data: bytes
+    stamp: int
+    quality: OfferedQuality
+
+
 class RecordingWriter:
     """Writes one recording; a context manager.
 
-    Messages are gathered in a chunk. It is put on disk when a message comes later than `flush_period` after the former
-    flush, or when the owner calls `flush`: a node does so on a timer, since topics may fall silent. After each flush
-    the file is a whole MCAP, so `kill -9` costs only what came since. All methods that touch the disk raise
-    RecordingError; what was flushed before then stays readable.
+    Messages are gathered, and become a chunk that is put on disk when one comes later than `flush_period` after the
+    former flush, or when the owner calls `flush`: a node does so on a timer, since topics may fall silent. After each
+    flush the file is a whole MCAP, so `kill -9` costs only what came since. All methods that touch the disk raise
+    RecordingError; what was flushed before then stays readable. The file is written by a thread of its own: Python
+    raises KeyboardInterrupt in the main thread, wherever that is, and half a record would spoil its chunk.
 
     Args:
         path: the .mcap file to create; its folder is made, an existing file is never overwritten.
@@ -72,8 +82,10 @@ class RecordingWriter:
             raise RecordingError(f"{self.path}: cannot be written ({error.strerror}: {error.filename})") from error
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
+        self._waiting: list[_Message] = []
+        self._thread = ThreadPoolExecutor(1, "recording")
         self._writer: Any = Writer(cast("IO[Any]", self._file), compression=CompressionType.ZSTD)
-        self._writer.start(profile="ros2")
+        self._uninterrupted(lambda: self._writer.start(profile="ros2"))
         self._is_open = True
         if self._parameters:
             self.add_parameters(self._parameters)
@@ -82,7 +94,12 @@ class RecordingWriter:
     def add_parameters(self, parameters: Mapping[str, object]) -> None:
         """Keep the parameters in force (name -> SI value) in the file; also in those that a later split opens."""
         self._parameters.update(parameters)
-        self._writer.add_metadata(PARAMETERS_RECORD, {name: str(value) for name, value in parameters.items()})
+        kept = {name: str(value) for name, value in parameters.items()}
+        self._uninterrupted(lambda: self._writer.add_metadata(PARAMETERS_RECORD, kept))
+
+    def _uninterrupted(self, action: Callable[[], None]) -> None:
+        """Have the writing thread do something to its end, and wait for it."""
+        self._thread.submit(action).result()
 
     def write(self, topic: str, type_name: str, data: bytes, stamp: int, quality: OfferedQuality | None = None) -> None:
         """Add a message that is serialised already.
@@ -96,8 +113,9 @@ class RecordingWriter:
         """
         if not self._is_open:
             raise RecordingError(f"{self.path}: the recording is closed")
-        channel = self._channels.get(topic) or self._register(topic, type_name, quality or OfferedQuality())
-        self._writer.add_message(channel, log_time=stamp, data=data, publish_time=stamp)
+        if topic not in self._channels:
+            definition_of(type_name)  # a type that nobody knows is refused here, and not when it is written
+        self._waiting.append(_Message(topic, type_name, data, stamp, quality or OfferedQuality()))
         self.message_count += 1
         if time.monotonic() - self._flush_time > self._flush_period:
             self.flush()
@@ -107,6 +125,17 @@ class RecordingWriter:
     ) -> None:
         """Add a message given by its fields (nested mappings and sequences), as `write` does for bytes."""
         self.write(topic, type_name, encode(type_name, fields), stamp, quality)
+
+    def _put(self) -> None:
+        """Add the messages that wait to the chunk in progress."""
+        waiting, self._waiting = self._waiting, []
+        for topic, type_name, data, stamp, quality in waiting:
+            channel = self._channels.get(topic) or self._register(topic, type_name, quality)
+            self._writer.add_message(channel, log_time=stamp, data=data, publish_time=stamp)
+
+    def _put_and_flush(self) -> None:
+        self._put()
+        self._writer.flush()
 
     def _register(self, topic: str, type_name: str, quality: OfferedQuality) -> int:
         definition, type_hash = definition_of(type_name)
@@ -126,7 +155,7 @@ class RecordingWriter:
         if not self._is_open:
             return
         try:
-            self._writer.flush()
+            self._uninterrupted(self._put_and_flush)
         except OSError as error:
             self.abandon()
             raise RecordingError(f"{self.path}: recording stopped ({error.strerror})") from error
@@ -145,16 +174,23 @@ class RecordingWriter:
             return
         self._is_open = False
         try:
-            self._writer.finish()
-            self._file.close()
+            self._uninterrupted(self._finish)
         except OSError as error:
             raise RecordingError(f"{self.path}: the end could not be written ({error.strerror})") from error
+        finally:
+            self._thread.shutdown(wait=False)
+
+    def _finish(self) -> None:
+        self._put()
+        self._writer.finish()
+        self._file.close()
 
     def abandon(self) -> None:
         """Close the file as it was flushed last, without a summary."""
         if self._is_open:
             self._is_open = False
-            self._file.discard()
+            self._uninterrupted(self._file.discard)
+            self._thread.shutdown(wait=False)
 
     def __enter__(self) -> RecordingWriter:
         return self
