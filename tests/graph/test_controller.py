@@ -56,4 +56,4 @@ def test_measurements_without_force_are_named(rig: Rig) -> None:
     rig.wait(joints.get_subscription_count, "the controller")
     rig.wait(lambda: reports, "a report")
     joints.publish(JointState(name=["piston"], position=[0.0], velocity=[0.0]))
-    rig.wait(lambda: any("without the joint's" in report["message"] for report in reports), "the warning", 10)
+    assert rig.wait(lambda: any("without the joint's" in report["message"] for report in reports), "the warning", 10)

@@ -88,7 +88,7 @@ def test_positions_without_a_reference_are_named(rig: Rig) -> None:
         rig.spin(0.002)
     rig.wait(lambda: any("have no reference" in report["message"] for report in reports), "the warning", 10)
     rig.wait(lambda: reports[-1]["samples"] == "60" and reports[-1]["unpaired"] == "40", "the counts", 10)
-    rig.wait(lambda: reports[-1]["message"] == "running", "the next report, with nothing new missing", 10)
+    assert rig.wait(lambda: reports[-1]["message"] == "running", "the next report, with nothing new missing", 10)
 
 
 def test_a_killed_recorder_leaves_a_file_that_lacks_one_second_at_most(rig: Rig) -> None:
