@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -82,7 +83,7 @@ class RecordingWriter:
             raise RecordingError(f"{self.path}: cannot be written ({error.strerror}: {error.filename})") from error
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
-        self._waiting: list[_Message] = []
+        self._waiting: deque[_Message] = deque()
         self._thread = ThreadPoolExecutor(1, "recording")
         self._writer: Any = Writer(cast("IO[Any]", self._file), compression=CompressionType.ZSTD)
         self._uninterrupted(lambda: self._writer.start(profile="ros2"))
@@ -128,8 +129,8 @@ class RecordingWriter:
 
     def _put(self) -> None:
         """Add the messages that wait to the chunk in progress."""
-        waiting, self._waiting = self._waiting, []
-        for topic, type_name, data, stamp, quality in waiting:
+        while self._waiting:
+            topic, type_name, data, stamp, quality = self._waiting.popleft()
             channel = self._channels.get(topic) or self._register(topic, type_name, quality)
             self._writer.add_message(channel, log_time=stamp, data=data, publish_time=stamp)
 
