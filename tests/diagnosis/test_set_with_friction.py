@@ -6,8 +6,9 @@ from made import recorded
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.criteria import UNFITTED
+from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.candidates import Proposal, Search, with_effects
+from eha_core.diagnosis.search.candidates import Proposal, Search
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
 from eha_core.diagnosis.search.short_windows import set_in_each_form, set_with_friction, sticks
 from eha_core.effects import effects

@@ -9,8 +9,9 @@ from made import recorded
 from eha_core.diagnosis import criteria, diagnose
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.candidates import Proposal, Search, with_effects
+from eha_core.diagnosis.search.candidates import Proposal, Search
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
 from eha_core.diagnosis.search.prune import asked_of, by_chance, prune, refit_without, wald
 from eha_core.diagnosis.verdict import coherence

@@ -7,8 +7,8 @@ from made import recorded
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.candidates import with_effects
 from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.unknown import recover
 from eha_core.effects import effects

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eha_core.diagnosis.calibrate import Calibration, calibrate
-from eha_core.diagnosis.search.candidates import with_effects
+from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effects
 from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case

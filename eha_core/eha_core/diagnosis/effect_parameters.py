@@ -41,6 +41,15 @@ def free_effect_parameters(effect: Effect, start: Mapping[str, float]) -> tuple[
     return tuple(free)
 
 
+def with_effects(
+    free: Sequence[FreeParameter], effects: Sequence[Effect], values: Mapping[str, float]
+) -> tuple[FreeParameter, ...]:
+    """The free parameters with those of more effects, which are free about where `values` has them."""
+    extra = [one for effect in effects for one in free_effect_parameters(effect, values)]
+    names = {one.name for one in extra}
+    return (*(one for one in free if one.name not in names), *extra)
+
+
 SPAN_SCALE = 0.3
 """s; the coordinate's unit of an instant from which, or until which, an effect acts."""
 

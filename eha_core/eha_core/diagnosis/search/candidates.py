@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.hypothesis import Hypothesis, neutral
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages, with_noise
@@ -123,15 +122,6 @@ def in_noise_of(problem: Problem, before: Shooting, result: Fit) -> Fit:
     kept = zip(problem.shooting.samplings, residuals, strict=True)
     data = sum(float(np.sum(residual[used[one.window]] ** 2)) for one, residual in kept)
     return replace(result, residuals=residuals, data=data, objective=result.objective - result.data + data)
-
-
-def with_effects(
-    free: Sequence[FreeParameter], effects: Sequence[Effect], values: Mapping[str, float]
-) -> tuple[FreeParameter, ...]:
-    """The free parameters with those of more effects, which are free about where `values` has them."""
-    extra = [one for effect in effects for one in free_effect_parameters(effect, values)]
-    names = {one.name for one in extra}
-    return (*(one for one in free if one.name not in names), *extra)
 
 
 def without_effect(result: Fit, effect: Effect) -> tuple[dict[str, float], tuple[FreeParameter, ...]]:

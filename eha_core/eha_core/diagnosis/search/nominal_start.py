@@ -20,7 +20,7 @@ a linear prediction says less where the dynamics have to come back first (assume
 
 IMPROBABLE = 2.0
 """Prior standard deviations by which a nominal parameter must have moved for a fit to be suspected of a local minimum.
-Assumed; nominal values that are off by 30 % are off by one at most."""
+Assumed; nominal values that are off by 30 % are off by 1.2 of them at most."""
 
 NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
-from eha_core.diagnosis.effect_parameters import free_effect_parameters
+from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.search.found import OUT_OF_REACH
 from eha_core.diagnosis.search.initial_guesses import InitialGuess
 from eha_core.diagnosis.search.nominal_start import (
@@ -18,9 +18,8 @@ from eha_core.diagnosis.search.nominal_start import (
     with_dynamics_held,
 )
 from eha_core.diagnosis.search.screening import ScoreTest, one_each, scaled, screen
-from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages
-from eha_core.identification.free_parameters import LATE, FreeParameter
+from eha_core.identification.free_parameters import LATE
 from eha_core.identification.per_recording import is_one_of
 from eha_core.identification.problem import Problem
 
@@ -49,9 +48,9 @@ def planned_refits(
     least: float,
 ) -> tuple[PlannedRefit, ...]:
     """What to try on top of a fit: the effects of its own largest predicted gains, then those of the fit with the
-    dynamics as given.
+    dynamics held.
 
-    What is predicted to gain too little is left out; where the dynamics would have to bend back first, that says less.
+    What is predicted to gain too little is left out; where the dynamics would have to come back first, that says less.
     The parameters of a fit that is far from noise are biased; what is missing shows against the nominal ones first.
     """
     leading = one_each(score_tests, most)
@@ -77,15 +76,9 @@ def refit_with(problem: Problem, planned: PlannedRefit, best: float) -> Fit:
     if planned.from_nominal:
         untouched = {one.name: one.reference for one in base.free if is_one_of(one.name, NOMINAL_NAMES)}
         values = {**base.values, **untouched, **score_test.guess.values}
-        free = _with_effect(base.free, effect, values)
+        free = with_effects(base.free, [effect], values)
         return fit_in_stages(problem, values, free, give_up_above=best + OUT_OF_REACH)
     values = {**base.values, **scaled(score_test)}
-    free = _with_effect(base.free, effect, values)
+    free = with_effects(base.free, [effect], values)
     return fit(problem, values, free, base.states, iterations=25, give_up_above=best + OUT_OF_REACH)
 
-
-def _with_effect(
-    free: tuple[FreeParameter, ...], effect: Effect, values: Mapping[str, float]
-) -> tuple[FreeParameter, ...]:
-    extra = free_effect_parameters(effect, values)
-    return (*(one for one in free if one.name not in {own.name for own in extra}), *extra)

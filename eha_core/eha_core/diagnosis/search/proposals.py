@@ -12,8 +12,9 @@ from dataclasses import replace
 from statistics import fmean
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE
+from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search, with_effects, without_effect
+from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search, without_effect
 from eha_core.diagnosis.search.initial_guesses import InitialGuess, initial_guesses
 from eha_core.diagnosis.search.nominal_start import (
     HELD_SHARE,

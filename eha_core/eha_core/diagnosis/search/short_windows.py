@@ -10,8 +10,9 @@ from collections.abc import Mapping, Sequence
 
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import NEAR_NOISE
+from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.search.candidates import Candidate, Search, with_effects, without_effect
+from eha_core.diagnosis.search.candidates import Candidate, Search, without_effect
 from eha_core.diagnosis.search.initial_guesses import initial_guesses
 from eha_core.effects import Effect
 from eha_core.identification.free_parameters import FreeParameter
