@@ -201,7 +201,8 @@ def changes(
     """
     coarse = problem.slopes
     blocks = max(1, -(-len(moved) // (LANES - 1)), min(threads(), len(moved) // REGISTER))
-    room = max(1, -(-len(moved) // blocks))
+    lanes = 1 + -(-len(moved) // blocks)
+    room = min(LANES, -(-lanes // REGISTER) * REGISTER) - 1
     over = np.ones(len(moved)) if moves is None else np.asarray(moves)
     columns = np.empty((problem.count(), len(moved)))
     ends_by = np.empty((coarse.windows, STATE_SIZE, len(moved)))

@@ -30,9 +30,10 @@ from eha_core.plant.lane_rows import LANES, PARAMETERS
 from eha_core.plant.parts import Source, parts
 
 SOURCES = (
-    "compiled.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
-    "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
-    "plant/composite.py", "plant/source.py", "plant/given.py", "plant/parts/sources/*.py", "effects/*.py",
+    "compiled.py", "elementary.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py",
+    "plant/equations.py", "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py",
+    "plant/lane_hooks.py", "plant/lanes.py", "plant/composite.py", "plant/source.py", "plant/given.py",
+    "plant/parts/sources/*.py", "effects/*.py",
 )
 
 
@@ -162,7 +163,7 @@ def layout() -> Layout:
 def write_lane_hooks() -> str:
     """The source of the lock-step's hooks: each site calls its effects in order, in those lanes in which they act."""
     lines = ['"""Generated from the catalogue of effects, and written anew when a source changes: do not edit."""', ""]
-    lines += ["from eha_core.compiled import called", "from eha_core.plant.lane_rows import *", ""]
+    lines += ["from eha_core.compiled import called, unowned", "from eha_core.plant.lane_rows import *", ""]
     lines += [f"from eha_core.effects.{effect.id} import contribution as {effect.id}" for effect in effects()]
     lines += ["", f"MEMORY, ACTS = {layout().memory}, {layout().acts}"]
     place, slot = len(NOMINAL), 0
@@ -185,7 +186,7 @@ def write_lane_hooks() -> str:
     lines += [f"{site.upper()}_EFFECTS = {mask}" for site, mask in masks.items()]
     for site, body in calls.items():
         head = list(inspect.signature(getattr(lane_hooks, site)).parameters)
-        lines += ["", "", "@called", f"def {site}({', '.join(head)}):", *(body or ["    pass"])]
+        lines += ["", "", "@called", f"def {site}({', '.join(head)}):", "    block = unowned(block)", *body]
     return "\n".join(lines) + "\n"
 
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from eha_core.plant import vector
 
-REGISTER = 4
-"""Lanes that one instruction takes, with AVX2."""
+REGISTER = 8
+"""Lanes are filled up to a multiple of this: what the compiler takes at once with AVX-512, and in two with AVX2. Those
+left over go one by one, and four of them take longer than eight."""
 
 LANES = 24
 """Places for plants in a block: registers enough to keep the divider busy, and for a Jacobian of 23 columns."""
