@@ -26,13 +26,21 @@ LEAST, MOST = -708.0, 709.0
 WHOLE = 6755399441055744.0
 """1.5 * 2^52: a number added to it loses what stands behind the point, and shows its whole part in the lowest bits."""
 
-BIAS = 4503599627371519.0
-"""2^52 + 1023: what an exponent's bits come to when they are read as the lowest ones of 2^52."""
+MANTISSA, EXPONENT_BIAS = 52, 1023
+"""How many bits a float64's mantissa has, above which stands its exponent, and what is added to that (IEEE 754)."""
 
-E3, E4, E5, E6, E7, E8, E9, E10, E11, E12, E13 = (1.0 / factorial(power) for power in range(3, 14))
+FRACTION, ONE, TWO_TO_52 = 0x000FFFFFFFFFFFFF, 0x3FF0000000000000, 0x4330000000000000
+"""Bits: those of the mantissa, those of 1.0, and those of 2^52, in whose lowest bits a whole number can be put."""
+
+BIAS_BESIDE = 2.0**MANTISSA + EXPONENT_BIAS
+"""What is taken off an exponent's bits that were put into 2^52."""
+
+SQRT_2 = 1.4142135623730951
+
+E3, E4, E5, E6, E7, E8, E9, E10, E11, E12, E13 = (1.0 / factorial(order) for order in range(3, 14))
 """Coefficients of the exponential's series."""
 
-L3, L5, L7, L9, L11, L13, L15, L17, L19, L21 = (1.0 / power for power in range(3, 22, 2))
+L3, L5, L7, L9, L11, L13, L15, L17, L19, L21 = (1.0 / order for order in range(3, 22, 2))
 """Coefficients of the series of artanh, of which the logarithm is twice."""
 
 
@@ -93,16 +101,16 @@ def exp(of):
     second = _fma(_fma(E9, rest, E8), square, _fma(E7, rest, E6))
     third = _fma(_fma(E13, rest, E12), square, _fma(E11, rest, E10))
     series = _fma(_fma(_fma(third, fourth, second), fourth, first), square, rest)
-    return (1.0 + series) * _number((_bits(shifted) + 1023) << 52)
+    return (1.0 + series) * _number((_bits(shifted) + EXPONENT_BIAS) << MANTISSA)
 
 
 @inlined
 def log(of):
     """Natural logarithm of a positive normal number; that of zero is -709.1, the least there is."""
     bits = _bits(of)
-    twos = _number((bits >> 52) | 0x4330000000000000) - BIAS
-    mantissa = _number((bits & 0x000FFFFFFFFFFFFF) | 0x3FF0000000000000)
-    above = mantissa > 1.4142135623730951
+    twos = _number((bits >> MANTISSA) | TWO_TO_52) - BIAS_BESIDE
+    mantissa = _number((bits & FRACTION) | ONE)
+    above = mantissa > SQRT_2
     mantissa = 0.5 * mantissa if above else mantissa
     twos = twos + 1.0 if above else twos
     share = (mantissa - 1.0) / (mantissa + 1.0)
