@@ -16,6 +16,7 @@ from eha_core.exam.measuring import measure, simulate_case
 from eha_core.exam.peers.__main__ import main
 from eha_core.exam.peers.equations import equations, read_signals
 from eha_core.exam.peers.methods import diagnose
+from eha_core.parameters import nominal_values
 
 
 def recording(folder: Path, *effects: tuple[str, dict[str, float | str]]) -> tuple[Case, Path]:
@@ -62,3 +63,9 @@ def test_as_a_command_it_writes_the_answer_or_one_line(tmp_path: Path, capsys: p
     assert main(["calibration", str(blind), str(answer)]) == 2
     assert "has no pressure_a, pressure_b" in capsys.readouterr().err
     assert main(["guess", str(path), str(answer)]) == 2
+
+
+def test_a_recording_that_knows_no_parameters_is_held_against_the_nominal_ones() -> None:
+    path = Path(__file__).parents[2] / "bags" / "rig_coulomb_friction.mcap"
+    assert read_signals(path).nominal == nominal_values()
+    assert "coulomb_friction" in {one["id"] for one in diagnose("sindy_stlsq", path)["effects"]}

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.signal import lsim, savgol_filter
 
 from eha_core.errors import EhaError
+from eha_core.parameters import nominal_values
 from eha_core.recording import read_recording
 
 Array = NDArray[np.float64]
@@ -68,8 +69,9 @@ def read_signals(path: Path) -> Signals:
     held = channels[0].values[np.searchsorted(channels[0].time, time, side="right") - 1]
     window = 2 * round(0.03 * RATE) + 1
     velocity = savgol_filter(position, window, 3, deriv=1, delta=1.0 / RATE)
-    spool = _spool(time, held if len(held) else voltage, recording.parameters)
-    return Signals(time, position, velocity, a, b, spool, recording.parameters)
+    nominal = {**nominal_values(), **recording.parameters}
+    spool = _spool(time, held if len(held) else voltage, nominal)
+    return Signals(time, position, velocity, a, b, spool, nominal)
 
 
 def _spool(time: Array, voltage: Array, p: Mapping[str, float]) -> Array:
