@@ -150,3 +150,8 @@ def test_the_interpreter_finds_the_same_numbers() -> None:
     ]  # fmt: skip
     compiled, interpreted = (np.frombuffer(bytes.fromhex(text.strip())) for text in printed)
     assert interpreted == pytest.approx(compiled, rel=1e-12, abs=1e-15)
+
+
+def test_blocks_begin_where_a_cache_line_does() -> None:
+    blocks = [LockStep([nominal_values()], 1e-4)._block for _ in range(8)]
+    assert [block.ctypes.data % 64 for block in blocks] == [0] * 8
