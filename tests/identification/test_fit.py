@@ -70,3 +70,9 @@ def test_no_damping_is_tried_that_promises_less_than_what_ends_a_fit(monkeypatch
     promised = uphill[0] ** 2 / normal.own[0, 0, 0]
     assert promised > SETTLED
     assert 1 < len(simulated) < 10
+
+
+def test_a_fit_goes_on_where_bounds_cut_its_moves_short():
+    planted = {"constant_load.force": 60.0, "valve_deadband.half_width": 2e-4}
+    calibration = calibrate([observe(recorded(planted, duration=4.0))], NominalModel(nominal_values()), 2e-4)
+    assert calibration.fitted.objective < 0.1 * calibration.nominal.objective

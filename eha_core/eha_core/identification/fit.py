@@ -217,13 +217,14 @@ def _descend(
 ) -> tuple[_Point, Array, float] | None:
     """The first point that lies lower as the damping grows, with the move to it and that damping.
 
-    None if none does of those that promise to gain more than would end the fit.
+    None if none does of those that promise to gain more than would end the fit. A move that a bound cuts short may
+    promise a loss, which says nothing.
     """
     growth = 4.0
     for trial in range(10):
         move = _step(normal, gradient, damping, free, at.q)
         if move is not None:
-            if trial and _promised(normal, gradient, move) < _least_gain(problem, at.objective):
+            if trial and 0.0 <= _promised(normal, gradient, move) < _least_gain(problem, at.objective):
                 return None
             q, states = _moved(problem, free, at.q, at.states, move)
             rows, ends = simulate(problem.shooting, values, free, q, states)
