@@ -5,9 +5,7 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.identification.fit import SETTLED, _descend, _Point, fit
 from eha_core.identification.observation import observe
-from eha_core.identification.problem import linearise, normal_equations, objective_of, simulate, whole
 from eha_core.identification.segments import coarser, cut
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
@@ -47,29 +45,6 @@ def test_the_coarser_problem_samples_the_same_instants():
     ):
         assert len(one) == len(other)
         assert np.max(np.abs(one - other)) < 0.02 * np.ptp(one)
-
-
-def test_no_damping_is_tried_that_promises_less_than_what_ends_a_fit(monkeypatch):
-    observation = observe(recorded({}))
-    problem, values = whole(cut(observation, nominal_values())), nominal_values()
-    best = fit(problem, values, (), iterations=20)
-    q = np.zeros(0)
-    rows, ends = simulate(problem.shooting, values, (), q, best.states)
-    at = _Point(q, best.states, rows, ends, objective_of(problem, (), q, best.states, rows, ends))
-    normal, gradient = normal_equations(problem, (), q, best.states, linearise(problem, values, (), q, best.states))
-    uphill = np.zeros(len(gradient))
-    uphill[0] = normal.own[0, 0, 0] * 1e-5  # 10 um beside the first window's fitted start, at hardly any damping
-    simulated = []
-
-    def counted(*given):
-        simulated.append(given)
-        return simulate(*given)
-
-    monkeypatch.setattr("eha_core.identification.fit.simulate", counted)
-    assert _descend(problem, values, (), at, normal, uphill, 1e-6) is None
-    promised = uphill[0] ** 2 / normal.own[0, 0, 0]
-    assert promised > SETTLED
-    assert 1 < len(simulated) < 10
 
 
 def test_a_fit_goes_on_where_bounds_cut_its_moves_short():

@@ -10,9 +10,10 @@ the clearance). The bell over the position is assumed: it lies between a Gaussia
 groove lets through.
 """
 
+from math import exp
+
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.elementary import exp
 from eha_core.parameter import Parameter
 
 EFFECT = Effect(

@@ -11,9 +11,10 @@ Power 12 (2011); B.-H. Cho, H.-W. Lee, J.-S. Oh, "Estimation technique of air co
 measuring effective bulk modulus", International Journal of Automotive Technology 3 (2002).
 """
 
+from math import exp, log
+
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.elementary import power
 from eha_core.parameter import Parameter
 
 EXPONENT = 1.4
@@ -53,7 +54,7 @@ def mixture(bulk, pressure, air_fraction):
     """Bulk modulus [Pa] at an absolute pressure [Pa], and the derivative of its logarithm [1/Pa]."""
     held = max(pressure, LEAST_PRESSURE)
     oil = 1.0 - air_fraction
-    air = air_fraction * power(REFERENCE_PRESSURE / held, 1.0 / EXPONENT)
+    air = air_fraction * exp(log(REFERENCE_PRESSURE / held) / EXPONENT)
     air_yield = air / (EXPONENT * held)
     softness = oil / bulk + air_yield
     change = air_yield * ((1.0 + 1.0 / EXPONENT) / (held * softness) - 1.0 / (oil + air))

@@ -10,9 +10,10 @@ Source: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, "A new model 
 IEEE Transactions on Automatic Control 40 (1995).
 """
 
+from math import exp
+
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.elementary import exp
 from eha_core.parameter import Parameter
 
 LEAST_FORCE = 1e-6

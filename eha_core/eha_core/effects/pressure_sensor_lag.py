@@ -10,9 +10,10 @@ damping coefficient: a difference between the two chambers is told sharply, what
 Source: E. O. Doebelin, Measurement Systems, McGraw-Hill 1966, chapter 3 (first-order instruments).
 """
 
+from math import exp
+
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.elementary import exp
 from eha_core.parameter import Parameter
 
 EFFECT = Effect(

@@ -7,9 +7,10 @@ Validity: small departures about one working point; no line resonance.
 Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 3 (flow through lines). First order is assumed.
 """
 
+from math import exp
+
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.elementary import exp
 from eha_core.parameter import Parameter
 
 EFFECT = Effect(

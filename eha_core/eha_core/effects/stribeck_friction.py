@@ -9,9 +9,10 @@ Source: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "A survey of models
 methods for the control of machines with friction", Automatica 30 (1994).
 """
 
+from math import exp
+
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.elementary import exp, power
 from eha_core.parameter import Parameter
 
 EFFECT = Effect(
@@ -100,4 +101,4 @@ def contribution(
 ):
     """Add the friction of the speed at the step's start; the step itself is too short for it to change much."""
     share = abs(velocity) / stribeck_velocity
-    return force, damping, stiffness, dry_friction + sliding + (static - sliding) * exp(-power(share, shape))
+    return force, damping, stiffness, dry_friction + sliding + (static - sliding) * exp(-(share**shape))

@@ -8,9 +8,10 @@ Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 11 (suppli
 assumed.
 """
 
+from math import exp
+
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.elementary import exp
 from eha_core.parameter import Parameter
 
 EFFECT = Effect(

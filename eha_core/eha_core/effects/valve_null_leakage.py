@@ -10,9 +10,10 @@ B. H. Wilson, "Unified modeling and analysis of a proportional valve", Journal o
 exponential fading is assumed.
 """
 
+from math import exp
+
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.elementary import exp
 from eha_core.parameter import Parameter
 
 EFFECT = Effect(

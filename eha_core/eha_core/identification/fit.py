@@ -149,11 +149,11 @@ def fit(
         new, move, damping = found
         gain = objective - new.objective
         q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
-        ratio = gain / max(_promised(normal, gradient, move), 1e-300)
+        ratio = gain / max(float(move @ (2.0 * gradient - normal.times(move))), 1e-300)
         damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
         spread = np.sqrt(1.0 / np.maximum(np.diag(normal.parameters), 1e-12))
         steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
-        if gain < _least_gain(problem, objective):
+        if gain < max(SETTLED, WORTH * (objective - problem.count())):
             ending = Ending.CONVERGED
             break
         if done > 2 and objective - HOPE * gain > give_up_above:
@@ -215,17 +215,11 @@ def _descend(
     gradient: Array,
     damping: float,
 ) -> tuple[_Point, Array, float] | None:
-    """The first point that lies lower as the damping grows, with the move to it and that damping.
-
-    None if none does of those that promise to gain more than would end the fit. A move that a bound cuts short may
-    promise a loss, which says nothing.
-    """
+    """The first point that lies lower as the damping grows, with the move to it and that damping; None if none does."""
     growth = 4.0
-    for trial in range(10):
+    for _ in range(10):
         move = _step(normal, gradient, damping, free, at.q)
         if move is not None:
-            if trial and 0.0 <= _promised(normal, gradient, move) < _least_gain(problem, at.objective):
-                return None
             q, states = _moved(problem, free, at.q, at.states, move)
             rows, ends = simulate(problem.shooting, values, free, q, states)
             objective = objective_of(problem, free, q, states, rows, ends)
@@ -234,16 +228,6 @@ def _descend(
         damping = max(damping * growth, 1e-8)
         growth *= 2.0
     return None
-
-
-def _promised(normal: NormalMatrix, gradient: Array, move: Array) -> float:
-    """What a move gains where the residuals are as linear as their derivatives say."""
-    return float(move @ (2.0 * gradient - normal.times(move)))
-
-
-def _least_gain(problem: Problem, objective: float) -> float:
-    """An iteration that gains less ends the fit."""
-    return max(SETTLED, WORTH * (objective - problem.count()))
 
 
 def _step(

@@ -30,10 +30,9 @@ from eha_core.plant.lane_rows import LANES, PARAMETERS
 from eha_core.plant.parts import Source, parts
 
 SOURCES = (
-    "compiled.py", "elementary.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py",
-    "plant/equations.py", "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py",
-    "plant/lane_hooks.py", "plant/lanes.py", "plant/composite.py", "plant/source.py", "plant/given.py",
-    "plant/parts/sources/*.py", "effects/*.py",
+    "compiled.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
+    "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
+    "plant/composite.py", "plant/source.py", "plant/given.py", "plant/parts/sources/*.py", "effects/*.py",
 )
 
 
