@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +104,18 @@ def test_only_what_is_wanted_is_handed_on(path: Path) -> None:
     for source in (BlocksOfFile(path, None, 5.0), BlocksInMemory(read_recording(path), 5.0)):
         assert [one.number for one in taken(source, frozenset({1, 4}))] == [1, 4]
         assert source.duration == pytest.approx(SECONDS)
+
+
+def test_a_block_in_a_gap_says_that_nothing_is_there(path: Path) -> None:
+    """Of what is measured; a command that holds on fills any gap."""
+    whole = read_recording(path)
+    position = whole.channels["position"]
+    outside = (position.time < 4.0) | (position.time > 11.0)
+    halves = replace(position, time=position.time[outside], values=position.values[outside])
+    found = taken(BlocksInMemory(replace(whole, channels={"position": halves}), 5.0))
+    assert [bool(one.recording) for one in found] == [True, False, True, True, True]
+    assert [one.problem for one in found if one.recording] == [""] * 4
+    assert found[1].problem == f"{whole.path}: no samples there"
 
 
 def test_no_more_is_held_than_pieces(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

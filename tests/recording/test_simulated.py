@@ -14,7 +14,7 @@ from eha_core.errors import ParameterError
 from eha_core.plant import COLUMNS, Plant
 from eha_core.recording import encode, read_recording
 from eha_core.recording.message_rows import encode_rows
-from eha_core.recording.simulated import Experiment, simulate, write_simulated
+from eha_core.recording.simulated import Experiment, simulate, simulate_sweep, write_simulated
 
 TIMES = np.arange(200) / 500.0
 VOLTAGES = 0.05 * np.sin(2 * np.pi * 5.0 * TIMES)
@@ -51,6 +51,20 @@ def test_states_are_those_of_the_plant_stepped_by_hand() -> None:
     np.testing.assert_array_equal(record.states, np.array(states))
     np.testing.assert_array_equal(record.stamps, np.arange(201) * 2_000_000)
     assert record.changes == [(100_000_000, "internal_leakage", 1e-10)]
+
+
+def test_a_sweep_is_one_run_for_each_value() -> None:
+    values = [1e-12, 2e-11, 5e-10]
+    records = simulate_sweep(Experiment(TIMES, VOLTAGES, 0.4, {"moving_mass": 12.0}), "internal_leakage", values)
+    for record, value in zip(records, values, strict=True):
+        alone = simulate(Experiment(TIMES, VOLTAGES, 0.4, {"moving_mass": 12.0, "internal_leakage": value}))
+        np.testing.assert_allclose(record.states, alone.states, rtol=1e-9, atol=1e-15)
+        assert record.parameters == alone.parameters
+
+
+def test_a_sweep_refuses_changes_on_its_way() -> None:
+    with pytest.raises(ParameterError, match="a sweep changes nothing on its way"):
+        simulate_sweep(Experiment(TIMES, VOLTAGES, 0.4, {}, [(0.1, "internal_leakage", 1e-10)]), "moving_mass", [9.0])
 
 
 def test_a_command_holds_from_its_instant_even_between_periods() -> None:
