@@ -9,6 +9,7 @@ from collections.abc import Mapping
 import rclpy
 import rclpy.node
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import Trigger
@@ -27,6 +28,8 @@ from eha_sim_node.state_topics import OUTPUT_QUALITY
 
 NAME = "eha_reference"
 _SETTLE = 0.5  # s
+_LISTENERS_CHECK = 0.05  # s
+_LAST_ARRIVES = 5.0  # s; how long the last message may take to every subscriber
 OWN_ROWS = (
     Row("mode", "voltage", "what the signal is: volts for the valve, or metres for a controller", fixed=True,
         choices=("voltage", "position")),
@@ -35,7 +38,7 @@ OWN_ROWS = (
     Row("leakage_free_response", False,
         "in mode voltage: whether `reference` is the response of this actuator without internal leakage", fixed=True),
     Row("step_size", 1e-4, "step of that response [s]", 1e-6, 1e-3, fixed=True),
-    Row("listeners", 1, "how many subscribers a signal that a timer drives waits for", 1, 100, fixed=True),
+    Row("listeners", 1, "how many subscribers the signal waits for", 1, 100, fixed=True),
     Row("duration", 0.0, "time after which the signal is zero and the node ends [s]; 0: never", 0.0, 1e6, fixed=True),
     Row("diagnostics_rate", 1.0, "rate of /diagnostics where a timer drives the signal, in wall-clock time [Hz]",
         0.1, 100.0, fixed=True),
@@ -118,7 +121,10 @@ class ReferenceNode(rclpy.node.Node):
         self._voltage = Float64()
         self._settings.declare(self._apply)
         self.create_service(Trigger, "~/reset", self._on_reset)
+        self._unanswered: int | None = None  # stamp of the tick that the first sample will answer [ns]
         if own["lockstep"]:
+            steady = Clock(clock_type=ClockType.STEADY_TIME)
+            self.create_timer(_LISTENERS_CHECK, self._answer_when_heard, clock=steady)
             self.create_subscription(JointState, "joint_states", self._on_joint_states, OUTPUT_QUALITY)
         else:
             simulated = self.get_parameter("use_sim_time").value
@@ -129,7 +135,16 @@ class ReferenceNode(rclpy.node.Node):
 
     def _on_joint_states(self, message: JointState) -> None:
         stamp = nanoseconds_of(message.header.stamp)
+        if self._origin is None and self._commands_voltage and self._subscribers() < self._least_listeners:
+            self._unanswered = stamp
+            return
         self._sample(stamp, stamp)
+
+    def _answer_when_heard(self) -> None:
+        """In lockstep the simulator waits for the first sample, and so for all who are to hear it."""
+        if self._unanswered is not None and self._subscribers() >= self._least_listeners:
+            stamp, self._unanswered = self._unanswered, None
+            self._sample(stamp, stamp)
 
     def _on_timer(self) -> None:
         if self._origin is not None or self._is_heard():
@@ -143,14 +158,18 @@ class ReferenceNode(rclpy.node.Node):
         The piston integrates the voltage: if a signal began before the simulator listens, it would stay beside its
         reference for good.
         """
-        publisher = self._voltage_publisher or self._reference_publisher
-        listeners = publisher.get_subscription_count() if publisher else 0
+        listeners = self._subscribers()
         if listeners != self._listeners:
             self._listeners, self._still_since = listeners, time.monotonic()
         return listeners >= self._least_listeners and time.monotonic() - self._still_since > _SETTLE
 
+    def _subscribers(self) -> int:
+        publisher = self._voltage_publisher or self._reference_publisher
+        return publisher.get_subscription_count() if publisher else 0
+
     def _sample(self, now: int, stamp: int) -> None:
         """Publish the signal's value at `now` [ns], under `stamp` [ns]."""
+        self._unanswered = None
         if self._origin is None:
             self._origin = now
         elapsed = now - self._origin
@@ -172,6 +191,8 @@ class ReferenceNode(rclpy.node.Node):
         if self._voltage_publisher is not None:
             self._voltage.data = 0.0
             self._voltage_publisher.publish(self._voltage)
+            # a recorder that another process keeps from the processor is behind
+            self._voltage_publisher.wait_for_all_acked(Duration(seconds=_LAST_ARRIVES))
         time.sleep(_SETTLE)
         rclpy.shutdown()
 

@@ -78,3 +78,18 @@ def test_the_leakage_free_response_is_that_of_the_plant(rig: Rig) -> None:
         plant.advance(8.4e-3 * np.sin(2 * np.pi * tick * 0.002), 20)
         expected.append(plant.state.position)
     assert [message.position[0] for message in references] == pytest.approx(expected, abs=1e-12)
+
+
+def test_in_lockstep_the_first_voltage_waits_for_all_who_are_to_hear_it(rig: Rig) -> None:
+    rig.start_sim("time_mode:=lockstep")
+    states = rig.hear(JointState, "joint_states")
+    rig.start("reference", "lockstep:=true", "listeners:=2", "signal:=sine", "sine.amplitude:=0.05",
+              "sine.frequency:=1.0", "duration:=0.4")  # fmt: skip
+    rig.node.destroy_publisher(rig.commands)
+    rig.wait(lambda: states and rig.node.count_publishers("voltage_command"), "the simulator's first tick")
+    rig.spin(1.0)
+    assert set(times_of(states)) == {0.0}
+    volts = rig.hear(Float64, "voltage_command")
+    rig.wait(lambda: len(volts) == 201, "the whole signal")
+    expected = [*(0.05 * np.sin(2 * np.pi * np.arange(200) * 0.002)), 0.0]
+    assert [message.data for message in volts] == pytest.approx(expected, abs=1e-12)
