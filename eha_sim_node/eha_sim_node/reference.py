@@ -121,7 +121,7 @@ class ReferenceNode(rclpy.node.Node):
         self._voltage = Float64()
         self._settings.declare(self._apply)
         self.create_service(Trigger, "~/reset", self._on_reset)
-        self._unanswered: int | None = None  # stamp of the tick that the first sample will answer [ns]
+        self._unanswered: int | None = None  # stamp of a tick that waits for its sample [ns]
         if own["lockstep"]:
             steady = Clock(clock_type=ClockType.STEADY_TIME)
             self.create_timer(_LISTENERS_CHECK, self._answer_when_heard, clock=steady)
@@ -134,15 +134,13 @@ class ReferenceNode(rclpy.node.Node):
         self.get_logger().info(f"{own['mode']}: {own['signal']}")
 
     def _on_joint_states(self, message: JointState) -> None:
-        stamp = nanoseconds_of(message.header.stamp)
-        if self._origin is None and self._commands_voltage and self._subscribers() < self._least_listeners:
-            self._unanswered = stamp
-            return
-        self._sample(stamp, stamp)
+        self._unanswered = nanoseconds_of(message.header.stamp)
+        self._answer_when_heard()
 
     def _answer_when_heard(self) -> None:
-        """In lockstep the simulator waits for the first sample, and so for all who are to hear it."""
-        if self._unanswered is not None and self._subscribers() >= self._least_listeners:
+        """In lockstep the simulator waits for the first voltage, and so for all who are to hear it."""
+        begun = self._origin is not None or not self._commands_voltage
+        if self._unanswered is not None and (begun or self._subscribers() >= self._least_listeners):
             stamp, self._unanswered = self._unanswered, None
             self._sample(stamp, stamp)
 
@@ -169,7 +167,6 @@ class ReferenceNode(rclpy.node.Node):
 
     def _sample(self, now: int, stamp: int) -> None:
         """Publish the signal's value at `now` [ns], under `stamp` [ns]."""
-        self._unanswered = None
         if self._origin is None:
             self._origin = now
         elapsed = now - self._origin
