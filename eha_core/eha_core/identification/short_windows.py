@@ -44,9 +44,10 @@ def from_short_windows(
     for place, (shooting, slack) in enumerate(zip(shorter, SLACK, strict=True)):
         part = replace(whole(shooting), slack=slack)
         run = fit if place else fit_in_stages
-        values = run(part, values, free, _starts(part, values), iterations=ITERATIONS).values
-    return fit(problem, values, free, _starts(problem, values), iterations=ITERATIONS)
+        values = run(part, values, free, starts(part, values), iterations=ITERATIONS).values
+    return fit(problem, values, free, starts(problem, values), iterations=ITERATIONS)
 
 
-def _starts(problem: Problem, values: Mapping[str, float]) -> Array:
+def starts(problem: Problem, values: Mapping[str, float]) -> Array:
+    """The windows' starts fitted to such values."""
     return fit(problem, values, (), iterations=OF_STATES).states

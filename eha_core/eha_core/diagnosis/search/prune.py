@@ -13,11 +13,12 @@ from eha_core.diagnosis.criteria import (
     OF_ITS_FORM,
     OF_SAMPLES,
     OF_SAMPLES_BESIDE_A_FORM,
+    OVER,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Member, neutral
 from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search, without_effect
 from eha_core.effects import Effect
-from eha_core.identification.fit import Fit
+from eha_core.identification.fit import Fit, fit
 from eha_core.identification.per_recording import base_name, is_one_of
 
 REFITTED = 8
@@ -25,6 +26,13 @@ REFITTED = 8
 
 FURTHER = 30
 """Iterations for which such a fit goes on at most."""
+
+STEPS_OUT = (0.75, 0.5, 0.25)
+"""Shares of its sizes at which a member is held one after the other on its way out, ..."""
+
+ON_THE_WAY = 4
+"""... and the iterations at each. The parameters that can make up for it follow it along their valley; taken out at
+once, a scale of both pressures stayed 2,541 chi^2 above the rig without it (development case rig-0013, seed 61331)."""
 
 LOOKED_AT = 4.0
 """A member is tried to be dropped where the curvature says that it costs no more than this many times what it must be
@@ -50,6 +58,24 @@ def refit_without(search: Search, candidate: Candidate, member: Member, iteratio
     values, free = without_effect(candidate.fit, member.effect)
     proposal = Proposal(candidate.hypothesis.without(member), values, free, candidate.fit.states)
     return search.try_proposal(proposal, iterations)
+
+
+def refit_gradually(search: Search, candidate: Candidate, member: Member) -> Candidate:
+    """The set without one member, which is taken out little by little."""
+    at, (values, free) = candidate.fit, without_effect(candidate.fit, member.effect)
+    sizes = {f"{member.id}.{row.name}": row.nominal for row in member.effect.parameters if row.switches}
+    states = at.states
+    for share in STEPS_OUT:
+        held = {
+            name: sizes[base_name(name)] + share * (value - sizes[base_name(name)])
+            for name, value in at.values.items()
+            if base_name(name) in sizes
+        }
+        shapes = {name: value for name, value in at.values.items() if is_one_of(name, member.effect.parameter_names())}
+        step = fit(search.problem, {**values, **shapes, **held}, free, states, iterations=ON_THE_WAY)
+        values, states = {**values, **{one.name: step.values[one.name] for one in free}}, step.states
+    proposal = Proposal(candidate.hypothesis.without(member), values, free, states)
+    return search.try_proposal(proposal, REFITTED)
 
 
 def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
@@ -83,6 +109,8 @@ def prune(search: Search, best: Candidate) -> Candidate:
                 near = told[member] < LOOKED_AT * asked[member]
                 enough = np.inf if near else best.fit.objective + asked[member]
                 simpler[member] = search.go_on(simpler[member], FURTHER, give_up_above=enough)
+            if asked[member] < _lost(simpler[member], best) < OVER * explained:
+                simpler[member] = refit_gradually(search, best, member)
         lost = {member: _lost(one, best) for member, one in simpler.items()}
         least = min(lost, key=lambda member: lost[member] / asked[member])
         search.progress(f"chi^2 lost without: {', '.join(f'{one.id} {loss:.3g}' for one, loss in lost.items())}")

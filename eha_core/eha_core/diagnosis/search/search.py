@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, UNFITTED
+from eha_core.diagnosis.search.all_at_once import all_at_once
 from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.converge import converge
 from eha_core.diagnosis.search.exchange import exchange
@@ -50,6 +51,8 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
         return best  # it explains all, or led the single effects and hardly explains anything
     if best.times_noise > NEAR_NOISE:
         best = beside_the_singles(search)
+    if best.times_noise > NEAR_NOISE:
+        best = all_at_once(search, nominal)
     if best.times_noise > UNFITTED and sticks(best.hypothesis):
         best = forms_of_friction(search, nominal)
     best = grow(search, best)

@@ -27,7 +27,7 @@ def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
     """The best so far when each form of dry friction was led from short windows to long ones, from nominal values."""
     for effect in _that_stick(search.applicable):
         search.progress(f"fitting {effect.id} from short windows to long ones")
-        values = {**_at_nominal(nominal.fit.values, nominal.fit.free), **_first_guess(effect, search.scales)}
+        values = {**at_nominal(nominal.fit.values, nominal.fit.free), **first_guess(effect, search.scales)}
         free = with_effects(nominal.fit.free, [effect], values)
         found = from_short_windows(search.problem, search.shorter, values, free)
         search.keep(NOTHING.with_effects([effect]), found)
@@ -42,10 +42,10 @@ def set_in_each_form(search: Search, best: Candidate) -> Candidate:
     rest = best.hypothesis.without(member)
     values, free = without_effect(best.fit, member.effect)
     plant = tuple(one for one in search.found[NOTHING].free if one in free)
-    for begin in (values, _at_nominal(values, plant)):
+    for begin in (values, at_nominal(values, plant)):
         for effect in _that_stick(search.applicable):
             search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} from short windows to long ones")
-            begun = {**begin, **_first_guess(effect, search.scales)}
+            begun = {**begin, **first_guess(effect, search.scales)}
             found = from_short_windows(search.problem, search.shorter, begun, with_effects(free, [effect], begun))
             search.keep(rest.with_effects([effect]), found)
         reached = min(search, key=lambda one: one.fit.objective)
@@ -64,16 +64,22 @@ def set_with_friction(search: Search, best: Candidate) -> Candidate:
         return best
     effect, *_ = _that_stick(best.hypothesis.effects)
     search.progress(f"fitting {' + '.join(best.hypothesis.ids)} from short windows to long ones")
-    values = {**best.fit.values, **_first_guess(effect, search.scales)}
+    values = {**best.fit.values, **first_guess(effect, search.scales)}
     free = with_effects(best.fit.free, [effect], values)
     return search.keep(best.hypothesis, from_short_windows(search.problem, search.shorter, values, free))
 
 
-def _first_guess(effect: Effect, scales: Scales) -> dict[str, float]:
-    """The effect's last initial guess, but a Stribeck velocity as large as the speeds: a fit finds its way from one
-    that is too large, and from one that is too small no derivative leads back."""
-    values = dict(initial_guesses(effect, scales)[-1].values)
-    for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
+def first_guess(effect: Effect, scales: Scales) -> dict[str, float]:
+    """The last initial guess of those that turn on most of the effect's sizes, but a Stribeck velocity as large as the
+    speeds: a fit finds its way from one that is too large, and from one that is too small no derivative leads back."""
+    rows = dict(zip(effect.parameter_names(), effect.parameters, strict=True))
+    values = dict(
+        max(
+            reversed(initial_guesses(effect, scales)),
+            key=lambda guess: sum(row.switches and guess.values[name] != row.nominal for name, row in rows.items()),
+        ).values
+    )
+    for name, row in rows.items():
         if row.relative_to == "speed":
             origin, scale = scales.by_quantity["speed"]
             values[name] = min(max(origin + scale, row.lower), row.upper)
@@ -90,5 +96,6 @@ def _that_stick(effects: Sequence[Effect]) -> list[Effect]:
     return [one for one in effects if one.kind == STICKING]
 
 
-def _at_nominal(values: Mapping[str, float], free: tuple[FreeParameter, ...]) -> dict[str, float]:
+def at_nominal(values: Mapping[str, float], free: tuple[FreeParameter, ...]) -> dict[str, float]:
+    """Values with those that are free at their nominal ones."""
     return {**values, **{one.name: one.reference for one in free if base_name(one.name) in values}}
