@@ -17,13 +17,14 @@ from eha_core.diagnosis.calibrate import STEPS
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, chance_gain
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
-from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.hypothesis import NOTHING, neutral
 from eha_core.diagnosis.search.candidates import Candidate, Search, without_effect
 from eha_core.diagnosis.search.short_windows import STICKING, at_nominal, first_guess
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.numbers import Array
+from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import whole
 from eha_core.identification.segments import coarser
 from eha_core.identification.short_windows import starts
@@ -49,17 +50,18 @@ def all_at_once(search: Search, nominal: Candidate) -> Candidate:
     needed."""
     effects = found_by_a_fit(search.applicable)
     search.progress(f"fitting {len(effects)} effects together, from short windows to long ones")
-    values, free = _small(effects, search.scales)
+    small, free = _small(effects, search.scales)
     plant = nominal.fit.free
-    values = {**at_nominal(nominal.fit.values, plant), **values}
     held = tuple(replace(one, prior_deviation=HELD * one.prior_deviation) for one in plant)
     short, *longer = (whole(coarser(shooting, STEPS[0])) for shooting in search.shorter[SHORTEST:])
-    for problem, nominal_free in ((short, held), *((one, plant) for one in (short, *longer, search.problem))):
-        together = fit(problem, values, (*nominal_free, *free), starts(problem, values), iterations=ITERATIONS)
-        if nominal_free is plant and together.data > FAR_FROM_NOISE * together.count:
+    values = {**at_nominal(nominal.fit.values, plant), **small}
+    values = dict(fit(short, values, (*held, *free), starts(short, values), iterations=ITERATIONS).values)
+    for problem in (short, *longer, search.problem):
+        together = fit(problem, values, (*plant, *free), starts(problem, values), iterations=ITERATIONS)
+        values = dict(together.values)
+        if together.data > FAR_FROM_NOISE * together.count:
             search.progress(f"{together.data / together.count:.3g} times the noise's energy is left by all together")
             break
-        values = dict(together.values)
     else:
         search.report(_fewest(search, Candidate(NOTHING.with_effects(effects), together)))
     return min(search, key=lambda one: one.fit.objective)
@@ -97,14 +99,14 @@ def _small(effects: Sequence[Effect], scales: Scales) -> tuple[dict[str, float],
 def _fewest(search: Search, candidate: Candidate) -> Candidate:
     """The set without the effects that it does not need, MOST_EFFECTS at most, fitted again."""
     while True:
-        needed = chance_gain(candidate.fit.count, candidate.times_noise)
-        gone = not_needed(candidate.fit, candidate.hypothesis.effects, needed)
+        hypothesis, needed = candidate.hypothesis, chance_gain(candidate.fit.count, candidate.times_noise)
+        gone = not_needed(candidate.fit, hypothesis.effects, needed)
         if not gone:
-            return search.keep(candidate.hypothesis, candidate.fit)
+            return search.keep(hypothesis, candidate.fit)
         values, free = dict(candidate.fit.values), candidate.fit.free
         for effect in gone:
             values, free = without_effect(replace(candidate.fit, values=values, free=free), effect)
-        rest = NOTHING.with_effects(one for one in candidate.hypothesis.effects if one not in gone)
+        rest = replace(hypothesis, members=tuple(one for one in hypothesis.members if one.effect not in gone))
         candidate = Candidate(rest, fit(search.problem, values, free, candidate.fit.states, iterations=ITERATIONS))
 
 
@@ -114,29 +116,37 @@ def not_needed(result: Fit, effects: Sequence[Effect], needed: float) -> list[Ef
     The cost is that of the curvature at the fit, which holds near it; where there are more than MOST_EFFECTS, it may be
     any.
     """
-    q, count = result.q.copy(), len(result.q)
-    covariance = result.covariance[:count, :count].copy()
+    count = len(result.q)
+    away, covariance = _away_from_nothing(result, effects), result.covariance[:count, :count].copy()
     places = {effect: _sizes(result, effect) for effect in effects}
     gone: list[Effect] = []
     while len(gone) < (len(effects) + 1) // 2:
-        costs = {one: _cost(q, covariance, at) for one, at in places.items() if one not in gone}
+        costs = {one: _cost(away, covariance, at) for one, at in places.items() if one not in gone}
         least = min(costs, key=lambda one: costs[one])
         if costs[least] > needed and len(costs) <= MOST_EFFECTS:
             break
         at = places[least]
         follow = covariance[:, at] @ np.linalg.pinv(covariance[np.ix_(at, at)], hermitian=True)
-        q -= follow @ q[at]
+        away -= follow @ away[at]
         covariance -= follow @ covariance[at]
         gone.append(least)
     return gone
 
 
 def _sizes(result: Fit, effect: Effect) -> list[int]:
-    """Where the fit's coordinates have the sizes that turn an effect on; each is nothing at the coordinate 0."""
+    """Where the fit's coordinates have the sizes that turn an effect on."""
     names = {f"{effect.id}.{row.name}" for row in effect.parameters if row.switches and not row.above}
-    return [place for place, one in enumerate(result.free) if one.name in names]
+    return [place for place, one in enumerate(result.free) if base_name(one.name) in names]
 
 
-def _cost(q: Array, covariance: Array, at: Sequence[int]) -> float:
+def _away_from_nothing(result: Fit, effects: Sequence[Effect]) -> Array:
+    """The fit's coordinates, of the effects' sizes counted from where they are nothing."""
+    off = {name: value for effect in effects for name, value in neutral(effect).items()}
+    nothing = [one.coordinate(off.get(base_name(one.name), one.reference)) for one in result.free]
+    away: Array = result.q - np.array(nothing)
+    return away
+
+
+def _cost(away: Array, covariance: Array, at: Sequence[int]) -> float:
     """Chi^2 that setting these coordinates to nothing costs when all others follow."""
-    return float(q[at] @ np.linalg.pinv(covariance[np.ix_(at, at)], hermitian=True) @ q[at])
+    return float(away[at] @ np.linalg.pinv(covariance[np.ix_(at, at)], hermitian=True) @ away[at])

@@ -53,7 +53,7 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
         best = beside_the_singles(search)
     if best.times_noise > NEAR_NOISE:
         best = all_at_once(search, nominal)
-    if best.times_noise > UNFITTED and sticks(best.hypothesis):
+    if best.times_noise > UNFITTED and sticks(best.hypothesis) and len(best.hypothesis.members) == 1:
         best = forms_of_friction(search, nominal)
     best = grow(search, best)
     if best.times_noise > NEAR_NOISE and sticks(best.hypothesis):
