@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from eha_core.identification.fit import Fit, fit, fit_in_stages
+from eha_core.identification.fit import Fit, exact, fit, fit_in_stages
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import Problem, whole
@@ -45,7 +45,9 @@ def from_short_windows(
         part = replace(whole(shooting), slack=slack)
         run = fit if place else fit_in_stages
         values = run(part, values, free, starts(part, values), iterations=ITERATIONS).values
-    return fit(problem, values, free, starts(problem, values), iterations=ITERATIONS)
+    found = fit(problem, values, free, starts(problem, values), iterations=ITERATIONS)
+    # a break-away falls between the coarser steps of the derivatives, and a fit can come to rest on that
+    return fit(exact(problem), found.values, found.free, found.states, iterations=ITERATIONS)
 
 
 def starts(problem: Problem, values: Mapping[str, float]) -> Array:

@@ -21,7 +21,7 @@ from eha_core.diagnosis.hypothesis import NOTHING, neutral
 from eha_core.diagnosis.search.candidates import Candidate, Search, without_effect
 from eha_core.diagnosis.search.short_windows import STICKING, at_nominal, first_guess
 from eha_core.effects import Effect
-from eha_core.identification.fit import Fit, fit
+from eha_core.identification.fit import Fit, exact, fit
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name
@@ -102,7 +102,8 @@ def _fewest(search: Search, candidate: Candidate) -> Candidate:
         hypothesis, needed = candidate.hypothesis, chance_gain(candidate.fit.count, candidate.times_noise)
         gone = not_needed(candidate.fit, hypothesis.effects, needed)
         if not gone:
-            return search.keep(hypothesis, candidate.fit)
+            at = candidate.fit
+            return search.keep(hypothesis, fit(exact(search.problem), at.values, at.free, at.states))
         values, free = dict(candidate.fit.values), candidate.fit.free
         for effect in gone:
             values, free = without_effect(replace(candidate.fit, values=values, free=free), effect)
