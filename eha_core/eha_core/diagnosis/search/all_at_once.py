@@ -21,13 +21,13 @@ from eha_core.diagnosis.hypothesis import NOTHING, neutral
 from eha_core.diagnosis.search.candidates import Candidate, Search, without_effect
 from eha_core.diagnosis.search.short_windows import STICKING, at_nominal, first_guess
 from eha_core.effects import Effect
-from eha_core.identification.fit import Fit, exact, fit
+from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import whole
 from eha_core.identification.segments import coarser
-from eha_core.identification.short_windows import starts
+from eha_core.identification.short_windows import starts, with_finer_slopes
 
 BEGIN = 0.1
 """Share of its first guess at which each effect begins: all at full size would be far from any rig (assumed)."""
@@ -103,7 +103,7 @@ def _fewest(search: Search, candidate: Candidate) -> Candidate:
         gone = not_needed(candidate.fit, hypothesis.effects, needed)
         if not gone:
             at = candidate.fit
-            return search.keep(hypothesis, fit(exact(search.problem), at.values, at.free, at.states))
+            return search.keep(hypothesis, fit(with_finer_slopes(search.problem), at.values, at.free, at.states))
         values, free = dict(candidate.fit.values), candidate.fit.free
         for effect in gone:
             values, free = without_effect(replace(candidate.fit, values=values, free=free), effect)
