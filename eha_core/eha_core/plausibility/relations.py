@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.plant import PAPER, Composition
-from eha_core.plausibility.command import command, gain
+from eha_core.plausibility.command import command, gain, rated
 from eha_core.plausibility.regression import correlation, fitted, regression
 from eha_core.plausibility.relation import Relation, Values, off_by, within
 from eha_core.plausibility.signals import BLOCK, Signals, on_grid
@@ -129,6 +129,5 @@ def _levels(signals: Signals, nominal: Values) -> list[Relation]:
 
 def _is_slow(signals: Signals, nominal: Values) -> bool:
     """Whether the piston takes so little flow that a leak may take more; without what noise adds to its speed."""
-    rated = gain(nominal) * nominal["saturation_current"] * nominal["coil_resistance"]
     squared = float(np.var(signals.speed)) - signals.speed_noise**2
-    return squared < (SLOW * rated) ** 2
+    return squared < (SLOW * gain(nominal) * rated(nominal)) ** 2
