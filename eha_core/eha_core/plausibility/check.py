@@ -72,17 +72,15 @@ def _mended(
 ) -> list[tuple[float, Suspect]]:
     """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording.
 
-    Of several units of one channel the closest is meant; a unit alone and a unit with another zero are both told.
+    Of two units of one channel the closer is meant, unless both are close: inches for cm is a factor of 2.5, and a worn
+    valve's gain may be off by 2.
     """
-    mended: dict[tuple[frozenset[str], bool], tuple[float, Suspect]] = {}
+    mended = []
     for suspect in possible:
         without = relations(suspect.without(recording), nominal, composition)
         if without and _mends(found, without):
-            distance = sum(relation.distance for relation in without.values())
-            key = (frozenset(suspect.undone), suspect.moves_zero)
-            if key not in mended or distance < mended[key][0]:
-                mended[key] = (distance, suspect)
-    return list(mended.values())
+            mended.append((sum(relation.distance for relation in without.values()), suspect))
+    return mended
 
 
 def _mends(found: Mapping[str, Relation], without: Mapping[str, Relation]) -> bool:

@@ -82,7 +82,10 @@ def _force_of(signals: Signals, nominal: Values) -> FloatArray | None:
 
 
 def _force(signals: Signals, nominal: Values) -> list[Relation]:
-    """What of the force goes with the speed, beside inertia and spring: the load dissipates."""
+    """What of the force goes with the speed, beside inertia and spring: the load dissipates.
+
+    Only where the piston turns round: a creep one way has the same friction all along, and other things change in it.
+    """
     force = _force_of(signals, nominal)
     if force is None or not signals.is_motion_seen:
         return []
@@ -90,15 +93,24 @@ def _force(signals: Signals, nominal: Values) -> list[Relation]:
     columns = (force, signals.speed, signals.acceleration, signals.channels["position"])
     parts, slopes = [], []
     for block in zip(*(np.array_split(column, count) for column in columns), strict=True):
+        if not _reverses(block[1], MOVING * float(np.max(np.abs(signals.speed)))):
+            continue
         rest = [values - fitted(values, *block[2:]) for values in block[:2]]
         parts.append(correlation(*rest))
         slopes.append(float(rest[0] @ rest[1] / (rest[1] @ rest[1] + 1e-300)))
+    if not parts:
+        return []
     part = float(np.median(parts))
-    found = [Relation("force", part, part < -0.2, part > 0.1, 0.0)]
+    found = [Relation("force", part, part < -0.2, part > 0.05, 0.0)]
     if "force" in signals.channels and force is signals.channels["force"] and nominal["damping_coefficient"] > 0.0:
         ratio = float(np.median(slopes)) / nominal["damping_coefficient"]
         found.append(Relation("force_scale", ratio, 0.0 < ratio < 0.02, ratio > 0.1, off_by(ratio)))
     return found
+
+
+def _reverses(speed: FloatArray, least: float) -> bool:
+    """Whether the piston moves both ways, each faster than so much."""
+    return bool(np.min(speed) < -least and np.max(speed) > least)
 
 
 def _levels(signals: Signals, nominal: Values) -> list[Relation]:
