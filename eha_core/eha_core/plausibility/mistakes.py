@@ -13,8 +13,8 @@ from eha_core.recording import Channel, Recording
 
 POSITION_UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "um": 1e-6}
 FARTHEST_ZERO = 5.0
-"""Half strokes by which a sensor's zero may lie off mid-stroke: a rod longer than the cylinder (assumed). Farther off, a
-reading has another unit."""
+"""Half strokes by which a sensor's zero may lie off mid-stroke: a rod longer than the cylinder (assumed). Farther off,
+a reading has another unit."""
 PRESSURE_UNITS = {"bar": 1e5, "MPa": 1e6, "kPa": 1e3, "psi": 6894.757, "a tenth of Pa": 0.1, "tens of Pa": 10.0}
 
 
