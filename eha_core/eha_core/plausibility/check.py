@@ -15,8 +15,9 @@ from eha_core.plausibility.relation import Relation
 from eha_core.plausibility.relations import LOW, relations
 from eha_core.recording import Recording
 
-CLOSER = 0.5
-"""By so much (as a logarithm: a factor of 1.6 in scale) must a mistake lie closer than another to be told alone."""
+CLOSER = 1.0
+"""By so much (as a logarithm: a factor of 2.7 in scale) must a mistake lie closer than another to be told alone: a
+valve's gain may be off by 2, and inches for cm is a factor of 2.5."""
 
 
 def check(
@@ -70,11 +71,7 @@ def _mended(
     found: Mapping[str, Relation], recording: Recording, possible: Iterable[Suspect], nominal: Mapping[str, float],
     composition: Composition,
 ) -> list[tuple[float, Suspect]]:
-    """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording.
-
-    Of two units of one channel the closer is meant, unless both are close: inches for cm is a factor of 2.5, and a worn
-    valve's gain may be off by 2.
-    """
+    """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording."""
     mended = []
     for suspect in possible:
         without = relations(suspect.without(recording), nominal, composition)
