@@ -13,6 +13,7 @@ from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure
 from eha_core.parameters import nominal_values
 from eha_core.plausibility import check
+from eha_core.plausibility.relations import relations
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tools.hostile import wrong_recordings as wrong
@@ -22,9 +23,10 @@ from tools.hostile.sound_recordings import KINDS
 SEED = 301
 
 
-def rig(tier: str, number: int, kind: str = "as drawn", **changes: object) -> wrong.Rig:
+def rig(tier: str, number: int, kind: str = "as drawn", seed: int = SEED, **changes: object) -> wrong.Rig:
     """A rig's test of 8 s on the simulated plant."""
-    case = KINDS[kind](replace(draw_case(tier, number, SEED), duration=8.0, **changes), np.random.default_rng(3))
+    case = replace(draw_case(tier, number, seed), duration=8.0, **changes)
+    case = KINDS[kind](case, np.random.default_rng([case.seed, 12]))
     truth = run_on_plant(case)
     arrays = wrong.with_velocity(case, measure(case, truth), truth)
     return wrong.Rig(case, arrays, {**nominal_values(), **case.nominal})
@@ -45,13 +47,24 @@ def test_a_small_command_cannot_have_moved_the_piston_far(lacking: tuple[str, ..
     assert finding is not None and "voltage_command has nothing to do" in finding.mistake
 
 
-@pytest.mark.parametrize("effects", [
-    (("valve_deadband", {"half_width": 0.003}), ("coulomb_friction", {"force": 500.0})),
-    (("flow_gain_asymmetry", {"ratio": 0.5}), ("valve_null_offset", {"offset": 0.002})),
-], ids=["dead band and friction", "a crooked valve"])  # fmt: skip
+def friction_behind(overlap: float) -> tuple:
+    return (("valve_deadband", {"half_width": overlap}), ("coulomb_friction", {"force": 500.0}))
+
+
+WORN = {
+    "an overlap of 5 %": friction_behind(0.001),
+    "an overlap of 15 %": friction_behind(0.003),
+    "an overlap of 25 %": friction_behind(0.005),
+    "a crooked valve": (("flow_gain_asymmetry", {"ratio": 0.5}), ("valve_null_offset", {"offset": 0.002})),
+}
+
+
+@pytest.mark.parametrize("effects", WORN.values(), ids=WORN)
 @pytest.mark.parametrize("loop", [0.0, 12.0])
-def test_a_worn_rigs_own_command_is_never_another_runs(effects: tuple, loop: float) -> None:
-    worn = rig("null_parameters", 1, effects=effects, loop=loop)
+@pytest.mark.parametrize("number", [1, 3, 4])
+def test_a_worn_rigs_own_command_is_never_another_runs(effects: tuple, loop: float, number: int) -> None:
+    """The command may be large while the piston creeps: that is overlap, and no mistake."""
+    worn = rig("null_parameters", number, effects=effects, loop=loop)
     assert check(wrong.as_recording(worn.arrays), worn.nominal) is None
 
 
@@ -60,6 +73,28 @@ def test_a_creep_one_way_says_nothing_of_the_sensors_order() -> None:
     creeping = rig("rig", 9, "small")
     assert creeping.case.effect_ids == ("coulomb_friction", "constant_load", "pressure_sensor_lag", "entrained_air")
     assert check(wrong.as_recording(creeping.arrays), creeping.nominal) is None
+
+
+def test_chambers_that_a_leak_empties_while_a_single_rod_creeps_are_no_mistake() -> None:
+    """Two empty chambers of unequal areas lie further from half the supply one way than the other."""
+    creeping = rig("single", 32, "small", seed=303)
+    recording = wrong.as_recording(creeping.arrays)
+    assert relations(recording, creeping.nominal)["level"].value < -1.0
+    assert check(recording, creeping.nominal) is None
+    tenth = wrong.make_wrong(made("pressures times 10"), creeping, creeping)
+    finding = check(tenth, creeping.nominal)
+    assert finding is None or "pressure" in finding.mistake
+
+
+def test_a_velocity_that_is_mostly_noise_is_of_this_run() -> None:
+    noisy = rig("small", 15, "small", seed=303)
+    assert noisy.case.noise == 10.0
+    assert check(wrong.as_recording(noisy.arrays), noisy.nominal) is None
+    silent = replace(noisy.case, noise=0.0)
+    quiet = replace(noisy, arrays=wrong.with_velocity(silent, noisy.arrays, run_on_plant(noisy.case)))
+    other = rig("null_parameters", 1)
+    finding = check(wrong.make_wrong(made("another run's velocity"), quiet, other), quiet.nominal)
+    assert finding is not None and "velocity has nothing to do" in finding.mistake
 
 
 @pytest.mark.parametrize(("unit", "told"), [("cm", "position is in cm"), ("inches", "position is in inches")])

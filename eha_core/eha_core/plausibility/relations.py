@@ -12,7 +12,7 @@ from eha_core.plant import PAPER, Composition
 from eha_core.plausibility.command import command, gain, rated
 from eha_core.plausibility.regression import correlation, fitted, regression
 from eha_core.plausibility.relation import Relation, Values, off_by, within
-from eha_core.plausibility.signals import BLOCK, Signals, on_grid
+from eha_core.plausibility.signals import BLOCK, LARGEST_NOISE, Signals, on_grid
 from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
 
@@ -24,9 +24,9 @@ the outside of q times the piston's flow, at half the supply, leaves the share p
 (1 + 2 q p) / (1 - 2 q p) = sqrt((1 - p) / p): an eighth at q = 1.8. A worn rig's leak takes 1 % of the rated flow
 (assumed)."""
 NOTHING_LEFT = -0.98
-"""Excess of both pressures, over half the supply, that no leak explains: the piston moves (assumed)."""
+"""Share of the excess of two empty chambers that no leak explains: the piston moves (assumed)."""
 LOW = -0.55
-"""The same, from which on the levels are certainly right."""
+"""Excess of both pressures, over half the supply, from which on the levels are certainly right."""
 
 
 OF_A_VALVE = ("command", "command_scale", "level")
@@ -66,7 +66,8 @@ def _velocity(signals: Signals) -> list[Relation]:
         return []
     together = correlation(signals.speed, velocity)
     slope = float(regression(velocity, signals.speed)[0][0])
-    unrelated = abs(together) < 0.6 and not within(slope, 1.25)  # a noisy sensor's slope is still 1
+    seen = signals.velocity_noise < LARGEST_NOISE * float(np.std(velocity))
+    unrelated = seen and abs(together) < 0.6 and not within(slope, 1.25)
     wrong = unrelated or (abs(together) > 0.5 and not within(slope, 2.5))
     return [Relation("velocity", slope, wrong, together > 0.7 and within(slope, 1.5), off_by(slope))]
 
@@ -129,10 +130,11 @@ def _levels(signals: Signals, nominal: Values) -> list[Relation]:
     ratio = (nominal["piston_area_b"] / nominal["piston_area"]) ** 2
     over = [(ratio * (a - supply) + b)[extending] / (1.0 + ratio), (ratio * a + b - supply)[retracting] / (1.0 + ratio)]
     excess = 2.0 * float(np.mean(np.concatenate(over))) / supply
+    empty = 2.0 * float(np.average([ratio, 1.0], weights=[np.sum(extending), np.sum(retracting)])) / (1.0 + ratio)
     load = float(np.mean(nominal["piston_area"] * a - nominal["piston_area_b"] * b)) / (nominal["piston_area"] * supply)
     lopsided = min(abs(excess), abs(load)) > 0.12 and abs(excess * load) > 0.04
     drawn_down = excess < 0.0 and _is_slow(signals, nominal)
-    lowest = NOTHING_LEFT if drawn_down else -0.75
+    lowest = NOTHING_LEFT * empty if drawn_down else -0.75
     broken = (lopsided and not drawn_down) or not lowest < excess < 0.6
     sound = not broken and not lopsided and LOW < excess < 0.4
     distance = 3.0 * (abs(excess) + abs(load))  # a pressure ten times too large or small is then one of 1 or more
