@@ -17,7 +17,7 @@ def a_field(path: str, largest: float, topic: str = "") -> Field:
 
 USUAL = [
     ("speed", "m/s", 0.5, "mm/s", 1e3), ("stroke", "m", 0.08, "mm", 1e3),
-    ("load_cell", "N", 5e4, "kN", 1e-3), ("voltage", "V", 0.5, "mV", 1e3),
+    ("load_cell", "N", 5e3, "kN", 1e-3), ("voltage", "V", 0.5, "mV", 1e3),
 ]  # fmt: skip
 """Names of columns, SI units, how far a bench goes in them, and another unit with how many of it make one of SI."""
 
@@ -35,7 +35,7 @@ def test_a_unit_is_suggested_where_it_makes_a_rig_of_what_was_recorded(
     sizes = {str(one.unit): factor * largest * UNITS[str(one.unit)].scale for one in readings}
     assert all(UNITS[of].si == unit for of in sizes)
     assert right in sizes
-    assert all(2e-3 < size / largest < 500.0 for size in sizes.values()), sizes
+    assert all(2e-3 < size / largest < 2e3 for size in sizes.values()), sizes
 
 
 def test_a_joint_that_is_alone_is_the_piston_whatever_it_is_called() -> None:

@@ -30,15 +30,15 @@ LARGEST_GRID = 200_000
 @dataclass(frozen=True)
 class Signals:
     """`channels` by name, `speed` [m/s] and `acceleration` [m/s^2] of the position, all (n,) and `step` [s] apart;
-    `speed_noise` [m/s] is the standard deviation that the position sensor's noise has in the speed, `velocity_noise`
-    that of the velocity sensor's in its channel, zero where there is none."""
+    `speed_noise` [m/s] is the standard deviation that the position sensor's noise has in the speed, `noise` that of
+    each sensor's in its own channel."""
 
     step: float
     channels: Mapping[str, FloatArray]
     speed: FloatArray
     acceleration: FloatArray
     speed_noise: float
-    velocity_noise: float
+    noise: Mapping[str, float]
 
     @property
     def is_motion_seen(self) -> bool:
@@ -73,14 +73,14 @@ def on_grid(recording: Recording) -> Signals | None:
     stride = width // FEWEST_SAMPLES  # what is smoothed needs no more
     inside = slice(2 * width, -2 * width, stride)
     impulse = _impulse(width)
-    velocity = recording.channels.get("velocity")
+    passed = float(np.linalg.norm(smooth(impulse)))
     return Signals(
         stride * step,
         {name: smooth(values)[inside] for name, values in raw.items()},
         smooth(speed, 2)[inside],
         smooth(acceleration, 1)[inside],
         _noise(recording.channels["position"].values) * float(np.linalg.norm(smooth(speed_of(impulse), 2))),
-        _noise(velocity.values) * float(np.linalg.norm(smooth(impulse))) if velocity else 0.0,
+        {name: passed * _noise(channel.values) for name, channel in recording.channels.items()},
     )
 
 
