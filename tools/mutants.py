@@ -66,7 +66,7 @@ GROUPS = {
         ("plant",),
         "plant",
         "derivatives paper_bits linear lines valve active_intervals sources oil simulator cylinders parts piston"
-        " one_by_one many lanes stroke_ends composite",
+        " one_by_one many lanes stroke_ends composite pieces",
         "not agrees_with and not of_its_own and not from_the_present and not small_signal and not made_nor_lost"
         " and not its_pitch and not any_legal and not 1e-06 and not [1- and not last_bit and not matters"
         " and not acts_in_it and not one_file and not any_pieces and not interpreter and not free_single"
