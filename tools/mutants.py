@@ -15,6 +15,7 @@ import random
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -47,6 +48,8 @@ LOADED = (
 """What each run would load anew, none of it changed."""
 LONGEST = 60
 """s of the processor's time for a group's tests; a change that takes more of it goes on for ever, and is noticed."""
+LONGEST_WAIT = 300
+"""s that they may take on the clock: a change that waits for ever takes no processor's time."""
 LARGEST = 8 << 30
 """Bytes of addresses that they may use, likewise."""
 
@@ -154,6 +157,7 @@ def passes(group: Group, first: str = "", quiet: bool = True) -> bool:
     child = os.fork()
     if child == 0:
         resource.setrlimit(resource.RLIMIT_CPU, (LONGEST, LONGEST))
+        signal.alarm(LONGEST_WAIT)
         resource.setrlimit(resource.RLIMIT_AS, (LARGEST, LARGEST))
         if quiet:
             nowhere = os.open(os.devnull, os.O_WRONLY)
