@@ -55,6 +55,16 @@ def test_a_folders_extent_is_told_by_its_files_ends(tmp_path: Path) -> None:
     assert bag_extent(tmp_path / "none.mcap") is None
 
 
+def test_what_comes_after_a_file_that_cannot_be_read_is_read(tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    for number in (0, 2):
+        piston_recording(folder / f"bag_{number}.mcap", count=10, start=START + number * SECOND)
+    (folder / "bag_1.mcap").write_bytes(b"no MCAP at all")
+    recording = read_recording(folder)
+    assert len(recording.channels["position"].time) == 20
+    assert recording.damaged is not None and "bag_1.mcap" in recording.damaged
+
+
 def test_a_folder_of_several_recordings_is_refused_by_name(tmp_path: Path) -> None:
     for name in ("run_a.mcap", "run_b.mcap"):
         piston_recording(tmp_path / name, count=1)
