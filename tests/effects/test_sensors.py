@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import StateSpace, lsim
 
+from eha_core.effects import effects
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant, Trajectory
 
@@ -111,3 +112,15 @@ def test_an_offset_zero_shifts_the_position_and_no_speed() -> None:
     found = run({"position_sensor_offset.offset": 0.02, "position_sensor_scale.ratio": 0.1})
     assert found.measured_position == pytest.approx(1.1 * found.position + 0.02, abs=1e-12)
     assert found.measured_velocity == pytest.approx(1.1 * found.velocity, abs=1e-12)
+
+
+ZEROS = [(effect.id, name, channel) for effect in effects() for name, channel in effect.zeros]
+
+
+@pytest.mark.parametrize(("effect", "name", "channel"), ZEROS, ids=lambda name: name)
+def test_what_is_said_to_be_a_zero_shifts_its_channel_and_no_other(effect: str, name: str, channel: str) -> None:
+    size = next(row.typical for one in effects() if one.id == effect for row in one.parameters if row.name == name)
+    found = run({f"{effect}.{name}": size})
+    for other in ("position", "velocity", "pressure_a", "pressure_b"):
+        shift = size if other == channel else 0.0
+        assert getattr(found, f"measured_{other}") == pytest.approx(getattr(found, other) + shift, rel=1e-12)

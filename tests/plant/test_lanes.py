@@ -125,6 +125,29 @@ def test_pistons_driven_by_pressures() -> None:
         assert lanes.states()[lane].tobytes() == state[PISTON].tobytes()
 
 
+def test_a_given_difference_of_pressures_accelerates_each_piston_to_its_own_speed() -> None:
+    """m dv/dt = A (P1 - P2) - B v from rest: v = A (P1 - P2) / B (1 - exp(-B t / m))."""
+    area, difference, steps = nominal_values()["piston_area"], 4e5, 100
+    pairs = [(9.0, 2000.0), (18.0, 2000.0), (9.0, 500.0)]
+    springless = {"spring_stiffness": 0.0}
+    sets = [{**springless, "moving_mass": mass, "damping_coefficient": damping} for mass, damping in pairs]
+    lanes = LockStep([changed(nominal_values(), one) for one in sets], STEP)
+    lanes.place(np.tile([0.0, 0.0, 1e7, 1e7], (len(sets), 1)))
+    lanes.start_memory()
+    rows = np.full((steps // 10, 4, lanes.lanes), np.nan)
+    pressures = np.full((2, steps), 1e7)
+    pressures[0] += difference
+    lanes.advance(0, pressures, 10, rows)
+    time = 10.0 * STEP * np.arange(1, steps // 10 + 1)
+    for lane, (mass, damping) in enumerate(pairs):
+        rate, final = damping / mass, area * difference / damping
+        speed = final * (1.0 - np.exp(-rate * time))
+        position = final * time - speed / rate
+        assert rows[:, 1, lane] == pytest.approx(speed, abs=2e-3 * final)
+        assert rows[:, 0, lane] == pytest.approx(position, abs=2e-3 * final / rate)
+        assert rows[:, 2, lane].tolist() == [1e7 + difference] * len(time)
+
+
 def test_lane_hooks_call_every_effect_once() -> None:
     text = write_lane_hooks()
     for effect in effects():

@@ -29,6 +29,16 @@ def test_each_is_what_a_plant_of_its_own_gives(jobs: int, columns: tuple[str, ..
             assert np.array_equal(getattr(found, name)[number], getattr(alone, name))
 
 
+@pytest.mark.parametrize("columns", [SEEN, COLUMNS, ("velocity",)], ids=len)
+def test_a_few_steps_of_two_plants(columns: tuple[str, ...]) -> None:
+    sets = [{"moving_mass": 5.0}, {"moving_mass": 20.0}]
+    found = simulate_many(sets, COMMAND[20:50], step_size=2e-4, every=7, columns=columns)
+    assert found.time == pytest.approx([1.4e-3, 2.8e-3, 4.2e-3, 5.6e-3], rel=1e-12)
+    for number, one in enumerate(sets):
+        alone = Plant(one, 2e-4).run(COMMAND[20:50], 7)
+        assert found.values[number].tolist() == [[getattr(alone, name)[k] for name in columns] for k in range(4)]
+
+
 def test_none_gives_none() -> None:
     assert simulate_many([], COMMAND).values.shape == (0, 1003, len(COLUMNS))
 

@@ -64,7 +64,9 @@ def test_a_part_is_declared_in_full(kind: str, name: str) -> None:
     for row in part.parameters:
         assert row.symbol and row.unit and row.meaning and row.source
         assert row.lower <= row.nominal <= row.upper and row.lower < row.upper
-        assert row.lower > 0.0 or not row.logarithmic
+        assert row.logarithmic == (row.lower > 0.0)  # what can be zero is moved by sums, all else by factors
+        assert row.lower <= row.typical <= row.upper
+        assert row.typical > 0.0 or row.nominal == 0.0
     if isinstance(part, Source):
         assert part.inputs and set(part.hides) <= set(COLUMNS) and set(part.ignores) <= nominal
 

@@ -13,6 +13,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from eha_core.errors import RecordingError
 from eha_core.recording import read_recording
+from eha_core.recording.bag import bag_extent
 
 FLOAT = "std_msgs/msg/Float64"
 
@@ -40,6 +41,28 @@ def test_the_files_of_a_split_folder_are_joined_in_order(tmp_path: Path) -> None
     recording = read_recording(folder)
     assert len(recording.channels["position"].time) == 110
     assert (recording.duration, recording.remarks) == (pytest.approx(10.09), ())
+
+
+def test_a_folders_extent_is_told_by_its_files_ends(tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    for number in (0, 1):
+        piston_recording(folder / f"bag_{number}.mcap", count=10, start=START + number * SECOND)
+    assert bag_extent(folder) == pytest.approx(1.09, abs=1e-9)
+    assert bag_extent(folder / "bag_0.mcap") == pytest.approx(0.09, abs=1e-9)
+    cut = folder / "bag_1.mcap"
+    cut.write_bytes(cut.read_bytes()[:400])
+    assert bag_extent(folder) is None
+    assert bag_extent(tmp_path / "none.mcap") is None
+
+
+def test_what_comes_after_a_file_that_cannot_be_read_is_read(tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    for number in (0, 2):
+        piston_recording(folder / f"bag_{number}.mcap", count=10, start=START + number * SECOND)
+    (folder / "bag_1.mcap").write_bytes(b"no MCAP at all")
+    recording = read_recording(folder)
+    assert len(recording.channels["position"].time) == 20
+    assert recording.damaged is not None and "bag_1.mcap" in recording.damaged
 
 
 def test_a_folder_of_several_recordings_is_refused_by_name(tmp_path: Path) -> None:

@@ -98,6 +98,14 @@ def test_times_in_ns_and_as_epoch_are_read_to_the_sample(tmp_path: Path) -> None
     assert recording.remarks == ()
 
 
+def test_a_table_filled_up_with_zeros_is_read_by_its_first_time(tmp_path: Path) -> None:
+    stamps = [*(1_726_000_000_000_000_000 + 2_000_000 * k for k in range(50)), 0, 0]
+    path = csv_file(tmp_path, "time,position\n" + "".join(f"{stamp},{k}e-4\n" for k, stamp in enumerate(stamps)))
+    recording = read_recording(path)
+    assert any("taken as ns since 1970" in one for one in recording.remarks)
+    np.testing.assert_allclose(recording.channels["position"].time, 2e-3 * np.arange(50), atol=5e-7)
+
+
 def test_times_in_ms_are_refused_with_the_line_that_reads_them(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     path.write_text("time,position\n" + "".join(f"{2 * k},{k * 1e-4}\n" for k in range(50)))

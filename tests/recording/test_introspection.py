@@ -11,6 +11,8 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from eha_core.errors import RecordingError
 from eha_core.recording import read_recording
+from eha_core.recording.cdr_layout import Layout
+from eha_core.recording.inspection import _by_names, inspect_file
 
 PACKAGE = "pal_statistics_msgs/msg"
 DEFINITIONS = {
@@ -75,6 +77,20 @@ def test_values_are_found_by_name_though_the_list_changes(tmp_path: Path, topic:
     np.testing.assert_allclose(recording.channels["position"].time, np.arange(COUNT) / 100)
 
 
+def test_an_inspection_lists_values_by_name_where_they_have_one(tmp_path: Path) -> None:
+    listed = {(one.topic, one.path) for one in inspect_file(introspection_bag(tmp_path)).fields}
+    assert (f"{PREFIX}/full", f"statistics[{POSITION}].value") in listed
+    assert (f"{PREFIX}/values", f"values[{POSITION}]") in listed
+    assert not any("statistics[0]" in path or "values[0]" in path for _, path in listed)
+
+
+@pytest.mark.parametrize("name", ["", "7", "arm[2]", "two\nlines"])
+def test_a_name_that_cannot_stand_in_a_path_is_left_a_number(name: str) -> None:
+    layout = Layout(0, texts={"statistics[3].name": name, "statistics[4].name": "arm"})
+    assert _by_names("statistics[3].value", layout) == "statistics[3].value"
+    assert _by_names("statistics[4].value", layout) == "statistics[arm].value"
+
+
 def test_values_without_their_names_are_refused_with_what_to_record(tmp_path: Path) -> None:
     path = introspection_bag(tmp_path, with_names=False)
     with pytest.raises(RecordingError, match=f"version 1. were not recorded; record {PREFIX}/names from its start"):
@@ -85,3 +101,22 @@ def test_a_name_that_is_not_there_is_answered_with_those_that_are(tmp_path: Path
     path = introspection_bag(tmp_path)
     with pytest.raises(RecordingError, match=f"holds the names {POSITION}, {EFFORT} and none is called"):
         read_recording(path, topics_file(tmp_path, "full", "statistics[%sx].value"))
+
+
+def test_names_whose_message_is_another_than_its_type_says_are_passed_over(tmp_path: Path) -> None:
+    """A node of another version: `names` is a count there, and no list."""
+    numbered = {f"{PACKAGE}/StatisticsNames": "std_msgs/Header header\nuint32 names\nuint32 names_version\n"}
+    store = get_typestore(Stores.ROS2_JAZZY)
+    for name, definition in (DEFINITIONS | numbered).items():
+        store.register(get_types_from_msg(definition, name))
+    time = store.types["builtin_interfaces/msg/Time"](sec=1_700_000_000, nanosec=0)
+    header = store.types["std_msgs/msg/Header"](stamp=time, frame_id="")
+    path = tmp_path / "introspection"
+    with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        fields = {"names": {"names": 2}, "values": {"values": np.array([1.0, 2.0])}}
+        for kind, name in (("names", f"{PACKAGE}/StatisticsNames"), ("values", f"{PACKAGE}/StatisticsValues")):
+            connection = writer.add_connection(f"{PREFIX}/{kind}", name, typestore=store)
+            message = store.types[name](header=header, names_version=1, **fields[kind])
+            writer.write(connection, START, store.serialize_cdr(message, name))
+    with pytest.raises(RecordingError, match="version 1. were not recorded"):
+        read_recording(path, topics_file(tmp_path, "values", "values[%s]"))

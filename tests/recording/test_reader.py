@@ -104,6 +104,8 @@ def test_a_mapped_pressure_is_absolute_unless_said_otherwise(tmp_path: Path) -> 
     np.testing.assert_allclose(absolute.channels["pressure_a"].values, 1e6 + np.arange(3))
     np.testing.assert_allclose(gauge.channels["pressure_a"].values, 1e6 + np.arange(3) + ATMOSPHERE)
     assert gauge.channels.keys() == {"voltage_command", "position", "velocity", "pressure_a", "pressure_b"}
+    assert any("pressure_a" in one and "taken as absolute" in one for one in absolute.remarks)
+    assert not any("taken as absolute" in one for one in (*gauge.remarks, *read_recording(path).remarks))
 
 
 def test_two_pistons_are_refused_by_name_and_a_namespace_chooses(tmp_path: Path) -> None:

@@ -103,6 +103,20 @@ def test_the_file_has_the_nodes_topics_and_reads_back(tmp_path: Path) -> None:
     assert recording.parameters == record.parameters
 
 
+def test_a_changed_parameter_is_an_event_as_ros2_has_it(tmp_path: Path) -> None:
+    """rcl_interfaces/msg/ParameterType: a double is 3."""
+    record = simulate(Experiment(TIMES, VOLTAGES, 0.4, {}, [(0.2, "moving_mass", 12.0)]))
+    path = tmp_path / "run.mcap"
+    write_simulated(path, record)
+    with AnyReader([path]) as reader:
+        (topic,) = [one for one in reader.connections if one.topic == "/parameter_events"]
+        ((_, logged, data),) = reader.messages([topic])
+        event = reader.deserialize(data, topic.msgtype)
+    (changed,) = event.changed_parameters
+    assert (changed.name, changed.value.type, changed.value.double_value) == ("moving_mass", 3, 12.0)
+    assert event.stamp.sec * 10**9 + event.stamp.nanosec == logged == record.stamps[0] + 200_000_000
+
+
 def test_instruments_tell_nothing_of_the_model(tmp_path: Path) -> None:
     path = tmp_path / "rig.mcap"
     write_simulated(path, simulate(Experiment(TIMES, VOLTAGES, 0.4)), instruments_only=True)

@@ -64,6 +64,13 @@ def test_joints_that_change_places_are_followed_by_name() -> None:
     np.testing.assert_array_equal(columns_of(payloads, {"x": "position[piston]"}).columns["x"], [1.0, 3.0] * 10)
 
 
+@pytest.mark.parametrize(("count", "end"), [(20, "j19 and none"), (21, r"j19 \.\.\. and none")])
+def test_of_many_joints_the_first_twenty_are_listed(count: int, end: str) -> None:
+    names = [f"j{k}" for k in range(count)]
+    with pytest.raises(RecordingError, match=rf"holds the joints j0, j1, .*{end} is called piston"):
+        columns_of([joints(names, [0.0] * count)] * 2, {"x": "position[piston]"})
+
+
 def test_a_joint_that_some_messages_lack_is_missing_there() -> None:
     payloads = [joints(["piston", "boom"], [1.0, 2.0]), joints(["boom", "arm"], [4.0, 3.0])]
     np.testing.assert_array_equal(columns_of(payloads, {"x": "position[piston]"}).columns["x"], [1.0, np.nan])

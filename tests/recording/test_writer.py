@@ -100,6 +100,13 @@ def test_the_offered_quality_is_kept_as_ros2_bag_keeps_it(tmp_path: Path) -> Non
     assert profile["avoid_ros_namespace_conventions"] is False
 
 
+def test_what_nothing_is_said_of_is_offered_as_ros2_does_by_default() -> None:
+    """rmw_qos_profile_default of rmw/qos_profiles.h: reliable, volatile, the last ten."""
+    (profile,) = yaml.safe_load(OfferedQuality().as_yaml())
+    assert (profile["history"], profile["depth"]) == ("keep_last", 10)
+    assert (profile["reliability"], profile["durability"]) == ("reliable", "volatile")
+
+
 def test_messages_of_eha_interfaces_are_written_from_their_own_definition(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     with RecordingWriter(path) as writer:

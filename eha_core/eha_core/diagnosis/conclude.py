@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,17 +26,20 @@ from eha_core.diagnosis.result import (
     Diagnosis,
     Experiment,
     Location,
+    NamedEffect,
     UnknownLaw,
 )
 from eha_core.diagnosis.search.model_comparison import Entry
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import SITES
+from eha_core.effects import effects as every_effect
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.intervals import with_residual
 from eha_core.identification.problem import Problem
 from eha_core.identification.together import cut_together
 from eha_core.identification.validate import channel_rmse, instants_of, judge, split
+from eha_core.plausibility.finding import rescaled, topics_line
 from eha_core.recording import Recording
 
 FINAL_STEP = 1e-4
@@ -71,7 +74,7 @@ def conclude(
         duration=recording.duration,
         channels=evidence.observation.channels,
         not_examined=evidence.observation.not_examined,
-        remarks=_remarks(evidence),
+        remarks=(*zeros_to_correct(effects, recording), *_remarks(evidence)),
         damaged=next((one.damaged for one in recordings if one.damaged), None),
         verdict=decision.verdict,
         summary=summary(decision, effects, unknown, left),
@@ -136,6 +139,20 @@ def _channel_fits(
         for first, second, third in parts
     ]
     return made[0], made[1]
+
+
+def zeros_to_correct(effects: Iterable[NamedEffect], recording: Recording) -> Iterator[str]:
+    """What a topics file says where a sensor's zero is named: counted from elsewhere, it reads as one displaced."""
+    declared = {effect.id: dict(effect.zeros) for effect in every_effect()}
+    for effect in effects:
+        if effect.active is not None:
+            continue  # a zero that moved during the recording is no mistake in reading it
+        shifts = {channel: -effect.parameters[name].value for name, channel in declared[effect.id].items()}
+        read = {channel: rescaled(recording, channel, 1.0, float(f"{shift:.4g}")) for channel, shift in shifts.items()
+                if shift and channel in recording.channels}  # fmt: skip
+        if read:
+            what = " and ".join(read)
+            yield f"if {what} only counts from elsewhere, a topics file (--topics) corrects it: `{topics_line(read)}`"
 
 
 def _remarks(evidence: Evidence) -> tuple[str, ...]:

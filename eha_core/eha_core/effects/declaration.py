@@ -28,7 +28,8 @@ class Effect:
     one site where their sequence matters physically; equal ranks go by id. `needs` lists measured columns without which
     no recording can show the effect. Effects of one `kind` are forms of one law: never two of them are named together.
     `approximate` says that the literature writes the law in other ways too: where the name is right, the form can still
-    leave something over. `named` is False for a curve that stands for a law nobody has named. `id` is the file's name,
+    leave something over. `zeros` are pairs of a parameter and the channel whose reading it shifts, which a topics file
+    can undo. `named` is False for a curve that stands for a law nobody has named. `id` is the file's name,
     filled in on discovery.
     """
 
@@ -43,6 +44,7 @@ class Effect:
     approximate: bool = False
     named: bool = True
     opposite: str = ""
+    zeros: tuple[tuple[str, str], ...] = ()
     id: str = ""
 
     def parameter_names(self) -> tuple[str, ...]:

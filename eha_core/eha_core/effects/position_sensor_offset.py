@@ -35,6 +35,7 @@ EFFECT = Effect(
     order=3,
     # by position and force alone it is a load on the spring
     needs=("measured_pressure_a",),
+    zeros=(("offset", "position"),),
 )
 
 

@@ -45,6 +45,7 @@ EFFECT = Effect(
     ),
     order=3,
     needs=("measured_pressure_a",),
+    zeros=(("bias_a", "pressure_a"), ("bias_b", "pressure_b")),
 )
 
 

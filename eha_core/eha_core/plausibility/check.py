@@ -15,8 +15,9 @@ from eha_core.plausibility.relation import Relation
 from eha_core.plausibility.relations import LOW, relations
 from eha_core.recording import Recording
 
-CLOSER = 0.5
-"""By so much (as a logarithm: a factor of 1.6 in scale) must a mistake lie closer than another to be told alone."""
+CLOSER = 1.0
+"""By so much (as a logarithm: a factor of 2.7 in scale) must a mistake lie closer than another to be told alone: a
+valve's gain may be off by 2, and inches for cm is a factor of 2.5."""
 
 
 def check(
@@ -70,19 +71,13 @@ def _mended(
     found: Mapping[str, Relation], recording: Recording, possible: Iterable[Suspect], nominal: Mapping[str, float],
     composition: Composition,
 ) -> list[tuple[float, Suspect]]:
-    """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording.
-
-    Of several units of one channel the closest is meant; a unit alone and a unit with another zero are both told.
-    """
-    mended: dict[tuple[frozenset[str], bool], tuple[float, Suspect]] = {}
+    """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording."""
+    mended = []
     for suspect in possible:
         without = relations(suspect.without(recording), nominal, composition)
         if without and _mends(found, without):
-            distance = sum(relation.distance for relation in without.values())
-            key = (frozenset(suspect.undone), suspect.moves_zero)
-            if key not in mended or distance < mended[key][0]:
-                mended[key] = (distance, suspect)
-    return list(mended.values())
+            mended.append((sum(relation.distance for relation in without.values()), suspect))
+    return mended
 
 
 def _mends(found: Mapping[str, Relation], without: Mapping[str, Relation]) -> bool:

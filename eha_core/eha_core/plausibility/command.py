@@ -13,12 +13,19 @@ from eha_core.recording.recording import FloatArray
 
 LATEST_MOTION = 0.1
 """s by which the piston may follow the command: coil, spool, delays and sensors' lags."""
-IDLE = 0.03
-"""Share of the rated current that overlap and hysteresis of a worn valve may take before it moves anything (assumed:
-data sheets of servo valves give up to 3 % for hysteresis)."""
+LEAST_TAKEN = 0.024
+"""Share of the rated speed, from the fastest motion one way to the fastest the other, from which on the command must
+show in it. With less the piston may creep under leaks while an overlapped valve takes any command (assumed: by 1 % of
+the rated speed)."""
+RELATED = 0.25
+"""Share of the command that the motion explains, from which on it may be the motion's: at least 0.50 in 750 sound
+recordings of so much motion, 0.29 with an overlap of a quarter of the rated current; at most 0.24 of 120 commands of
+other runs."""
 OTHER_MOMENTS = 20
-"""Shifts of the command along the recording that its own moment is compared with: one in as many unrelated commands
-explains more where it is than anywhere else."""
+"""Shifts of the command along the recording that its own moment is compared with."""
+OUTSTANDING = 2.0
+"""Times the share explained elsewhere that the motion explains of a command that moves it, even where a valve's wear
+or its load leave little to explain (assumed; of commands of other runs at most 1.4)."""
 
 Fit = tuple[float, float, float]
 """Share of the command that the motion explains, the command's correlation with the speed, its slope on it."""
@@ -31,8 +38,17 @@ def gain(nominal: Values) -> float:
     return float(np.mean(roots)) * nominal["valve_gain"] / nominal["piston_area"] / nominal["coil_resistance"]
 
 
+def rated(nominal: Values) -> float:
+    """The command that saturates the valve's current [V]."""
+    return nominal["saturation_current"] * nominal["coil_resistance"]
+
+
 def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list[Relation]:
-    """The command against what it must be made of: the flow that moves the piston, and leakage under the force."""
+    """The command against what it must be made of: the flow that moves the piston, and leakage under the force.
+
+    A command is another run's where the motion takes what no creep does, and explains hardly more of the command than
+    of the same command elsewhere in the recording.
+    """
     voltage = signals.channels.get("voltage_command")
     if voltage is None or not np.ptp(voltage) > 0.0 or not signals.is_motion_seen:
         return []
@@ -41,9 +57,8 @@ def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list
     explained, together, slope = max(_fits(voltage, motion, signals.step))
     ratio = slope * gain(nominal)  # command per speed, over the nominal
     related = explained > 0.3 and abs(together) > 0.3
-    rated = nominal["saturation_current"] * nominal["coil_resistance"]
-    moves = float(np.ptp(voltage)) > 2.0 * IDLE * rated
-    foreign = moves and explained < 0.18 and explained <= _elsewhere(voltage, motion, signals.step)
+    taken = float(np.ptp(signals.speed)) > LEAST_TAKEN * gain(nominal) * rated(nominal)
+    foreign = taken and explained < RELATED and explained < OUTSTANDING * _elsewhere(voltage, motion, signals.step)
     return [
         Relation("command", explained, foreign, explained > 0.3, 0.0),
         Relation("command_scale", ratio, related and not within(ratio, 25.0), related and within(ratio, 12.0),

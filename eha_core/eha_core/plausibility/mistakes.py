@@ -8,9 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from eha_core.plausibility.finding import Suspect, rescaled
+from eha_core.plausibility.signals import on_grid
 from eha_core.recording import Channel, Recording
 
 POSITION_UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "um": 1e-6}
+FARTHEST_ZERO = 5.0
+"""Half strokes by which a sensor's zero may lie off mid-stroke: a rod longer than the cylinder (assumed). Farther off,
+a reading has another unit."""
 PRESSURE_UNITS = {"bar": 1e5, "MPa": 1e6, "kPa": 1e3, "psi": 6894.757, "a tenth of Pa": 0.1, "tens of Pa": 10.0}
 
 
@@ -46,7 +50,13 @@ def swapped_chambers(recording: Recording, nominal: Mapping[str, float]) -> Iter
 
 
 def position_units(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Suspect]:
-    """A position, perhaps with its velocity, in another unit of length, perhaps counted from an end."""
+    """A position, perhaps with its velocity, in another unit of length, perhaps counted from an end.
+
+    A piston that stands still has no unit: what its sensor's noise spans is a length in any.
+    """
+    signals = on_grid(recording)
+    if signals is None or not signals.is_motion_seen:
+        return
     for unit, factor in POSITION_UNITS.items():
         scaled = rescaled(recording, "position", factor)
         velocity = {"velocity": rescaled(recording, "velocity", factor)} if _all_there(recording, "velocity") else {}
@@ -86,12 +96,16 @@ def zero_of_position(recording: Recording, nominal: Mapping[str, float]) -> Iter
 
 
 def _shift_to_middle(position: Channel, nominal: Mapping[str, float]) -> float:
-    """What brings a position into the stroke [m], to three digits: the half stroke where that centres it as well."""
+    """What brings a position into the stroke [m], to three digits: the half stroke where that centres it as well.
+
+    Zero where it is inside, and where its zero would lie too far off.
+    """
     middle = 0.5 * float(np.min(position.values) + np.max(position.values))
     stroke = nominal["actuator_displacement"]
     if abs(abs(middle) - stroke) < 0.25 * stroke:
         middle = float(np.copysign(stroke, middle))
-    return -float(f"{middle:.3g}") if abs(middle) + 0.5 * np.ptp(position.values) > stroke else 0.0
+    outside = abs(middle) + 0.5 * float(np.ptp(position.values)) > stroke
+    return -float(f"{middle:.3g}") if outside and abs(middle) < FARTHEST_ZERO * stroke else 0.0
 
 
 def _shift_from_end(position: Channel, nominal: Mapping[str, float]) -> float:

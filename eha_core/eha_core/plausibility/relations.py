@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.plant import PAPER, Composition
-from eha_core.plausibility.command import command, gain
+from eha_core.plausibility.command import command, gain, rated
 from eha_core.plausibility.regression import correlation, fitted, regression
 from eha_core.plausibility.relation import Relation, Values, off_by, within
-from eha_core.plausibility.signals import BLOCK, Signals, on_grid
+from eha_core.plausibility.signals import BLOCK, LARGEST_NOISE, Signals, on_grid
 from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
 
@@ -24,9 +24,10 @@ the outside of q times the piston's flow, at half the supply, leaves the share p
 (1 + 2 q p) / (1 - 2 q p) = sqrt((1 - p) / p): an eighth at q = 1.8. A worn rig's leak takes 1 % of the rated flow
 (assumed)."""
 NOTHING_LEFT = -0.98
-"""Excess of both pressures, over half the supply, that no leak explains: the piston moves (assumed)."""
+"""Excess of both pressures, over half the supply, that no leak explains: the piston moves (assumed). Of unequal areas
+it is the share of what empty chambers have, where that is more."""
 LOW = -0.55
-"""The same, from which on the levels are certainly right."""
+"""Excess of both pressures, over half the supply, from which on the levels are certainly right."""
 
 
 OF_A_VALVE = ("command", "command_scale", "level")
@@ -66,7 +67,8 @@ def _velocity(signals: Signals) -> list[Relation]:
         return []
     together = correlation(signals.speed, velocity)
     slope = float(regression(velocity, signals.speed)[0][0])
-    unrelated = abs(together) < 0.6 and not within(slope, 1.25)  # a noisy sensor's slope is still 1
+    seen = signals.noise["velocity"] < LARGEST_NOISE * float(np.std(velocity))
+    unrelated = seen and abs(together) < 0.6 and not within(slope, 1.25)
     wrong = unrelated or (abs(together) > 0.5 and not within(slope, 2.5))
     return [Relation("velocity", slope, wrong, together > 0.7 and within(slope, 1.5), off_by(slope))]
 
@@ -81,24 +83,47 @@ def _force_of(signals: Signals, nominal: Values) -> FloatArray | None:
     return channels.get("force")
 
 
+def _noise_of_force(signals: Signals, nominal: Values) -> float:
+    """Standard deviation of the noise in what `_force_of` gives [N]."""
+    if "pressure_a" in signals.channels and "pressure_b" in signals.channels:
+        a, b = (signals.noise[name] for name in ("pressure_a", "pressure_b"))
+        return float(np.hypot(nominal["piston_area"] * a, nominal["piston_area_b"] * b))
+    return signals.noise["force"]
+
+
 def _force(signals: Signals, nominal: Values) -> list[Relation]:
-    """What of the force goes with the speed, beside inertia and spring: the load dissipates."""
+    """What of the force goes with the speed, beside inertia and spring: the load dissipates.
+
+    Only where the piston turns round, since a creep one way has the same friction all along and other things change in
+    it. A block in which that force is noise speaks for neither sign.
+    """
     force = _force_of(signals, nominal)
     if force is None or not signals.is_motion_seen:
         return []
     count = max(1, round(len(force) * signals.step / BLOCK))
+    noise = _noise_of_force(signals, nominal)
     columns = (force, signals.speed, signals.acceleration, signals.channels["position"])
     parts, slopes = [], []
     for block in zip(*(np.array_split(column, count) for column in columns), strict=True):
+        if not _reverses(block[1], MOVING * float(np.max(np.abs(signals.speed)))):
+            continue
         rest = [values - fitted(values, *block[2:]) for values in block[:2]]
-        parts.append(correlation(*rest))
+        seen = noise < LARGEST_NOISE * np.std(rest[0])
+        parts.append(correlation(*rest) if seen else 0.0)
         slopes.append(float(rest[0] @ rest[1] / (rest[1] @ rest[1] + 1e-300)))
+    if not parts:
+        return []
     part = float(np.median(parts))
-    found = [Relation("force", part, part < -0.2, part > 0.1, 0.0)]
+    found = [Relation("force", part, part < -0.2, part > 0.05, 0.0)]
     if "force" in signals.channels and force is signals.channels["force"] and nominal["damping_coefficient"] > 0.0:
         ratio = float(np.median(slopes)) / nominal["damping_coefficient"]
         found.append(Relation("force_scale", ratio, 0.0 < ratio < 0.02, ratio > 0.1, off_by(ratio)))
     return found
+
+
+def _reverses(speed: FloatArray, least: float) -> bool:
+    """Whether the piston moves both ways, each faster than so much."""
+    return bool(np.min(speed) < -least and np.max(speed) > least)
 
 
 def _levels(signals: Signals, nominal: Values) -> list[Relation]:
@@ -117,10 +142,11 @@ def _levels(signals: Signals, nominal: Values) -> list[Relation]:
     ratio = (nominal["piston_area_b"] / nominal["piston_area"]) ** 2
     over = [(ratio * (a - supply) + b)[extending] / (1.0 + ratio), (ratio * a + b - supply)[retracting] / (1.0 + ratio)]
     excess = 2.0 * float(np.mean(np.concatenate(over))) / supply
+    empty = 2.0 * float(np.average([ratio, 1.0], weights=[np.sum(extending), np.sum(retracting)])) / (1.0 + ratio)
     load = float(np.mean(nominal["piston_area"] * a - nominal["piston_area_b"] * b)) / (nominal["piston_area"] * supply)
     lopsided = min(abs(excess), abs(load)) > 0.12 and abs(excess * load) > 0.04
     drawn_down = excess < 0.0 and _is_slow(signals, nominal)
-    lowest = NOTHING_LEFT if drawn_down else -0.75
+    lowest = NOTHING_LEFT * max(1.0, empty) if drawn_down else -0.75
     broken = (lopsided and not drawn_down) or not lowest < excess < 0.6
     sound = not broken and not lopsided and LOW < excess < 0.4
     distance = 3.0 * (abs(excess) + abs(load))  # a pressure ten times too large or small is then one of 1 or more
@@ -129,6 +155,5 @@ def _levels(signals: Signals, nominal: Values) -> list[Relation]:
 
 def _is_slow(signals: Signals, nominal: Values) -> bool:
     """Whether the piston takes so little flow that a leak may take more; without what noise adds to its speed."""
-    rated = gain(nominal) * nominal["saturation_current"] * nominal["coil_resistance"]
     squared = float(np.var(signals.speed)) - signals.speed_noise**2
-    return squared < (SLOW * rated) ** 2
+    return squared < (SLOW * gain(nominal) * rated(nominal)) ** 2

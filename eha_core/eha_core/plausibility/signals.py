@@ -30,13 +30,15 @@ LARGEST_GRID = 200_000
 @dataclass(frozen=True)
 class Signals:
     """`channels` by name, `speed` [m/s] and `acceleration` [m/s^2] of the position, all (n,) and `step` [s] apart;
-    `speed_noise` [m/s] is the standard deviation that the position sensor's noise has in the speed."""
+    `speed_noise` [m/s] is the standard deviation that the position sensor's noise has in the speed, `noise` that of
+    each sensor's in its own channel."""
 
     step: float
     channels: Mapping[str, FloatArray]
     speed: FloatArray
     acceleration: FloatArray
     speed_noise: float
+    noise: Mapping[str, float]
 
     @property
     def is_motion_seen(self) -> bool:
@@ -70,12 +72,15 @@ def on_grid(recording: Recording) -> Signals | None:
     acceleration = np.gradient(smooth(speed, 1), step)
     stride = width // FEWEST_SAMPLES  # what is smoothed needs no more
     inside = slice(2 * width, -2 * width, stride)
+    impulse = _impulse(width)
+    passed = float(np.linalg.norm(smooth(impulse)))
     return Signals(
         stride * step,
         {name: smooth(values)[inside] for name, values in raw.items()},
         smooth(speed, 2)[inside],
         smooth(acceleration, 1)[inside],
-        _noise(recording.channels["position"].values) * float(np.linalg.norm(smooth(speed_of(_impulse(width)), 2))),
+        _noise(recording.channels["position"].values) * float(np.linalg.norm(smooth(speed_of(impulse), 2))),
+        {name: passed * _noise(channel.values) for name, channel in recording.channels.items()},
     )
 
 
