@@ -34,8 +34,8 @@ friction astray, which was right in the windows before."""
 
 
 FINER = 2e-4
-"""s; the step of the derivatives with which such a fit ends. Between longer ones a break-away is lost, and a fit comes to
-rest on that: at 1.41 times the noise's energy where this one goes on to the noise
+"""s; the step of the derivatives with which such a fit ends. Between longer ones a break-away is lost, and a fit comes
+to rest on that: at 1.41 times the noise's energy where this one goes on to the noise
 (tests/diagnosis/test_set_with_friction.py)."""
 
 
