@@ -15,7 +15,7 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import STEPS
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, chance_gain
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, chance_gain
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.hypothesis import NOTHING, neutral
 from eha_core.diagnosis.search.candidates import Candidate, Search, without_effect
@@ -96,26 +96,31 @@ def _small(effects: Sequence[Effect], scales: Scales) -> tuple[dict[str, float],
     return values, tuple(free)
 
 
-def _fewest(search: Search, candidate: Candidate) -> Candidate:
-    """The set without the effects that it does not need, MOST_EFFECTS at most, fitted again."""
-    while True:
-        hypothesis, needed = candidate.hypothesis, chance_gain(candidate.fit.count, candidate.times_noise)
-        gone = not_needed(candidate.fit, hypothesis.effects, needed)
-        if not gone:
-            at = candidate.fit
-            return search.keep(hypothesis, fit(with_finer_slopes(search.problem), at.values, at.free, at.states))
-        values, free = dict(candidate.fit.values), candidate.fit.free
+def _fewest(search: Search, together: Candidate) -> Candidate:
+    """The set without the effects that it does not need, fitted again; fewer at a time where the curvature promised
+    what the fit without them does not keep."""
+    at, needed = together, chance_gain(together.fit.count, together.times_noise)
+    most = len(at.hypothesis.members)
+    while gone := not_needed(at.fit, at.hypothesis.effects, needed)[:most]:
+        values, free = dict(at.fit.values), at.fit.free
         for effect in gone:
-            values, free = without_effect(replace(candidate.fit, values=values, free=free), effect)
-        rest = replace(hypothesis, members=tuple(one for one in hypothesis.members if one.effect not in gone))
-        candidate = Candidate(rest, fit(search.problem, values, free, candidate.fit.states, iterations=ITERATIONS))
+            values, free = without_effect(replace(at.fit, values=values, free=free), effect)
+        worst = at.fit.objective + len(gone) * needed
+        result = fit(search.problem, values, free, at.fit.states, iterations=ITERATIONS, give_up_above=worst)
+        if result.objective < worst:
+            at = Candidate(NOTHING.with_effects(one for one in at.hypothesis.effects if one not in gone), result)
+        elif len(gone) > 1:
+            most = len(gone) // 2
+        else:
+            break
+    finer = with_finer_slopes(search.problem)
+    return search.keep(at.hypothesis, fit(finer, at.fit.values, at.fit.free, at.fit.states))
 
 
 def not_needed(result: Fit, effects: Sequence[Effect], needed: float) -> list[Effect]:
     """Up to half of the effects, one after the other what the rest makes up for best at a cost of less than `needed`.
 
-    The cost is that of the curvature at the fit, which holds near it; where there are more than MOST_EFFECTS, it may be
-    any.
+    The cost is that of the curvature at the fit, which holds near it.
     """
     count = len(result.q)
     away, covariance = _away_from_nothing(result, effects), result.covariance[:count, :count].copy()
@@ -124,7 +129,7 @@ def not_needed(result: Fit, effects: Sequence[Effect], needed: float) -> list[Ef
     while len(gone) < (len(effects) + 1) // 2:
         costs = {one: _cost(away, covariance, at) for one, at in places.items() if one not in gone}
         least = min(costs, key=lambda one: costs[one])
-        if costs[least] > needed and len(costs) <= MOST_EFFECTS:
+        if costs[least] > needed:
             break
         at = places[least]
         follow = covariance[:, at] @ np.linalg.pinv(covariance[np.ix_(at, at)], hermitian=True)

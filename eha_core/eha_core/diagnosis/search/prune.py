@@ -109,7 +109,7 @@ def prune(search: Search, best: Candidate) -> Candidate:
                 near = told[member] < LOOKED_AT * asked[member]
                 enough = np.inf if near else best.fit.objective + asked[member]
                 simpler[member] = search.go_on(simpler[member], FURTHER, give_up_above=enough)
-            if asked[member] < _lost(simpler[member], best) < OVER * explained:
+            if max(asked[member], told[member]) < _lost(simpler[member], best) < OVER * explained:
                 simpler[member] = refit_gradually(search, best, member)
         lost = {member: _lost(one, best) for member, one in simpler.items()}
         least = min(lost, key=lambda member: lost[member] / asked[member])

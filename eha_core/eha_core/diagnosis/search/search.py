@@ -43,19 +43,19 @@ def beside_the_singles(search: Search) -> Candidate:
 def search_sets(search: Search, nominal: Candidate) -> Candidate:
     """The set of effects that explains the recording best and of which every member earns its place.
 
-    Begins at the best single effect. Where it ends with more than noise left, its dry friction may have another form,
-    or a member another's place.
+    Begins at the best single effect. Where it ends with more than noise left, it may have begun wrongly, its dry
+    friction may have another form, or a member another's place.
     """
     best = min(search, key=lambda one: one.fit.objective)
     if best.hypothesis.limited and not NEAR_NOISE < best.times_noise < FAR_FROM_NOISE:
         return best  # it explains all, or led the single effects and hardly explains anything
     if best.times_noise > NEAR_NOISE:
         best = beside_the_singles(search)
-    if best.times_noise > NEAR_NOISE:
-        best = all_at_once(search, nominal)
-    if best.times_noise > UNFITTED and sticks(best.hypothesis) and len(best.hypothesis.members) == 1:
+    if best.times_noise > UNFITTED and sticks(best.hypothesis):
         best = forms_of_friction(search, nominal)
     best = grow(search, best)
+    if best.times_noise > UNFITTED:
+        best = grow(search, all_at_once(search, nominal))
     if best.times_noise > NEAR_NOISE and sticks(best.hypothesis):
         best = grow(search, set_in_each_form(search, best))
     for _ in range(ROUNDS):
