@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from eha_core.diagnosis.criteria import NEAR_NOISE
-from eha_core.diagnosis.search.found import Found, Progress, best_first
+from eha_core.diagnosis.search.found import CONVERGE_WITHIN, Found, Progress, best_first
 from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES, is_improbable, with_dynamics_held
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import FreeParameter
@@ -18,10 +18,6 @@ from eha_core.identification.per_recording import is_one_of
 from eha_core.identification.problem import Problem
 
 CONVERGED_LEADERS = 3
-
-CONVERGE_WITHIN = 300.0
-"""The best few are fitted to their end, those at least that came within this of the best, or half of what it left
-over."""
 
 INSTANT_REACHES = (2.4, 1.2, 0.6, 0.3)
 """s; how far off an instant may be found to be before the rest is fitted to it again."""

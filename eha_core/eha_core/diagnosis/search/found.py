@@ -10,6 +10,10 @@ from eha_core.identification.fit import Fit
 OUT_OF_REACH = 200.0
 """A hypothesis that cannot come within this of the best objective so far is not fitted to its end."""
 
+CONVERGE_WITHIN = 300.0
+"""The best few are fitted to their end, those at least that came within this of the best; in a comparison of what has
+not converged yet, or within half of what the best left over."""
+
 Progress = Callable[[str], None]
 Found = dict[Hypothesis, Fit]
 """The best fit so far of each hypothesis."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from eha_core.diagnosis.hypothesis import Hypothesis
-from eha_core.diagnosis.search.found import OUT_OF_REACH, Found, best_first, keep_better
+from eha_core.diagnosis.search.found import CONVERGE_WITHIN, OUT_OF_REACH, Found, best_first, keep_better
 from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
@@ -42,13 +42,16 @@ def warm_start(problem: Problem, found: Found) -> Found:
 
 
 def _to_their_ends(problem: Problem, found: Found) -> Found:
-    """What comes near the best fitted until it gains nothing, with derivatives at the full step: a rival that stopped a
-    little short would seem to be told apart."""
+    """What comes near the best fitted until it gains nothing, with derivatives at the full step, from the windows'
+    starts as they are and from those measured: a rival that stopped a little short would seem to be told apart."""
     exact = replace(problem, slope_step=problem.shooting.step_size)
     best = min(result.objective for result in found.values())
-    near = {one: at for one, at in found.items() if best < at.objective < best + OUT_OF_REACH}
-    ended = {one: fit(exact, at.values, at.free, at.states, iterations=30) for one, at in near.items()}
-    return found | {one: at for one, at in ended.items() if at.objective < found[one].objective}
+    near = {one: at for one, at in found.items() if best < at.objective < best + CONVERGE_WITHIN}
+    ended = dict(found)
+    for hypothesis, at in near.items():
+        for states in (at.states, None):
+            keep_better(ended, hypothesis, fit(exact, at.values, at.free, states, iterations=30))
+    return ended
 
 
 def _same_interval(hypothesis: Hypothesis, other: Hypothesis, values: Mapping[str, float]) -> dict[str, float]:
