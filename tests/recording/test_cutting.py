@@ -64,15 +64,17 @@ def test_a_stretch_that_begins_between_samples_counts_from_its_first() -> None:
 @pytest.mark.parametrize(
     ("start", "times", "values"),
     [
-        (0.5, [0.0, 0.5], [5.0, 6.0]),  # the one before holds
-        (1.0, [0.0], [6.0]),  # one at the start stands for itself
-        (0.0, [0.5, 1.0], [5.0, 6.0]),  # none before: nothing holds
+        (0.75, [0.0, 0.25, 0.5], [5.0, 6.0, 7.0]),  # the one before holds
+        (1.0, [0.0, 0.25], [6.0, 7.0]),  # one at the start stands for itself
+        (1.3, [0.0], [7.0]),
+        (0.0, [0.5, 1.0, 1.25], [5.0, 6.0, 7.0]),  # none before: nothing holds
     ],
 )
 def test_the_last_command_before_a_stretch_holds_in_it(start: float, times: list[float], values: list[float]) -> None:
-    cut = cut_out(recorded(([0.5, 1.0], [5.0, 6.0]) if start != 0.5 else ([0.25, 1.0], [5.0, 6.0])), start, 1.5)
+    cut = cut_out(recorded(([0.5, 1.0, 1.25], [5.0, 6.0, 7.0])), start, 1.5)
     assert cut is not None
-    assert lists(cut.channels["voltage_command"]) == (times, values)
+    time, held = lists(cut.channels["voltage_command"])
+    assert (time, held) == (pytest.approx(times), values)
 
 
 def test_where_no_channel_has_a_sample_there_is_no_stretch() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isnan, nan
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from eha_core.recording.inspection import Field, Inspection
@@ -72,7 +73,7 @@ def test_the_only_unit_that_is_usual_is_asked_after_and_not_certain() -> None:
     found = of_table(a_column("strom", -50.0, 50.0))
     (question,) = found.questions
     assert certain_of(found) == {}
-    assert ways(question) == [("current", "mA", None)]
+    assert ways(question) == [("current", "mA", None)] and not question.is_open
     assert question.text == "is current in mA? it goes from -50 to 50"
     assert certain_of(of_table(a_column("strom", -50.0, 50.0, "mA"))) == {"current": ("strom", "mA", None)}
 
@@ -221,7 +222,7 @@ def test_at_most_a_dozen_nameless_columns_that_move_are_asked_after() -> None:
         (1.7e15, 2e3, ["us"]), (1.7e18, 2e6, ["ns"]),
     ],
 )  # fmt: skip
-def test_a_time_without_a_unit_is_told_by_its_size_or_asked(first: float, step: float, units: list[str]) -> None:
+def test_a_time_without_a_unit_is_told_by_how_it_counts_or_asked(first: float, step: float, units: list[str]) -> None:
     found = suggest(Inspection(Path("run.csv"), "csv", (a_time("", first, step),), {}, ()))
     readings = [*found.certain, *(one for question in found.questions for one in question.readings)]
     assert [(one.channel, one.unit) for one in readings] == [("time", unit) for unit in units]
@@ -310,5 +311,68 @@ def test_the_contract_s_topics_are_certain_and_others_are_not_asked_after() -> N
     found = suggest(Inspection(Path("bag"), "bag", (*two, gain), topics, ()))
     assert certain_of(found) == {"position": ("position[piston]", None, None)}
     assert not any(one.field == gain for question in found.questions for one in question.readings)
+    other = Field("/model", "position[piston]", 9, 0.0, 0.07, 500.0, "m")
+    beside = suggest(Inspection(Path("bag"), "bag", (other, *two), {**topics, "/model": "custom_msgs/msg/Model"}, ()))
+    assert [one.field for one in beside.certain] == [two[1]]
     alone = suggest(Inspection(Path("bag"), "bag", (gain,), {"/gain": "std_msgs/msg/Float64"}, ()))
     assert [question.is_open for question in alone.questions] == [True]
+
+
+LIMITS = [
+    ("druck_kolben", "Pa", 2e5, 7e7), ("weg", "m", 1e-3, 5.0), ("geschwindigkeit", "m/s", 1e-3, 10.0),
+    ("ventil", "V", 1e-3, 50.0), ("strom", "A", 1e-4, 10.0), ("kraft", "N", 10.0, 1e7),
+    ("flow_in", "m^3/s", 1e-6, 2e-2), ("drehzahl", "rad/s", 1.0, 2e3),
+]  # fmt: skip
+"""Names, SI units, and from where to where the largest magnitudes of rigs go in them."""
+
+
+@pytest.mark.parametrize(("name", "unit", "least", "most"), LIMITS)
+def test_a_unit_is_usual_from_the_least_to_the_most_of_rigs(name: str, unit: str, least: float, most: float) -> None:
+    kinds = {kind: one.scale for kind, one in UNITS.items() if one.si == unit and one.reference is None}
+    for largest in (least, np.nextafter(least, 0.0), most, np.nextafter(most, np.inf)):
+        readings = [one for question in of_table(a_column(name, 0.0, largest)).questions for one in question.readings]
+        usual = {kind for kind, scale in kinds.items() if least <= scale * largest <= most}
+        assert {one.unit for one in readings} == (usual or set(kinds))  # where none is usual, all are asked
+
+
+def test_columns_of_a_unit_or_a_name_are_not_asked_after_as_nameless() -> None:
+    """A mass is no channel; another way beside the one of the contract, and what is wanted, are not asked after."""
+    columns = [
+        a_column("beam", 0.0, 3.0, "kg"), a_column("position", 0.0, 0.08), a_column("weg", 0.0, 0.08),
+        a_column("column 7 soll", 0.0, 3.0), a_column("strom", 0.0, 3.0, "mA"),
+    ]  # fmt: skip
+    found = of_table(*columns)
+    assert found.questions == ()
+    assert certain_of(found) == {"current": ("strom", "mA", None), "position": ("position", None, None)}
+
+
+def test_a_message_s_number_of_its_own_name_is_not_called_by_its_topic() -> None:
+    field = Field("/supply", "pressure", 9, 1.0, 60.0, 500.0, "barg")
+    found = suggest(Inspection(Path("bag"), "bag", (field,), {"/supply": "custom_msgs/msg/Reading"}, ()))
+    assert found.certain == () and len(found.questions) == 3
+
+
+def test_an_interface_is_called_by_what_is_in_its_brackets() -> None:
+    fields = tuple(
+        Field("/rig/values", f"values[rod/{name}]", 9, 0.0, 0.08, 500.0, "m") for name in ("offset", "position")
+    )
+    found = suggest(Inspection(Path("bag"), "bag", fields, {"/rig/values": "pal_statistics_msgs/msg/StatisticsValues"}, ()))
+    assert certain_of(found) == {"position": ("values[rod/position]", "m", None)}
+    valve = Field("/rig/values", "values[command_interface.valve/effort]", 9, -0.5, 0.5, 500.0, "V")
+    found = suggest(Inspection(Path("bag"), "bag", (valve,), {"/rig/values": "x/msg/StatisticsValues"}, ()))
+    assert certain_of(found) == {"voltage_command": (valve.path, "V", None)}
+
+
+def test_a_column_s_bracket_is_no_part_of_its_name() -> None:
+    assert certain_of(of_table(a_column("weg [velocity]", 0.0, 3.0, "mm"))) == {"position": ("weg [velocity]", "mm", None)}
+    found = of_table(a_column("druck_a (p_b)", 0.0, 3.0, "barg"))
+    assert certain_of(found) == {"pressure_a": ("druck_a (p_b)", "bar", "gauge")}
+
+
+def test_of_two_pistons_it_is_asked_which() -> None:
+    topics = {f"/{name}/joint_states": "sensor_msgs/msg/JointState" for name in ("left", "right")}
+    fields = tuple(Field(topic, "position[piston]", 9, 0.0, 0.08, 500.0, "m") for topic in topics)
+    found = suggest(Inspection(Path("bag"), "bag", fields, topics, ()))
+    (question,) = found.questions
+    assert (found.certain, question.text) == ((), "which of these is position?")
+    assert [one.field for one in question.readings] == list(fields)
