@@ -197,7 +197,9 @@ class _Counted:
     def add(self, log_time: int, payload: bytes) -> None:
         self.count += 1
 
-    def add_block(self, content: bytes, starts: NDArray[np.int64], lengths: NDArray[np.int64], log_times: object) -> None:
+    def add_block(
+        self, content: bytes, starts: NDArray[np.int64], lengths: NDArray[np.int64], log_times: object
+    ) -> None:
         self.count += len(starts)
 
 

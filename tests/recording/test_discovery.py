@@ -80,6 +80,8 @@ def test_two_pistons_need_a_word_and_the_last_is_the_example() -> None:
     topics = [*under("/a"), *under("/b")]
     with pytest.raises(RecordingError, match="the pistons of namespaces /a and /b; .* `namespace: /b`"):
         find_rules("run", topics, None)
+    with pytest.raises(RecordingError, match="namespaces /a and /b and /c; .* `namespace: /c`"):
+        find_rules("run", [*topics, "/c/joint_states"], None)
     for namespace in ("a", "b"):
         rules, _ = find_rules("run", topics, TopicsFile({}, namespace))
         assert {str(rule.topic).split("/")[1] for rule in rules.values()} == {namespace}

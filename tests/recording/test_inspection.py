@@ -23,9 +23,7 @@ def a_table(folder: Path, head: str, rows: list[str]) -> dict[str, Field]:
 
 
 def test_a_column_is_listed_with_what_its_numbers_say(tmp_path: Path) -> None:
-    fields = a_table(
-        tmp_path, "time,weg_mm,dead,twice", ["0.5,3,,0", "0.6,-7,,0", "0.8,,,1", "1.0,5,,1", "1.2,4,,2"]
-    )
+    fields = a_table(tmp_path, "time,weg_mm,dead,twice", ["0.5,3,,0", "0.6,-7,,0", "0.8,,,1", "1.0,5,,1", "1.2,4,,2"])
     time, way = fields["time"], fields["weg_mm"]
     assert (time.topic, time.count, time.low, time.high, time.first) == ("", 5, 0.5, 1.2, 0.5)
     assert time.step == pytest.approx(0.2)  # the median of 0.1, 0.2, 0.2, 0.2
@@ -144,6 +142,17 @@ def test_no_more_than_200_numbers_of_a_topic_are_listed(tmp_path: Path, count: i
     found = inspect_file(path)
     assert [one.path for one in found.fields] == [f"position[j{k}]" for k in range(200)]
     assert found.remarks == ((f"/joint_states: {more} numbers more are not listed",) if more else ())
+
+
+def test_parts_that_have_a_name_are_listed_by_it(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    parts = [{"name": "x", "offset": 4, "count": 2}, {"name": "7", "offset": 8, "count": 3}]
+    with RecordingWriter(path) as writer:
+        writer.write_fields("/cloud", "sensor_msgs/msg/PointCloud2", {"fields": parts}, START)
+    found = {one.path: one.high for one in inspect_file(path).fields if one.path.startswith("fields")}
+    assert {name: high for name, high in found.items() if "datatype" not in name} == {
+        "fields[x].offset": 4.0, "fields[x].count": 2.0, "fields[1].offset": 8.0, "fields[1].count": 3.0
+    }  # fmt: skip
 
 
 def test_what_is_nothing_is_refused(tmp_path: Path) -> None:

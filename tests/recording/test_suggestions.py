@@ -264,7 +264,7 @@ def test_each_field_is_told_with_the_channels_that_it_may_be() -> None:
 NAMES = [
     ("rig.cylinder.weg", "mm", "position"), ("weg.channel_3", "mm", "position"), ("p.head", "barg", "pressure_a"),
     ("bench.p.rod", "barg", "pressure_b"), ("xPiston", "mm", "position"), ("PistonX_mm", "mm", None),
-    ("x_mm", "mm", "position"), ("weg (mm)", "mm", "position"), ("weg [mm]", "mm", "position"),
+    ("x_mm", "mm", "position"), ("weg_mm", "mm", "position"), ("weg (mm)", "mm", "position"), ("weg [mm]", "mm", "position"),
     ("mm", "mm", None), ("drehzahl", "rpm", "pump_speed"), ("weg", "rpm", None), ("x_ref", "mm", None),
     ("x_soll", "mm", None), ("reflex.weg", "mm", "position"), ("ventil", "V", "voltage_command"),
 ]  # fmt: skip
@@ -299,7 +299,10 @@ def test_an_introspection_s_second_copy_is_passed_over_where_the_first_is_named(
     name = "state_interface.piston/position"
     full = Field("/rig/full", f"statistics[{name}].value", 9, 0.0, 0.08, 500.0, "m")
     values = Field("/rig/values", f"values[{name}]" if is_told else "values[0]", 9, 0.0, 0.08, 500.0, "m" * is_told)
-    topics = {"/rig/full": "pal_statistics_msgs/msg/Statistics", "/rig/values": "pal_statistics_msgs/msg/StatisticsValues"}
+    topics = {
+        "/rig/full": "pal_statistics_msgs/msg/Statistics",
+        "/rig/values": "pal_statistics_msgs/msg/StatisticsValues",
+    }
     found = suggest(Inspection(Path("bag"), "bag", (full, values), topics, ()))
     assert {one.channel: one.field.topic for one in found.certain} == {"position": topic}
 
@@ -356,7 +359,9 @@ def test_an_interface_is_called_by_what_is_in_its_brackets() -> None:
     fields = tuple(
         Field("/rig/values", f"values[rod/{name}]", 9, 0.0, 0.08, 500.0, "m") for name in ("offset", "position")
     )
-    found = suggest(Inspection(Path("bag"), "bag", fields, {"/rig/values": "pal_statistics_msgs/msg/StatisticsValues"}, ()))
+    found = suggest(
+        Inspection(Path("bag"), "bag", fields, {"/rig/values": "pal_statistics_msgs/msg/StatisticsValues"}, ())
+    )
     assert certain_of(found) == {"position": ("values[rod/position]", "m", None)}
     valve = Field("/rig/values", "values[command_interface.valve/effort]", 9, -0.5, 0.5, 500.0, "V")
     found = suggest(Inspection(Path("bag"), "bag", (valve,), {"/rig/values": "x/msg/StatisticsValues"}, ()))
@@ -364,7 +369,9 @@ def test_an_interface_is_called_by_what_is_in_its_brackets() -> None:
 
 
 def test_a_column_s_bracket_is_no_part_of_its_name() -> None:
-    assert certain_of(of_table(a_column("weg [velocity]", 0.0, 3.0, "mm"))) == {"position": ("weg [velocity]", "mm", None)}
+    assert certain_of(of_table(a_column("weg [velocity]", 0.0, 3.0, "mm"))) == {
+        "position": ("weg [velocity]", "mm", None)
+    }
     found = of_table(a_column("druck_a (p_b)", 0.0, 3.0, "barg"))
     assert certain_of(found) == {"pressure_a": ("druck_a (p_b)", "bar", "gauge")}
 
