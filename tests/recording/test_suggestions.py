@@ -218,7 +218,8 @@ def test_at_most_a_dozen_nameless_columns_that_move_are_asked_after() -> None:
     ("first", "step", "units"),
     [
         (0.0, 2e-3, ["s"]), (0.0, 0.999, ["s"]), (0.0, 1.0, ["ms", "us", "ns"]), (0.0, 2e6, ["ms", "us", "ns"]),
-        (1e12, 2.0, ["ms"]), (3.99e12, 2.0, ["ms"]), (4e12, 2.0, ["ms", "us", "ns"]), (0.99e12, 2.0, ["ms", "us", "ns"]),
+        (1e12, 2.0, ["ms"]), (3.99e12, 2.0, ["ms"]), (4e12, 2.0, ["ms", "us", "ns"]),
+        (0.99e12, 2.0, ["ms", "us", "ns"]),
         (1.7e15, 2e3, ["us"]), (1.7e18, 2e6, ["ns"]),
     ],
 )  # fmt: skip
@@ -264,7 +265,8 @@ def test_each_field_is_told_with_the_channels_that_it_may_be() -> None:
 NAMES = [
     ("rig.cylinder.weg", "mm", "position"), ("weg.channel_3", "mm", "position"), ("p.head", "barg", "pressure_a"),
     ("bench.p.rod", "barg", "pressure_b"), ("xPiston", "mm", "position"), ("PistonX_mm", "mm", None),
-    ("x_mm", "mm", "position"), ("weg_mm", "mm", "position"), ("weg (mm)", "mm", "position"), ("weg [mm]", "mm", "position"),
+    ("x_mm", "mm", "position"), ("weg_mm", "mm", "position"), ("weg (mm)", "mm", "position"),
+    ("weg [mm]", "mm", "position"),
     ("mm", "mm", None), ("drehzahl", "rpm", "pump_speed"), ("weg", "rpm", None), ("x_ref", "mm", None),
     ("x_soll", "mm", None), ("reflex.weg", "mm", "position"), ("ventil", "V", "voltage_command"),
 ]  # fmt: skip
@@ -359,12 +361,11 @@ def test_an_interface_is_called_by_what_is_in_its_brackets() -> None:
     fields = tuple(
         Field("/rig/values", f"values[rod/{name}]", 9, 0.0, 0.08, 500.0, "m") for name in ("offset", "position")
     )
-    found = suggest(
-        Inspection(Path("bag"), "bag", fields, {"/rig/values": "pal_statistics_msgs/msg/StatisticsValues"}, ())
-    )
+    topics = {"/rig/values": "pal_statistics_msgs/msg/StatisticsValues"}
+    found = suggest(Inspection(Path("bag"), "bag", fields, topics, ()))
     assert certain_of(found) == {"position": ("values[rod/position]", "m", None)}
     valve = Field("/rig/values", "values[command_interface.valve/effort]", 9, -0.5, 0.5, 500.0, "V")
-    found = suggest(Inspection(Path("bag"), "bag", (valve,), {"/rig/values": "x/msg/StatisticsValues"}, ()))
+    found = suggest(Inspection(Path("bag"), "bag", (valve,), topics, ()))
     assert certain_of(found) == {"voltage_command": (valve.path, "V", None)}
 
 

@@ -16,7 +16,10 @@ from eha_core.tables import Table
 DAY = 86400 * 10**9
 
 
-def stamped(times: object, rule: ChannelRule = ChannelRule(), stated: str = "") -> tuple[list[int], tuple[str, ...]]:
+NOTHING_SAID = ChannelRule()
+
+
+def stamped(times: object, rule: ChannelRule = NOTHING_SAID, stated: str = "") -> tuple[list[int], tuple[str, ...]]:
     stamps, remarks = stamps_of("run: column 'time'", np.asarray(times), rule, stated)
     return stamps.tolist(), remarks
 

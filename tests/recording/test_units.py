@@ -68,3 +68,18 @@ def test_pressures_become_those_above_the_atmosphere() -> None:
         scaled("pressure_a", [-1e6, -1e6, 1e6], reference=ABSOLUTE)
     scaled("pressure_a", [-1e6, -1e6, 1e6], reference=GAUGE)
     scaled("pressure_a", [0.0, 0.0, 1e6], reference=ABSOLUTE)
+
+
+LARGEST = {
+    "voltage_command": 1e4, "current": 1e3, "spool": 1e3, "flow_a": 10.0, "flow_b": 10.0, "pressure_a": 1e9,
+    "pressure_b": 1e9, "pump_speed": 1e5, "supply_pressure": 1e9, "position": 50.0, "velocity": 100.0, "force": 1e9,
+}  # fmt: skip
+"""The largest magnitudes of any rig."""
+
+
+@pytest.mark.parametrize(("name", "largest"), list(LARGEST.items()))
+def test_one_sample_beyond_the_largest_of_any_rig_is_left_out(name: str, largest: float) -> None:
+    values = np.full(200, 0.5 * largest)
+    values[3], values[4], values[5] = largest, -largest, np.nextafter(largest, np.inf)
+    samples, _ = scaled(name, values, reference=GAUGE)
+    assert samples.stamps.tolist() == [k for k in range(200) if k != 5]
