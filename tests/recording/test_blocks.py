@@ -195,6 +195,15 @@ def test_the_last_sample_is_in_the_last_block_also_where_the_record_ends_with_it
         assert one.recording.start_stamp == START + round(one.start * 1e9)
 
 
+@pytest.mark.parametrize("is_read", [True, False])
+def test_a_command_at_the_very_start_of_a_block_stands_for_itself(tmp_path: Path, is_read: bool) -> None:
+    file = a_rig(tmp_path / "run.mcap", [0.5 * k for k in range(21)], (0.0, 1.0, 5.0, 6.5, 8.5, 10.0))
+    found = recordings_of(BlocksOfFile(file, None, 5.0) if is_read else BlocksInMemory(read_recording(file), 5.0))
+    commands = [one.channels["voltage_command"] for one in found]
+    assert [one.time.tolist() for one in commands] == [[0.0, 1.0], [0.0, 1.5, 3.5, 5.0]]
+    np.testing.assert_allclose(commands[1].values, [5e-3, 6.5e-3, 8.5e-3, 10e-3])
+
+
 def test_a_gap_longer_than_blocks_has_blocks_without_samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(blocks, "PIECE", 1.0)
     times = [0.0, 0.5, 1.0, 9.25, 9.5, 10.0]
