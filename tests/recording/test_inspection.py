@@ -115,6 +115,11 @@ def test_one_message_has_no_rate(tmp_path: Path) -> None:
     assert all(isnan(one.rate) for one in inspect_file(a_bag(tmp_path, 1, SECOND)).fields)
 
 
+def test_two_messages_have_one(tmp_path: Path) -> None:
+    rates = [one.rate for one in inspect_file(a_bag(tmp_path, 2, SECOND // 4)).fields if one.count == 2]
+    assert len(rates) == 5 and rates == pytest.approx([4.0] * 5)
+
+
 @pytest.mark.parametrize("count", [12, 13])
 def test_a_nameless_array_is_listed_up_to_twelve_numbers(tmp_path: Path, count: int) -> None:
     path = tmp_path / "run.mcap"
