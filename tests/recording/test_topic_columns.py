@@ -158,3 +158,13 @@ def test_messages_of_one_layout_are_told_apart_by_their_names_alone() -> None:
     assert len({len(payload) for payload in payloads}) == 1
     decoded = columns_of(payloads, {"y": "fields[y].offset"}, cloud)
     np.testing.assert_array_equal(decoded.columns["y"], [1.0, 2.0, 1.0, np.nan, 1.0])
+
+
+def test_messages_of_either_order_of_bytes_are_told_apart() -> None:
+    store = get_typestore(Stores.ROS2_JAZZY)
+    kind = "std_msgs/msg/Float64"
+    payloads = [
+        bytes(store.serialize_cdr(store.types[kind](data=float(k)), kind, little_endian=k % 2 == 0))  # type: ignore[call-arg]
+        for k in range(6)
+    ]
+    np.testing.assert_array_equal(columns_of(payloads, {"u": "data"}, kind).columns["u"], np.arange(6.0))
