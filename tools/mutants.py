@@ -79,7 +79,9 @@ GROUPS = {
         ("recording",),
         "recording",
         "reader writer log_files bag topic_columns csv_file samples units blocks arrays simulated introspection"
-        " cdr_layout hostile_files damaged suggestions",
+        " cdr_layout hostile_files damaged suggestions suggested_units cutting discovery clocks inspection"
+        " message_types mcap_file table_file frozen mcap_summary channel_rules simulated_table unpacking"
+        " topics_text",
         "not turned_over and not at_any_byte and not too_many and not killed and not its_size and not 12_to_the",
         ("tests/cli/test_inspect.py",),
     ),

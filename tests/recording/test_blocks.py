@@ -157,3 +157,126 @@ def test_beyond_the_end_nothing_was_measured(path: Path) -> None:
     beyond = cut_out(read_recording(path), 500.0, 510.0)
     assert beyond is not None
     assert list(beyond.channels) == ["voltage_command"]
+
+
+def a_rig(
+    file: Path, times: list[float], command_at: tuple[float, ...] = (0.0,), flush_at: tuple[float, ...] = ()
+) -> Path:
+    """Positions at the times [s], each the time in mm, and commands of as many mV."""
+    with RecordingWriter(file, flush_period=1e9) as writer:
+        for time in times:
+            stamp = START + round(time * 1e9)
+            if time in flush_at:
+                writer.flush()
+            if time in command_at:
+                writer.write("/voltage_command", FLOAT, encode(FLOAT, {"data": time * 1e-3}), stamp)
+            joint = {"header": header(stamp), "name": ["piston"], "position": [time * 1e-3]}
+            writer.write("/joint_states", JOINTS, encode(JOINTS, joint), stamp)
+    return file
+
+
+@pytest.mark.parametrize("is_read", [True, False])
+@pytest.mark.parametrize(
+    ("last", "ends"), [(8, [2.5, 5.0, 7.5, 8.0]), (10, [2.5, 5.0, 7.5, 10.0]), (5, [2.5, 5.0]), (2, [2.0])]
+)
+def test_the_last_sample_is_in_the_last_block_also_where_the_record_ends_with_it(
+    tmp_path: Path, is_read: bool, last: int, ends: list[float]
+) -> None:
+    file = a_rig(tmp_path / "run.mcap", [0.5 * k for k in range(2 * last + 1)])
+    found = taken(BlocksOfFile(file, None, 2.5) if is_read else BlocksInMemory(read_recording(file), 2.5))
+    assert [one.number for one in found] == list(range(len(ends)))
+    assert [one.start for one in found] == pytest.approx([2.5 * k for k in range(len(ends))])
+    assert [one.end for one in found] == pytest.approx(ends)
+    for one in found:
+        assert one.recording
+        times = [time for time in np.arange(2 * last + 1) / 2 if one.start <= time < one.end or time == one.end == last]
+        np.testing.assert_allclose(one.recording.channels["position"].values, np.array(times) * 1e-3)
+        assert one.recording.channels["voltage_command"].values.tolist() == [0.0]
+        assert one.recording.start_stamp == START + round(one.start * 1e9)
+
+
+@pytest.mark.parametrize("is_read", [True, False])
+def test_a_command_at_the_very_start_of_a_block_stands_for_itself(tmp_path: Path, is_read: bool) -> None:
+    file = a_rig(tmp_path / "run.mcap", [0.5 * k for k in range(21)], (0.0, 1.0, 5.0, 6.5, 8.5, 10.0))
+    found = recordings_of(BlocksOfFile(file, None, 5.0) if is_read else BlocksInMemory(read_recording(file), 5.0))
+    commands = [one.channels["voltage_command"] for one in found]
+    assert [one.time.tolist() for one in commands] == [[0.0, 1.0], [0.0, 1.5, 3.5, 5.0]]
+    np.testing.assert_allclose(commands[1].values, [5e-3, 6.5e-3, 8.5e-3, 10e-3])
+
+
+def test_a_gap_longer_than_blocks_has_blocks_without_samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blocks, "PIECE", 1.0)
+    times = [0.0, 0.5, 1.0, 9.25, 9.5, 10.0]
+    file = a_rig(tmp_path / "run.mcap", times, flush_at=(9.25, 9.5, 10.0))
+    found = taken(BlocksOfFile(file, None, 2.0))
+    assert [bool(one.recording) for one in found] == [True, False, False, False, True]
+    assert found[1].problem == f"{file} from 2 s to 4 s: no samples there"
+    assert [one.problem for one in found if one.recording] == ["", ""]
+    last = found[4].recording
+    assert last and last.channels["voltage_command"].time.tolist() == [0.0]
+    np.testing.assert_allclose(last.channels["position"].time, [1.25, 1.5, 2.0])
+
+
+def test_what_was_left_out_in_several_pieces_is_said_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blocks, "PIECE", 2.0)
+    file = tmp_path / "run.mcap"
+    with RecordingWriter(file, flush_period=1e9) as writer:
+        for k in range(100):
+            writer.flush() if k % 10 == 0 else None
+            stamp = START + k * 100_000_000
+            place = np.nan if k % 25 == 5 else k * 1e-3
+            joint = {"header": header(stamp), "name": ["piston"], "position": [place]}
+            writer.write("/joint_states", JOINTS, encode(JOINTS, joint), stamp)
+    source = BlocksOfFile(file, None, 2.0)
+    kept = np.concatenate([one.channels["position"].values for one in recordings_of(source)])
+    np.testing.assert_allclose(kept, [k * 1e-3 for k in range(100) if k % 25 != 5])
+    (remark,) = source.remarks
+    assert remark.startswith("position (/joint_states): 1 samples that are no finite number were left out (and so in ")
+    assert remark.endswith("3 more places)")
+
+
+def test_a_piece_that_goes_back_before_the_last_is_left_out_and_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The stamps begin anew at 4 s by the recorder's clock; they are back where they were after 3 s."""
+    monkeypatch.setattr(blocks, "PIECE", 1.0)
+    file = tmp_path / "run.mcap"
+    with RecordingWriter(file, flush_period=1e9) as writer:
+        for k in range(80):
+            writer.flush() if k % 10 == 0 else None
+            time = 0.1 * k if k < 40 else 0.1 * k - 0.3
+            joint = {"header": header(START + round(time * 1e9)), "name": ["piston"], "position": [k * 1e-3]}
+            writer.write("/joint_states", JOINTS, encode(JOINTS, joint), START + k * 100_000_000)
+    source = BlocksOfFile(file, None, 2.0)
+    kept = np.concatenate([one.channels["position"].values for one in recordings_of(source)])
+    np.testing.assert_allclose(kept, [k * 1e-3 for k in range(80) if not 40 <= k < 43])
+    assert source.remarks == ("position: 3 samples were left out because time runs backwards there",)
+
+
+def test_a_file_s_pieces_end_after_30_s_or_a_million_messages(monkeypatch: pytest.MonkeyPatch) -> None:
+    gathered: list[int] = []
+
+    def is_gathered(gate: blocks._Gate, log_time: int, count: int = 1) -> bool:
+        before = len(gathered)
+        gate.passes(log_time, count)
+        return len(gathered) > before
+
+    gate, second = blocks._Gate(lambda: gathered.append(1)), 10**9
+    told = [is_gathered(gate, time) for time in (7, 30 * second, 30 * second + 6, 30 * second + 7, 31 * second)]
+    assert told == [False, False, False, True, False]
+    assert [is_gathered(gate, time) for time in (60 * second + 6, 60 * second + 7, 61 * second)] == [False, True, False]
+    many = blocks._Gate(lambda: gathered.append(1))
+    told = [is_gathered(many, 0, count) for count in (400_000, 600_000, 1, 999_999, 1, 7)]
+    assert told == [False, False, True, False, True, False]
+    far = blocks._Gate(lambda: gathered.append(1))
+    assert [is_gathered(far, 0, count) for count in (1, 2_000_000)] == [False, True]
+
+
+def test_progress_is_told_with_what_is_known(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blocks, "PIECE", 10.0)
+    source, told = BlocksOfFile(path, None, 5.0), list[str]()
+    for _ in range(2):
+        source.each(lambda block: None, None, told.append)
+    assert told[-1] == "reading run.mcap: 23 of 23 s"
+    assert told[len(told) // 2 - 1] == "reading run.mcap: 23 s"
+    assert told[0] == "reading run.mcap: 10 s"

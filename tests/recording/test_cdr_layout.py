@@ -10,6 +10,7 @@ import pytest
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
+from eha_core.recording import encode
 from eha_core.recording.cdr_layout import MOST_PARTS, layout_of
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
@@ -111,3 +112,16 @@ def test_a_length_that_claims_the_world_is_refused_before_it_is_walked() -> None
     with pytest.raises(ValueError, match="has 2147483647 elements|ends early"):
         layout_of(STORE, "sensor_msgs/msg/JointState", claims)
     assert MOST_PARTS < 1e5
+
+
+@pytest.mark.parametrize(
+    ("count", "message"), [(16378, ""), (16379, "more than 16384 parts"), (16385, "name has 16385")]
+)
+def test_a_message_has_16384_parts_at_most(count: int, message: str) -> None:
+    """Joints' names, beside which a message of joints has six."""
+    data = encode("sensor_msgs/msg/JointState", {"name": ["a"] * count})
+    if not message:
+        assert len(layout_of(STORE, "sensor_msgs/msg/JointState", data).texts) == count + 1
+    else:
+        with pytest.raises(ValueError, match=message):
+            layout_of(STORE, "sensor_msgs/msg/JointState", data)

@@ -205,3 +205,21 @@ def test_a_damaged_definition_gives_way_to_the_installed_one(tmp_path: Path, def
     writer.add_message(channel, START, encode("std_msgs/msg/Float64", {"data": 0.5}), START)
     writer.finish()
     assert read_recording(path).channels["voltage_command"].values.tolist() == [0.5]
+
+
+@pytest.mark.parametrize("numbers", [(5,), (5, 9, 20)])
+def test_damaged_chunks_are_counted_with_their_messages(tmp_path: Path, sound: bytes, numbers: tuple[int, ...]) -> None:
+    (tmp_path / "sound.mcap").write_bytes(sound)
+    with (tmp_path / "sound.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    content = bytearray(sound)
+    for number in numbers:
+        index = sorted(summary.chunk_indexes, key=lambda one: one.chunk_start_offset)[number]
+        content[index.chunk_start_offset + index.chunk_length - 20] ^= 1
+    recording = read_bytes(tmp_path, bytes(content))
+    assert recording is not None and recording.damaged is not None
+    told = recording.damaged.split("; ")
+    assert told[0] == f"damaged chunks left out: {len(numbers)}"
+    assert told[1] == f"{80 * len(numbers)} of 3200 messages are missing"
+    assert len(recording.channels["position"].time) == 800 - 20 * len(numbers)

@@ -327,3 +327,12 @@ def test_a_clock_that_leaps_leaves_all_channels_on_one_side(tmp_path: Path, leap
     assert len(position.time) > 990
     at_position = np.interp(position.time, pressure.time, pressure.values + 101325.0 - 1e6)
     np.testing.assert_allclose(at_position, position.values * 1e6, atol=1.1)
+
+
+def test_a_stored_parameter_that_is_no_number_is_left_out_and_said(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    with RecordingWriter(path, {"moving_mass": "heavy", "piston_area": 1e-3, "plant.load": "sprung_mass"}) as writer:
+        write_piston(writer, count=2)
+    recording = read_recording(path)
+    assert (recording.parameters, recording.parts) == ({"piston_area": 1e-3}, {"load": "sprung_mass"})
+    assert recording.remarks == ("the stored parameter moving_mass is no number ('heavy') and was left out",)

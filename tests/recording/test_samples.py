@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
+import pytest
 
 from eha_core.recording.samples import Samples, on_one_span, put_in_order
 
@@ -53,6 +54,11 @@ def test_nothing_is_kept_of_nothing() -> None:
     assert ordered([1, 2], [float("nan"), float("inf")])[0] == []
 
 
+def test_a_single_step_back_by_one_ns_is_one() -> None:
+    kept, remarks = ordered([0, 5, 4, 9, 10])
+    assert len(kept) == 4 and remarks == ("1 samples were left out because time runs backwards there",)
+
+
 def test_order_is_left_alone() -> None:
     stamps = list(range(0, 1000, 7))
     assert ordered(stamps) == (stamps, ())
@@ -94,3 +100,71 @@ def test_a_channel_that_has_no_number_in_the_span_of_the_longest_is_left_out() -
     kept, remarks = on_one_span(ordered_channels, recorded, ())
     assert list(kept) == ["position"]
     assert remarks == ("velocity was recorded at another time than position and was left out",)
+
+
+HOUR = 3600 * 10**9
+
+
+@pytest.mark.parametrize(("gap", "kept"), [(HOUR, 5), (HOUR + 1, 3)])
+def test_a_gap_of_an_hour_is_one_run_and_a_longer_one_two(gap: int, kept: int) -> None:
+    assert len(ordered([0, 1, 2, 2 + gap, 3 + gap])[0]) == kept
+    assert ordered([0, 1, 1 + gap, 2 + gap, 3 + gap])[0][-kept:] == [0, 1, 1 + gap, 2 + gap, 3 + gap][-kept:]
+
+
+def test_of_repeated_stamps_the_first_counts() -> None:
+    samples, remarks = put_in_order(Samples(np.array([0, 1, 1, 1, 2, 2]), np.arange(6.0)))
+    assert (samples.stamps.tolist(), samples.values.tolist()) == ([0, 1, 2], [0.0, 1.0, 4.0])
+    assert remarks == ("3 samples with the stamp of the one before were left out",)
+
+
+def test_values_go_with_their_stamps() -> None:
+    numbers = [9.0, float("nan"), 7.0, 6.0, 5.0, 4.0]
+    samples, remarks = put_in_order(Samples(np.array([5, 6, 7, 1, 8, 9]), np.array(numbers)))
+    assert (samples.stamps.tolist(), samples.values.tolist()) == ([5, 7, 8, 9], [9.0, 7.0, 5.0, 4.0])
+    assert remarks == (
+        "1 samples that are no finite number were left out",
+        "1 samples were left out because time runs backwards there",
+    )
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "is_kept"),
+    [(99, 99, False), (99, 100, True), (199, 230, True), (200, 230, False), (0, 300, True)],
+)
+def test_a_channel_that_touches_the_span_of_the_longest_is_kept_as_it_is(first: int, last: int, is_kept: bool) -> None:
+    """The longest goes from 100 to 199."""
+    longest, other = (
+        series(100, 100),
+        Samples(np.array([first, last] if last > first else [first]), np.ones(2 - (first == last))),
+    )
+    channels = {"position": longest, "force": other}
+    kept, remarks = on_one_span(channels, channels, ())
+    assert ("force" in kept) == is_kept
+    assert bool(remarks) == (not is_kept)
+
+
+@pytest.mark.parametrize(("before", "is_kept"), [(1, True), (HOUR, True), (HOUR + 1, False)])
+def test_a_command_holds_for_an_hour(before: int, is_kept: bool) -> None:
+    command = Samples(np.array([0]), np.array([1.0]))
+    channels = {"voltage_command": command, "position": series(before, 100)}
+    kept, _ = on_one_span(channels, channels, ("voltage_command",))
+    assert ("voltage_command" in kept) == is_kept
+    late = {"voltage_command": Samples(np.array([before + 100]), np.array([1.0])), "position": series(before, 100)}
+    assert list(on_one_span(late, late, ("voltage_command",))[0]) == ["position"]
+
+
+def test_the_longest_is_one_that_is_measured_where_one_is() -> None:
+    """However often the command was sent; alone it stands for itself."""
+    channels = {"voltage_command": series(5 * HOUR, 500), "position": series(0, 10)}
+    assert list(on_one_span(channels, channels, ("voltage_command",))[0]) == ["position"]
+    alone = {"voltage_command": series(0, 5)}
+    assert on_one_span(alone, alone, ("voltage_command",)) == (alone, ())
+
+
+def test_what_of_a_channel_lies_in_the_span_of_the_longest_is_found_again() -> None:
+    """Ends included: of 9, 10, 19 and 20 the two that lie from 10 to 19."""
+    recorded = {"position": series(10, 10), "force": Samples(np.array([40, 41, 42, 9, 10, 19, 20]), np.arange(7.0))}
+    ordered_channels = {"position": recorded["position"], "force": Samples(np.array([40, 41, 42]), np.arange(3.0))}
+    kept, remarks = on_one_span(ordered_channels, recorded, ())
+    assert (kept["force"].stamps.tolist(), kept["force"].values.tolist()) == ([10, 19], [4.0, 5.0])
+    assert remarks == ("force: 5 samples of another time than position's were left out",)

@@ -6,15 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 
 from eha_core.api import known_model
 from eha_core.cli import main
 from eha_core.errors import ParameterError
 from eha_core.plant import COLUMNS, Plant
-from eha_core.recording import encode, read_recording
+from eha_core.recording import encode, read_recording, simulated
 from eha_core.recording.message_rows import encode_rows
-from eha_core.recording.simulated import Experiment, simulate, simulate_sweep, write_simulated
+from eha_core.recording.simulated import Experiment, _driving, simulate, simulate_sweep, write_simulated
 
 TIMES = np.arange(200) / 500.0
 VOLTAGES = 0.05 * np.sin(2 * np.pi * 5.0 * TIMES)
@@ -115,6 +116,90 @@ def test_a_changed_parameter_is_an_event_as_ros2_has_it(tmp_path: Path) -> None:
     (changed,) = event.changed_parameters
     assert (changed.name, changed.value.type, changed.value.double_value) == ("moving_mass", 3, 12.0)
     assert event.stamp.sec * 10**9 + event.stamp.nanosec == logged == record.stamps[0] + 200_000_000
+
+
+def test_messages_of_one_instant_come_in_one_order(tmp_path: Path) -> None:
+    """What was set, then what the rig gives, then the command that holds from there on."""
+    record = simulate(Experiment(TIMES, VOLTAGES, 0.4, {}, [(0.2, "internal_leakage", 1e-9)]))
+    path = tmp_path / "run.mcap"
+    write_simulated(path, record)
+    with path.open("rb") as file:
+        read = [
+            (message.log_time, channel.topic)
+            for _, channel, message in make_reader(file).iter_messages(log_time_order=False)
+        ]
+    always = ["/chamber_a/pressure", "/chamber_b/pressure", "/state", "/joint_states", "/voltage_command"]
+    assert [topic for time, topic in read if time == 2_000_000] == always
+    assert [topic for time, topic in read if time == 0] == ["/internal_leakage", *always]
+    assert [topic for time, topic in read if time == 200_000_000] == [
+        "/parameter_events", "/internal_leakage", *always
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("period", [1, 2, 100])
+def test_the_leakage_is_told_from_the_start_and_from_where_it_was_set(tmp_path: Path, period: int) -> None:
+    """Also where it is set at the first instant after the start, and again at the next."""
+    changes = [(period / 500.0, "internal_leakage", 1e-9), ((period + 1) / 500.0, "internal_leakage", 2e-9)]
+    record = simulate(Experiment(TIMES, VOLTAGES, 0.4, {"internal_leakage": 5e-12}, changes))
+    path = tmp_path / "run.mcap"
+    write_simulated(path, record)
+    told = read_recording(path).leakage_changes
+    assert told == ((0.0, 5e-12), (period / 500.0, 1e-9), ((period + 1) / 500.0, 2e-9))
+
+
+def test_a_change_counts_from_the_first_instant_of_publishing_that_has_come() -> None:
+    """At 500 Hz: 3.9 ms is told at 4 ms, 4 ms at 4 ms; at the record's end and beyond nothing changes."""
+    changes = [(0.004, "damping_coefficient", 9.0), (0.0039, "moving_mass", 12.0), (0.02, "damping_coefficient", 1.0)]
+    record = simulate(Experiment(TIMES, VOLTAGES, 0.02, {}, [*changes, (1.0, "moving_mass", 1.0)]))
+    assert record.changes == [(4_000_000, "moving_mass", 12.0), (4_000_000, "damping_coefficient", 9.0)]
+    plant = Plant({}, 1e-4)
+    states = [plant.state]
+    for k in range(10):
+        if k == 2:
+            plant.set_parameters({"moving_mass": 12.0, "damping_coefficient": 9.0})
+        plant.advance(float(VOLTAGES[k]), 20)
+        states.append(plant.state)
+    np.testing.assert_array_equal(record.states, np.array(states))
+
+
+def test_commands_after_the_end_are_not_told() -> None:
+    record = simulate(Experiment(np.array([0.0, 0.0199, 0.02, 0.05]), np.arange(1.0, 5.0) * 1e-2, 0.02))
+    assert record.commands[0].tolist() == [0, 19_900_000]
+    assert record.commands[1].tolist() == [1e-2, 2e-2]
+
+
+def test_measured_inputs_are_those_of_mid_step_and_a_command_holds() -> None:
+    times = np.array([0.0, 0.01])
+    inputs = {
+        "flow_a": (times, np.array([0.0, 1e-4])),
+        "voltage_command": (np.array([0.002, 0.005, 0.03]), np.array([1.0, 2.0, 3.0])),
+    }
+    driving = _driving(Experiment(np.empty(0), np.empty(0), 0.01, step_size=1e-3, inputs=inputs))
+    np.testing.assert_allclose(driving[:, 0], (np.arange(10) + 0.5) * 1e-5, rtol=1e-12)
+    assert driving[:, 1].tolist() == [0.0] * 2 + [1.0] * 3 + [2.0] * 5
+
+
+@pytest.mark.parametrize(("rate", "steps"), [(500.0, 20), (10_000.0, 1), (400.0, 25)])
+def test_a_period_is_a_whole_number_of_steps(rate: float, steps: int) -> None:
+    experiment = Experiment(TIMES, VOLTAGES, 0.4, rate=rate)
+    assert (experiment.steps_per_period, experiment.periods) == (steps, round(0.4 * rate))
+    assert simulate(Experiment(TIMES, VOLTAGES, 3 / rate, rate=rate)).stamps.tolist() == [
+        round(k * 1e9 / rate) for k in range(4)
+    ]
+
+
+@pytest.mark.parametrize("rate", [20_001.0, 30_000.0, 15_000.0])
+def test_a_rate_above_the_steps_is_refused(rate: float) -> None:
+    with pytest.raises(ParameterError, match="choose a whole number"):
+        simulate(Experiment(TIMES, VOLTAGES, 0.4, rate=rate))
+
+
+def test_more_messages_than_are_serialised_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    record = simulate(Experiment(TIMES, VOLTAGES, 0.04))
+    write_simulated(tmp_path / "whole.mcap", record)
+    monkeypatch.setattr(simulated, "_BLOCK", 7)
+    write_simulated(tmp_path / "parts.mcap", record)
+    assert (tmp_path / "whole.mcap").read_bytes() == (tmp_path / "parts.mcap").read_bytes()
 
 
 def test_instruments_tell_nothing_of_the_model(tmp_path: Path) -> None:

@@ -130,3 +130,41 @@ def test_log_times_of_any_sign_are_taken() -> None:
     for log_time in (-8_330_100_865_958_439_936, 2**64 - 1, 5):
         sink.add(log_time, joints(["a"], [1.0]))
     assert sink.finish().logged.tolist() == [-8_330_100_865_958_439_936, -1, 5]
+
+
+def test_each_block_of_a_topic_is_given_once() -> None:
+    sink = TopicColumns(RawTopic("/topic", JOINTS, "ros2msg", definition_of(JOINTS)[0]), {"x": "position[0]"})
+    sink.add(7, joints(["a"], [1.0], "", 5))
+    first, second = sink.finish(), sink.finish()
+    assert (first.columns["x"].tolist(), first.stamps.tolist(), first.lead) == ([1.0], [5], 2)
+    assert (second.columns["x"].tolist(), second.stamps.tolist(), second.logged.tolist()) == ([], [], [])
+
+
+def test_stamps_that_nobody_filled_in_are_the_log_times() -> None:
+    decoded = columns_of([joints(["a"], [float(k)]) for k in range(6)], {"x": "position[0]"})
+    assert decoded.stamps.tolist() == decoded.logged.tolist() == [k * 1_000_000 for k in range(6)]
+    assert decoded.lead == 0
+    one = columns_of([joints(["a"], [float(k)], "", 5 if k == 3 else 0) for k in range(6)], {"x": "position[0]"})
+    assert one.stamps.tolist() == [0, 0, 0, 5, 0, 0]
+
+
+def test_messages_of_one_layout_are_told_apart_by_their_names_alone() -> None:
+    """Also those of parts, whose names are of one length."""
+    cloud = "sensor_msgs/msg/PointCloud2"
+    payloads = [
+        encode(cloud, {"fields": [{"name": name, "offset": k} for k, name in enumerate(names, start=1)]})
+        for names in ("yz", "xy", "yx", "xz", "yx")
+    ]
+    assert len({len(payload) for payload in payloads}) == 1
+    decoded = columns_of(payloads, {"y": "fields[y].offset"}, cloud)
+    np.testing.assert_array_equal(decoded.columns["y"], [1.0, 2.0, 1.0, np.nan, 1.0])
+
+
+def test_messages_of_either_order_of_bytes_are_told_apart() -> None:
+    store = get_typestore(Stores.ROS2_JAZZY)
+    kind = "std_msgs/msg/Float64"
+    payloads = [
+        bytes(store.serialize_cdr(store.types[kind](data=float(k)), kind, little_endian=k % 2 == 0))  # type: ignore[call-arg]
+        for k in range(6)
+    ]
+    np.testing.assert_array_equal(columns_of(payloads, {"u": "data"}, kind).columns["u"], np.arange(6.0))

@@ -68,3 +68,53 @@ def test_pressures_become_those_above_the_atmosphere() -> None:
         scaled("pressure_a", [-1e6, -1e6, 1e6], reference=ABSOLUTE)
     scaled("pressure_a", [-1e6, -1e6, 1e6], reference=GAUGE)
     scaled("pressure_a", [0.0, 0.0, 1e6], reference=ABSOLUTE)
+
+
+LARGEST = {
+    "voltage_command": 1e4, "current": 1e3, "spool": 1e3, "flow_a": 10.0, "flow_b": 10.0, "pressure_a": 1e9,
+    "pressure_b": 1e9, "pump_speed": 1e5, "supply_pressure": 1e9, "position": 50.0, "velocity": 100.0, "force": 1e9,
+}  # fmt: skip
+"""The largest magnitudes of any rig."""
+
+
+@pytest.mark.parametrize(("name", "largest"), list(LARGEST.items()))
+def test_one_sample_beyond_the_largest_of_any_rig_is_left_out(name: str, largest: float) -> None:
+    values = np.full(200, 0.5 * largest)
+    values[3], values[4], values[5] = largest, -largest, np.nextafter(largest, np.inf)
+    samples, _ = scaled(name, values, reference=GAUGE)
+    assert samples.stamps.tolist() == [k for k in range(200) if k != 5]
+
+
+@pytest.mark.parametrize(
+    ("name", "largest", "unit", "is_told"),
+    [
+        ("position", 5000.0, "mm", True),
+        ("position", 5001.0, "mm", False),
+        ("position", 51.0, "um", False),
+        ("position", 1000.0, "um", True),
+        ("position", 999.0, "um", False),
+        ("pressure_a", 10.0, "bar", True),
+        ("pressure_a", 9.9, "bar", False),
+        ("pressure_a", 500.0, "bar", True),
+        ("pressure_a", 501.0, "bar", False),
+        ("pressure_a", 1.0, "MPa", True),
+        ("pressure_a", 0.99, "MPa", False),
+        ("pressure_a", 51.0, "MPa", False),
+        ("pressure_a", 146.0, "psi", True),
+        ("pressure_a", 145.0, "psi", False),
+        ("pressure_a", 999.0, "kPa", False),
+        ("pressure_a", 1000.0, "kPa", True),
+    ],
+)
+def test_a_unit_is_named_from_the_least_to_the_most_of_rigs(
+    name: str, largest: float, unit: str, is_told: bool
+) -> None:
+    """Of pressures 1 to 50 MPa, of strokes 1 mm to 5 m."""
+    with pytest.raises(RecordingError) as refused:
+        scaled(name, [largest, -largest])
+    assert (f"if it is in {unit}" in str(refused.value)) == is_told
+
+
+def test_no_unit_is_named_for_a_quantity_of_which_none_is_usual() -> None:
+    with pytest.raises(RecordingError, match="in a topics file$"):
+        scaled("force", [2e9, 2e9])
