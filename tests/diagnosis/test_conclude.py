@@ -16,16 +16,7 @@ from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.discrimination import RATE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.result import (
-    ChannelFit,
-    Correlation,
-    Explained,
-    FittedValue,
-    Location,
-    NamedEffect,
-    Step,
-    UnknownLaw,
-)
+from eha_core.diagnosis.result import ChannelFit, Correlation, Explained, Location, Step, UnknownLaw
 from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
@@ -35,7 +26,7 @@ from eha_core.identification.segments import cut
 from eha_core.identification.validate import Judged
 from eha_core.parameters import nominal_values
 from eha_core.plant import PAPER, compose
-from eha_core.recording import Recording, read_recording
+from eha_core.recording import Recording
 
 CURVE = next(effect for effect in effects() if effect.id == "recovered_force")
 
@@ -335,34 +326,3 @@ def test_the_winner_is_polished_at_the_final_step_and_further_where_that_leaves_
             winner = Entry(NOTHING, replace(explanation({}), data=before, count=100), 0.0)
             conclude.polish(evidence, winner)
             assert [one[:2] for one in runs] == [(step, [0, 1, 2])] * (2 if goes_on else 1)
-
-
-def zero_named(effect_id, active=None, **values):
-    named = {name: FittedValue(value, 1e-3 * abs(value), "") for name, value in values.items()}
-    return NamedEffect(effect_id, "sensor", "", named, 100.0, "", active)
-
-
-def test_a_named_zero_comes_with_the_topics_line_that_undoes_it(tmp_path):
-    time = np.arange(400) / 100.0
-    position = 0.03 * np.sin(time)
-    table = np.stack([time, position + 0.1, 5e6 + 1e5 * time, 6e6 - 1e5 * time], axis=1)
-    path = tmp_path / "rig.csv"
-    np.savetxt(path, table, delimiter=",", header="time,position,pressure_a,pressure_b", comments="")
-    named = [zero_named("position_sensor_offset", offset=0.1),
-             zero_named("pressure_sensor_bias", bias_a=-101325.0, bias_b=0.0)]  # fmt: skip
-    lines = list(conclude.zeros_to_correct(named, read_recording(path)))
-    topics = tmp_path / "topics.yaml"
-    topics.write_text(lines[0].split("`")[1] + "\n")
-    np.testing.assert_allclose(read_recording(path, topics).channels["position"].values, position, atol=1e-12)
-    topics.write_text(lines[1].split("`")[1] + "\n")
-    gauge = read_recording(path, topics).channels["pressure_a"].values  # the table was taken as absolute
-    np.testing.assert_allclose(gauge, table[:, 2], atol=50.0)
-    assert "pressure_b" not in lines[1]
-
-
-def test_what_is_no_zero_and_a_zero_that_moved_midway_have_no_topics_line():
-    recording = Recording.from_arrays(time=np.arange(9.0), position=np.arange(9.0))
-    friction = zero_named("coulomb_friction", force=300.0)
-    moved = zero_named("position_sensor_offset", (2.0, 5.0), offset=0.1)
-    biased = zero_named("pressure_sensor_bias", bias_a=1e5, bias_b=1e5)
-    assert not list(conclude.zeros_to_correct([friction, moved, biased], recording))
