@@ -105,16 +105,22 @@ def test_what_is_no_recording_is_refused_in_one_line(
     assert "\n" not in str(caught.value)
 
 
+def written(folder: Path, count: int) -> Path:
+    """The .db3 of a bag with so many voltages, a second and 0.1 V apart."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(folder, version=8, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connection = writer.add_connection("/voltage_command", FLOAT, typestore=store)
+        for k in range(count):
+            message = store.types[FLOAT](data=k * 0.1)  # type: ignore[call-arg]
+            writer.write(connection, START + k * SECOND, store.serialize_cdr(message, FLOAT))
+    (path,) = folder.glob("*.db3")
+    return path
+
+
 @pytest.mark.parametrize("stamp", ["'soon'", "0.5e300", "x'00'"])
 def test_a_stamp_that_is_no_whole_number_ends_what_can_be_read(tmp_path: Path, stamp: str) -> None:
     """SQLite keeps any value in any column."""
-    store = get_typestore(Stores.ROS2_JAZZY)
-    with Writer(tmp_path / "bag", version=8, storage_plugin=StoragePlugin.SQLITE3) as writer:
-        connection = writer.add_connection("/voltage_command", FLOAT, typestore=store)
-        for k in range(4):
-            message = store.types[FLOAT](data=k * 0.1)  # type: ignore[call-arg]
-            writer.write(connection, START + k * SECOND, store.serialize_cdr(message, FLOAT))
-    (path,) = (tmp_path / "bag").glob("*.db3")
+    path = written(tmp_path / "bag", 4)
     database = apsw.Connection(str(path))
     database.execute(f"UPDATE messages SET timestamp = {stamp} WHERE id = (SELECT max(id) FROM messages)")
     database.close()
@@ -126,13 +132,7 @@ def test_a_stamp_that_is_no_whole_number_ends_what_can_be_read(tmp_path: Path, s
 @pytest.fixture
 def database(tmp_path: Path) -> Path:
     """A .db3 of 6 messages of 12 bytes each: 4 that say how it is encoded, and a double."""
-    store = get_typestore(Stores.ROS2_JAZZY)
-    with Writer(tmp_path / "bag", version=8, storage_plugin=StoragePlugin.SQLITE3) as writer:
-        connection = writer.add_connection("/voltage_command", FLOAT, typestore=store)
-        for k in range(6):
-            message = store.types[FLOAT](data=k * 0.1)  # type: ignore[call-arg]
-            writer.write(connection, START + k * SECOND, store.serialize_cdr(message, FLOAT))
-    return next((tmp_path / "bag").glob("*.db3"))
+    return written(tmp_path / "bag", 6)
 
 
 @pytest.mark.parametrize(("room", "is_enough"), [(6 * (12 + 32), True), (6 * (12 + 32) - 1, False)])
