@@ -12,7 +12,7 @@ from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case
 from eha_core.identification.fit import fit_in_stages
 from eha_core.identification.observation import observe
-from eha_core.identification.short_windows import SHORT, SLACK, from_short_windows
+from eha_core.identification.short_windows import SHORT, from_short_windows
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
@@ -48,7 +48,7 @@ def test_short_windows_lead_nearer_than_long_ones_from_afar(rig, sizes):
 
 def test_the_recordings_are_the_same_in_windows_of_the_lengths_stated(rig):
     calibration, _ = rig
-    assert len(calibration.shorter) == len(SHORT) == len(SLACK)
+    assert len(calibration.shorter) == len(SHORT)
     for shooting, length in zip(calibration.shorter, SHORT, strict=True):
         spans = np.diff(shooting.edges) * shooting.step_size
         assert np.median(spans) == pytest.approx(length, rel=0.21)

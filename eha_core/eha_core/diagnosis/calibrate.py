@@ -59,7 +59,7 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
-    shorter = tuple(cut_together(observations, nominal, step_size, one, model.per_recording) for one in SHORT)
+    shorter = tuple(cut_together(observations, nominal, STEPS[0], one, model.per_recording) for one in SHORT)
     return Calibration(shooting, problem, at_nominal_values, fitted, shorter)
 
 

@@ -120,11 +120,12 @@ def fit(
     *,
     iterations: int = 12,
     give_up_above: float = np.inf,
+    in_a_row: int = 1,
 ) -> Fit:
     """Minimise data, links and priors over `free` and the states of the windows in use, from `values`.
 
-    Stops when an iteration gains too little (SETTLED, WORTH), or when ones to come, at HOPE times the last one's gain,
-    would not bring it below `give_up_above`.
+    Stops when an iteration gains next to nothing (SETTLED), when so many `in_a_row` gain too little (WORTH), or when
+    ones to come, at HOPE times the last one's gain, would not bring it below `give_up_above`.
     """
     shooting = problem.shooting
     free, values = in_each(free, values, shooting.per_recording, len(shooting.first_windows))
@@ -134,7 +135,7 @@ def fit(
     steps = np.maximum(1e-3, resolution)
     rows, ends = simulate(shooting, values, free, q, states)
     objective = objective_of(problem, free, q, states, rows, ends)
-    damping, ending, done = 1e-6, Ending.ITERATIONS, 0
+    damping, ending, done, little = 1e-6, Ending.ITERATIONS, 0, 0
     normal = _unknowing(len(free), shooting.windows)
     for done in range(1, iterations + 1):
         linear = linearise(problem, values, free, q, states, steps, (rows, ends))
@@ -153,7 +154,8 @@ def fit(
         damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
         spread = np.sqrt(1.0 / np.maximum(np.diag(normal.parameters), 1e-12))
         steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
-        if gain < max(SETTLED, WORTH * (objective - problem.count())):
+        little = little + 1 if gain < max(SETTLED, WORTH * (objective - problem.count())) else 0
+        if gain < SETTLED or little == in_a_row:
             ending = Ending.CONVERGED
             break
         if done > 2 and objective - HOPE * gain > give_up_above:

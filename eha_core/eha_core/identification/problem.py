@@ -35,23 +35,16 @@ Point = tuple[Mapping[str, float], Array]
 
 @dataclass(frozen=True)
 class Problem:
-    """What a fit explains: the windows in use, the step at which it takes derivatives, and how many times looser than
-    LINK the windows hang together."""
+    """What a fit explains: the windows in use, and the step at which it takes derivatives."""
 
     shooting: Shooting
     windows: Integers
     slope_step: float = SLOPE_STEP
-    slack: float = 1.0
 
     @cached_property
     def slopes(self) -> Shooting:
         """The same windows at the step at which derivatives are taken."""
         return coarser(self.shooting, self.slope_step)
-
-    @property
-    def link(self) -> Array:
-        """How well a window's end meets the next one's start: m, m/s, Pa, Pa."""
-        return LINK * self.slack
 
     def used(self) -> Flags:
         """Which windows count."""
@@ -139,7 +132,7 @@ def objective_of(
     for one, residual in zip(shooting.samplings, residuals(shooting, rows), strict=True):
         total += float(np.sum(residual[used[one.window]] ** 2))
     links, size = problem.links(), shooting.free_states
-    gaps = ((ends[links] - states[links + 1]) / problem.link)[:, :size]
+    gaps = ((ends[links] - states[links + 1]) / LINK)[:, :size]
     total += float(np.sum(gaps**2))
     total += float(np.sum((((states - shooting.initial_states) / STATE_PRIOR)[used, :size]) ** 2))
     total += sum((float(at) / one.prior_deviation) ** 2 for one, at in zip(free, q, strict=True))
@@ -248,7 +241,7 @@ def normal_equations(
         own[window, :size, :size] = by_state.T @ by_state
         shared[window, :size] = by_state.T @ linear.by_parameter[piece]
         towards[window, :size] = by_state.T @ linear.residual[piece]
-    links, weight = problem.links(), 1.0 / problem.link[:size]
+    links, weight = problem.links(), 1.0 / LINK[:size]
     by_parameter = linear.ends_by_parameter[links, :size] * weight[:, None]
     by_start = np.swapaxes(linear.ends_by_state[links, :size] * weight[:, None], 1, 2)
     gap = (linear.ends[links] - states[links + 1])[:, :size] * weight

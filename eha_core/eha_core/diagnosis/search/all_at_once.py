@@ -13,7 +13,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from eha_core.diagnosis.calibrate import STEPS
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, chance_gain
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
@@ -26,23 +25,13 @@ from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import whole
-from eha_core.identification.segments import coarser
-from eha_core.identification.short_windows import starts, with_finer_slopes
+from eha_core.identification.short_windows import held, starts, with_finer_slopes
 
 BEGIN = 0.1
 """Share of its first guess at which each effect begins: all at full size would be far from any rig (assumed)."""
 
 ITERATIONS = 15
 """Of the fit of all effects over each length of the windows, and of each fit with fewer."""
-
-SHORTEST = 1
-"""The first of the search's `shorter` windows that are used: over 0.05 s hardly anything but speeds and pressures is
-told, and so many effects have no hold."""
-
-HELD = 0.2
-"""Share of its prior deviation within which a nominal parameter is believed while the effects come to their sizes. Of
-six development rigs of seed 61331 four came nearer to the noise than with all of it (from 3.3 to 1.1 and from 12.7 to
-4.3 times its energy among them), two stayed far off either way."""
 
 
 def all_at_once(search: Search, nominal: Candidate) -> Candidate:
@@ -52,10 +41,9 @@ def all_at_once(search: Search, nominal: Candidate) -> Candidate:
     search.progress(f"fitting {len(effects)} effects together, from short windows to long ones")
     small, free = _small(effects, search.scales)
     plant = nominal.fit.free
-    held = tuple(replace(one, prior_deviation=HELD * one.prior_deviation) for one in plant)
-    short, *longer = (whole(coarser(shooting, STEPS[0])) for shooting in search.shorter[SHORTEST:])
+    short, *longer = map(whole, search.shorter)
     values = {**at_nominal(nominal.fit.values, plant), **small}
-    values = dict(fit(short, values, (*held, *free), starts(short, values), iterations=ITERATIONS).values)
+    values = dict(fit(short, values, held((*plant, *free)), starts(short, values), iterations=ITERATIONS).values)
     for problem in (short, *longer, search.problem):
         together = fit(problem, values, (*plant, *free), starts(problem, values), iterations=ITERATIONS)
         values = dict(together.values)

@@ -17,7 +17,7 @@ from eha_core.identification.normal_matrix import Eliminated
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.parallel import each, threads
 from eha_core.identification.per_recording import named
-from eha_core.identification.problem import Linearised, Problem, changes, linearise, normal_equations
+from eha_core.identification.problem import LINK, Linearised, Problem, changes, linearise, normal_equations
 from eha_core.identification.shooting import STATE_SIZE
 from eha_core.plant.lane_rows import LANES
 
@@ -153,7 +153,7 @@ def _by_span(
         along[span] += linear.residual[piece] @ part
         by_parameter[span] += linear.by_parameter[piece].T @ part
         by_state[window, :size] = linear.by_state[piece].T @ part
-    link = problem.link[:size]
+    link = LINK[:size]
     for window in problem.links():
         span = span_of[window]
         moved = shifts[window, :size] / link[:, None]

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.search.candidates import Candidate, Search, without_effect
@@ -17,56 +16,64 @@ from eha_core.diagnosis.search.initial_guesses import initial_guesses
 from eha_core.effects import Effect
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import base_name
-from eha_core.identification.short_windows import from_short_windows
+from eha_core.identification.short_windows import (
+    from_short_windows,
+    is_of_an_effect,
+    over_the_shortest,
+    to_long_windows,
+)
 
 STICKING = "dry friction"
 """The kind of law that can hold the piston at rest."""
 
 
+LED = 2
+"""Of the forms of dry friction, how many are led on to long windows: those that leave least over the shortest."""
+
+
 def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
-    """The best so far when each form of dry friction was led from short windows to long ones, from nominal values."""
-    for effect in _that_stick(search.applicable):
-        search.progress(f"fitting {effect.id} from short windows to long ones")
-        values = {**at_nominal(nominal.fit.values, nominal.fit.free), **first_guess(effect, search.scales)}
-        free = with_effects(nominal.fit.free, [effect], values)
-        found = from_short_windows(search.problem, search.shorter, values, free)
-        search.keep(NOTHING.with_effects([effect]), found)
-    return min(search, key=lambda one: one.fit.objective)
+    """The best so far when the forms of dry friction were led from short windows to long ones, from nominal values."""
+    return _each_form(search, NOTHING, nominal.fit.values, nominal.fit.free)
 
 
 def set_in_each_form(search: Search, best: Candidate) -> Candidate:
-    """The best so far when each form of the set's dry friction was led from short windows to long ones beside the
-    other members: from the set's values, and where that does not reach the noise from the nominal values, which
-    another form has not biased."""
+    """The best so far when the forms of the set's dry friction were led from short windows to long ones beside the
+    other members, from the nominal values, which another form has not biased."""
     member = next(one for one in best.hypothesis.members if one.effect.kind == STICKING)
-    rest = best.hypothesis.without(member)
     values, free = without_effect(best.fit, member.effect)
-    plant = tuple(one for one in search.found[NOTHING].free if one in free)
-    for begin in (values, at_nominal(values, plant)):
-        for effect in _that_stick(search.applicable):
-            search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} from short windows to long ones")
-            begun = {**begin, **first_guess(effect, search.scales)}
-            found = from_short_windows(search.problem, search.shorter, begun, with_effects(free, [effect], begun))
-            search.keep(rest.with_effects([effect]), found)
-        reached = min(search, key=lambda one: one.fit.objective)
-        if reached.times_noise < NEAR_NOISE:
-            break
-    return reached
+    return _each_form(search, best.hypothesis.without(member), values, free)
+
+
+def _each_form(
+    search: Search, rest: Hypothesis, values: Mapping[str, float], free: tuple[FreeParameter, ...]
+) -> Candidate:
+    begun = at_nominal(values, tuple(one for one in free if not is_of_an_effect(one)))
+    led = []
+    for effect in _that_stick(search.applicable):
+        search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} over short windows")
+        own = first_guess(effect, search.scales)
+        found = over_the_shortest(search.shorter, {**begun, **own}, with_effects(free, [effect], own))
+        led.append((found.objective, effect, found))
+    for _, effect, found in sorted(led, key=lambda one: one[0])[:LED]:
+        its = with_effects(free, [effect], found.values)
+        search.keep(rest.with_effects([effect]), to_long_windows(search.problem, search.shorter, found.values, its))
+    return min(search, key=lambda one: one.fit.objective)
 
 
 def set_with_friction(search: Search, best: Candidate) -> Candidate:
-    """A set with a law that sticks, led from short windows to long ones; the set as it is where it has none.
+    """A set with a law that sticks, led from short windows to long ones, from the nominal values; the set as it is
+    where it has none.
 
     That law begins at its first guess. In long windows its shape may have been lost (a Stribeck velocity of next to
-    nothing), from where no derivative leads back.
+    nothing), from where no derivative leads back. The others begin where they are.
     """
     if not sticks(best.hypothesis):
         return best
     effect, *_ = _that_stick(best.hypothesis.effects)
     search.progress(f"fitting {' + '.join(best.hypothesis.ids)} from short windows to long ones")
-    values = {**best.fit.values, **first_guess(effect, search.scales)}
-    free = with_effects(best.fit.free, [effect], values)
-    return search.keep(best.hypothesis, from_short_windows(search.problem, search.shorter, values, free))
+    plant = tuple(one for one in best.fit.free if not is_of_an_effect(one))
+    values = {**at_nominal(best.fit.values, plant), **first_guess(effect, search.scales)}
+    return search.keep(best.hypothesis, from_short_windows(search.problem, search.shorter, values, best.fit.free))
 
 
 def first_guess(effect: Effect, scales: Scales) -> dict[str, float]:
