@@ -57,7 +57,7 @@ def over_the_shortest(shorter: Sequence[Shooting], values: Mapping[str, float], 
     """The effects fitted alone over the shortest windows, then with the plant's own parameters held, and then free."""
     short = whole(shorter[0])
     alone = _from_its_starts(short, values, [one for one in free if is_of_an_effect(one)])
-    return _from_its_starts(short, _from_its_starts(short, alone.values, held(free)).values, free)
+    return _from_its_starts(short, _from_its_starts(short, alone.values, held(free, values)).values, free)
 
 
 def to_long_windows(
@@ -74,10 +74,13 @@ def _from_its_starts(problem: Problem, values: Mapping[str, float], free: Sequen
     return fit(with_finer_slopes(problem), values, free, begun, iterations=ITERATIONS, in_a_row=IN_A_ROW)
 
 
-def held(free: Sequence[FreeParameter]) -> tuple[FreeParameter, ...]:
-    """What is free, the plant's own parameters believed more (HELD)."""
+def held(free: Sequence[FreeParameter], values: Mapping[str, float]) -> tuple[FreeParameter, ...]:
+    """What is free, the plant's own parameters believed more (HELD) where they have their nominal values."""
     return tuple(
-        one if is_of_an_effect(one) else replace(one, prior_deviation=HELD * one.prior_deviation) for one in free
+        replace(one, prior_deviation=HELD * one.prior_deviation)
+        if not is_of_an_effect(one) and values.get(one.name, one.reference) == one.reference
+        else one
+        for one in free
     )
 
 

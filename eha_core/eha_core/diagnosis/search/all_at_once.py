@@ -43,7 +43,8 @@ def all_at_once(search: Search, nominal: Candidate) -> Candidate:
     plant = nominal.fit.free
     short, *longer = map(whole, search.shorter)
     values = {**at_nominal(nominal.fit.values, plant), **small}
-    values = dict(fit(short, values, held((*plant, *free)), starts(short, values), iterations=ITERATIONS).values)
+    begun = fit(short, values, held((*plant, *free), values), starts(short, values), iterations=ITERATIONS)
+    values = dict(begun.values)
     for problem in (short, *longer, search.problem):
         together = fit(problem, values, (*plant, *free), starts(problem, values), iterations=ITERATIONS)
         values = dict(together.values)

@@ -9,11 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.criteria import UNFITTED
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.search.candidates import Candidate, Search, without_effect
 from eha_core.diagnosis.search.initial_guesses import initial_guesses
+from eha_core.diagnosis.search.nominal_start import is_improbable
 from eha_core.effects import Effect
+from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.short_windows import (
@@ -32,37 +35,45 @@ LED = 2
 
 
 def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
-    """The best so far when the forms of dry friction were led from short windows to long ones, from nominal values."""
-    return _each_form(search, NOTHING, nominal.fit.values, nominal.fit.free)
+    """The best so far when the forms of dry friction were led from short windows to long ones."""
+    return _each_form(search, NOTHING, nominal.fit, nominal.fit.values, nominal.fit.free)
 
 
 def set_in_each_form(search: Search, best: Candidate) -> Candidate:
     """The best so far when the forms of the set's dry friction were led from short windows to long ones beside the
-    other members, from the nominal values, which another form has not biased."""
+    other members."""
     member = next(one for one in best.hypothesis.members if one.effect.kind == STICKING)
-    values, free = without_effect(best.fit, member.effect)
-    return _each_form(search, best.hypothesis.without(member), values, free)
+    return _each_form(search, best.hypothesis.without(member), best.fit, *without_effect(best.fit, member.effect))
 
 
 def _each_form(
-    search: Search, rest: Hypothesis, values: Mapping[str, float], free: tuple[FreeParameter, ...]
+    search: Search, rest: Hypothesis, at: Fit, values: Mapping[str, float], free: tuple[FreeParameter, ...]
 ) -> Candidate:
-    begun = at_nominal(values, tuple(one for one in free if not is_of_an_effect(one)))
-    led = []
-    for effect in _that_stick(search.applicable):
-        search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} over short windows")
-        own = first_guess(effect, search.scales)
-        found = over_the_shortest(search.shorter, {**begun, **own}, with_effects(free, [effect], own))
-        led.append((found.objective, effect, found))
-    for _, effect, found in sorted(led, key=lambda one: one[0])[:LED]:
-        its = with_effects(free, [effect], found.values)
-        search.keep(rest.with_effects([effect]), to_long_windows(search.problem, search.shorter, found.values, its))
-    return min(search, key=lambda one: one.fit.objective)
+    for begun in _begins(values, free):
+        led = []
+        for effect in _that_stick(search.applicable):
+            search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} over short windows")
+            own = first_guess(effect, search.scales)
+            found = over_the_shortest(search.shorter, {**begun, **own}, with_effects(free, [effect], own))
+            led.append((found.objective, effect, found.values))
+        for _, effect, reached_by in sorted(led, key=lambda one: one[0])[:LED]:
+            its = with_effects(free, [effect], reached_by)
+            found = to_long_windows(search.problem, search.shorter, reached_by, its)
+            search.keep(rest.with_effects([effect]), found)
+        reached = min(search, key=lambda one: one.fit.objective)
+        if reached.times_noise < UNFITTED or not is_improbable(at):
+            break
+    return reached
+
+
+def _begins(values: Mapping[str, float], free: Sequence[FreeParameter]) -> tuple[Mapping[str, float], ...]:
+    """From where sets are led: the nominal values, which nothing has biased; and the fitted ones, for where those lie
+    improbably far from them."""
+    return at_nominal(values, tuple(one for one in free if not is_of_an_effect(one))), values
 
 
 def set_with_friction(search: Search, best: Candidate) -> Candidate:
-    """A set with a law that sticks, led from short windows to long ones, from the nominal values; the set as it is
-    where it has none.
+    """A set with a law that sticks, led from short windows to long ones; the set as it is where it has none.
 
     That law begins at its first guess. In long windows its shape may have been lost (a Stribeck velocity of next to
     nothing), from where no derivative leads back. The others begin where they are.
@@ -71,9 +82,14 @@ def set_with_friction(search: Search, best: Candidate) -> Candidate:
         return best
     effect, *_ = _that_stick(best.hypothesis.effects)
     search.progress(f"fitting {' + '.join(best.hypothesis.ids)} from short windows to long ones")
-    plant = tuple(one for one in best.fit.free if not is_of_an_effect(one))
-    values = {**at_nominal(best.fit.values, plant), **first_guess(effect, search.scales)}
-    return search.keep(best.hypothesis, from_short_windows(search.problem, search.shorter, values, best.fit.free))
+    led = best
+    for begun in _begins(best.fit.values, best.fit.free):
+        values = {**begun, **first_guess(effect, search.scales)}
+        found = from_short_windows(search.problem, search.shorter, values, best.fit.free)
+        led = search.keep(best.hypothesis, found)
+        if led.times_noise < UNFITTED or not is_improbable(best.fit):
+            break
+    return led
 
 
 def first_guess(effect: Effect, scales: Scales) -> dict[str, float]:
