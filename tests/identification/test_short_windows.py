@@ -10,9 +10,9 @@ from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effects
 from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case
-from eha_core.identification.fit import fit_in_stages
+from eha_core.identification.fit import Ending, fit, fit_in_stages
 from eha_core.identification.observation import observe
-from eha_core.identification.short_windows import SHORT, from_short_windows
+from eha_core.identification.short_windows import HELD, SHORT, from_short_windows, held
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
@@ -53,3 +53,23 @@ def test_the_recordings_are_the_same_in_windows_of_the_lengths_stated(rig):
         spans = np.diff(shooting.edges) * shooting.step_size
         assert np.median(spans) == pytest.approx(length, rel=0.21)
         assert sum(len(one.values) for one in shooting.samplings) >= 0.99 * calibration.problem.count()
+
+
+def test_what_is_held_is_the_plants_own_and_where_its_nominal_value_is(rig):
+    calibration, nominal = rig
+    values = {**nominal, f"{LAW.id}.force": 500.0, "moving_mass": 2.0 * nominal["moving_mass"]}
+    free = with_effects(calibration.fitted.free, [LAW], values)
+    for before, after in zip(free, held(free, values), strict=True):
+        ours = before.name != "moving_mass" and not before.name.startswith(LAW.id)
+        assert after.prior_deviation == pytest.approx((HELD if ours else 1.0) * before.prior_deviation)
+
+
+def test_one_iteration_along_a_ridge_does_not_end_the_fit(rig):
+    """The same fit until two iterations in a row gain too little goes further, and never less far."""
+    calibration, nominal = rig
+    begun = {"force": 200.0, "static_force": 400.0, "stribeck_velocity": 0.03}
+    values = {**nominal, **{f"{LAW.id}.{name}": at for name, at in begun.items()}}
+    free = with_effects(calibration.fitted.free, [LAW], values)
+    once, twice = (fit(calibration.problem, values, free, iterations=40, in_a_row=times) for times in (1, 2))
+    assert once.ending is Ending.CONVERGED
+    assert twice.iterations > once.iterations and twice.objective < once.objective
