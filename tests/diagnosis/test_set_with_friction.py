@@ -12,7 +12,7 @@ from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
-from eha_core.diagnosis.search.short_windows import set_in_each_form, set_with_friction, sticks
+from eha_core.diagnosis.search.short_windows import LED, STICKING, set_in_each_form, set_with_friction, sticks
 from eha_core.effects import effects
 from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe
@@ -64,7 +64,9 @@ def test_where_another_form_was_taken_the_rigs_own_is_found_beside_the_other_mem
     assert other.times_noise > UNFITTED
     search.found = {NOTHING: found[NOTHING], other.hypothesis: other.fit}
     led = set_in_each_form(search, other)
+    led_on = search.found.keys() - {NOTHING, other.hypothesis}
     search.found = found
+    assert 1 <= len(led_on) <= LED < len([effect for effect in LAWS.values() if effect.kind == STICKING])
     assert led.hypothesis.ids == ("constant_load", "stribeck_friction") and led.times_noise < 1.05
 
 

@@ -29,9 +29,9 @@ from eha_core.identification.short_windows import (
 STICKING = "dry friction"
 """The kind of law that can hold the piston at rest."""
 
-
 LED = 2
-"""Of the forms of dry friction, how many are led on to long windows: those that leave least over the shortest."""
+"""Of the forms of dry friction, how many are led on to long windows: those that leave least over the shortest. Assumed;
+the right one and its nearest rival have to be told apart there."""
 
 
 def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
@@ -49,7 +49,7 @@ def set_in_each_form(search: Search, best: Candidate) -> Candidate:
 def _each_form(
     search: Search, rest: Hypothesis, at: Fit, values: Mapping[str, float], free: tuple[FreeParameter, ...]
 ) -> Candidate:
-    for begun in _begins(values, free):
+    for begun in _begins(at, values, free):
         led = []
         for effect in _that_stick(search.applicable):
             search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} over short windows")
@@ -61,15 +61,16 @@ def _each_form(
             found = to_long_windows(search.problem, search.shorter, reached_by, its)
             search.keep(rest.with_effects([effect]), found)
         reached = min(search, key=lambda one: one.fit.objective)
-        if reached.times_noise < UNFITTED or not is_improbable(at):
+        if reached.times_noise < UNFITTED:
             break
     return reached
 
 
-def _begins(values: Mapping[str, float], free: Sequence[FreeParameter]) -> tuple[Mapping[str, float], ...]:
-    """From where sets are led: the nominal values, which nothing has biased; and the fitted ones, for where those lie
+def _begins(at: Fit, values: Mapping[str, float], free: Sequence[FreeParameter]) -> list[Mapping[str, float]]:
+    """From where sets are led: the nominal values, which nothing has biased; then those of a fit, where it lies
     improbably far from them."""
-    return at_nominal(values, tuple(one for one in free if not is_of_an_effect(one))), values
+    nominal = at_nominal(values, tuple(one for one in free if not is_of_an_effect(one)))
+    return [nominal, values] if is_improbable(at) else [nominal]
 
 
 def set_with_friction(search: Search, best: Candidate) -> Candidate:
@@ -83,11 +84,11 @@ def set_with_friction(search: Search, best: Candidate) -> Candidate:
     effect, *_ = _that_stick(best.hypothesis.effects)
     search.progress(f"fitting {' + '.join(best.hypothesis.ids)} from short windows to long ones")
     led = best
-    for begun in _begins(best.fit.values, best.fit.free):
+    for begun in _begins(best.fit, best.fit.values, best.fit.free):
         values = {**begun, **first_guess(effect, search.scales)}
         found = from_short_windows(search.problem, search.shorter, values, best.fit.free)
         led = search.keep(best.hypothesis, found)
-        if led.times_noise < UNFITTED or not is_improbable(best.fit):
+        if led.times_noise < UNFITTED:
             break
     return led
 
