@@ -38,9 +38,6 @@ RIGS = {
 Friction in proportion to a load that is viscous is more viscous friction: it is looked for under a spring.
 Pressures that are both late by T look like those of a load lighter by T times its damping: most of the paper's mass."""
 
-STEPS = {"stribeck_friction": 5e-5, "presliding_friction": 1e-4}
-"""s; break-away is a matter of tenths of a millisecond."""
-
 DURATIONS = {"leakage_onset": 10.0, "thermal_drift": 10.0}
 """s; what happens late, or slowly, asks for a longer record than others."""
 
@@ -56,7 +53,7 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     nominal = {**nominal_values(), **rig}
     other = {"moving_mass": 1.1 * nominal["moving_mass"], "damping_coefficient": 0.93 * nominal["damping_coefficient"]}
     observation = observe(recorded({**rig, **planted, **other}, seed=7, duration=DURATIONS.get(effect.id, 6.0)))
-    calibration = calibrate([observation], NominalModel(nominal), STEPS.get(effect.id, 2e-4))
+    calibration = calibrate([observation], NominalModel(nominal), 2e-4)
     scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
     tried = [guess for one in applicable_effects([observation]) for guess in initial_guesses(one, scales)]
     score_tests = screen(calibration.problem, calibration.fitted, tried)

@@ -84,3 +84,53 @@ def test_slow_motion_sticks_and_slips_with_stribeck_friction_and_not_with_coulom
     }  # fmt: skip
     assert stops(sticky) > 10
     assert stops({"coulomb_friction.force": 200.0}) == 0
+
+
+def level(speed: float) -> float:
+    return 100.0 + 300.0 * np.exp(-((speed / 0.05) ** 2))
+
+
+def sliding(_: float, state: np.ndarray) -> list[float]:
+    """The rate of a 9 kg piston's speed under 350 N, through friction that falls over the speed."""
+    return [(350.0 - level(state[0])) / 9.0]
+
+
+def from_rest(_: float, state: np.ndarray) -> list[float]:
+    """The same under 450 N, with a bristle that bends first."""
+    speed, bend = state
+    bending = speed - 1e7 * abs(speed) / level(speed) * bend
+    return [(450.0 - 1e7 * bend - 2e3 * bending) / 9.0, bending]
+
+
+FALLING = {"force": 100.0, "static_force": 400.0, "stribeck_velocity": 0.05}
+BRISTLE = FALLING | {"stiffness": 1e7, "damping": 2e3}
+
+
+@pytest.mark.parametrize(
+    ("effect", "parameters", "rates", "begun", "force", "within"),
+    [
+        ("stribeck_friction", FALLING, sliding, [0.03], 350.0, 5e-5),
+        ("presliding_friction", BRISTLE, from_rest, [0.0, 0.0], 450.0, 4e-4),
+    ],
+)
+def test_friction_that_falls_over_the_speed_is_of_second_order(effect, parameters, rates, begun, force, within) -> None:
+    values = {f"{effect}.{name}": value for name, value in parameters.items()}
+    errors = []
+    for step_size in (2e-4, 1e-4, 5e-5):
+        steps = round(0.012 / step_size)
+        found = coast(values, begun[0], step_size, steps, force=force)
+        times = step_size * np.arange(1, steps + 1)
+        expected = solve_ivp(rates, (0.0, 0.0121), begun, "Radau", times, rtol=1e-10, atol=1e-14).y[0]
+        errors.append(np.max(np.abs(found - expected)))
+    assert errors[1] < within
+    assert np.all(np.log2(np.array(errors[:-1]) / errors[1:]) > 1.7)
+
+
+@pytest.mark.parametrize("shape", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("step_size", [1e-4, 1e-3])
+def test_a_fall_too_steep_for_the_step_only_brakes(shape: float, step_size: float) -> None:
+    steep = STRIBECK | {"stribeck_friction.stribeck_velocity": 1e-5, "stribeck_friction.shape": shape}
+    for speed in (1e-6, 1e-5, 3e-5, 1e-3):
+        speeds = np.abs(coast(steep, speed, step_size, 200))
+        assert np.all(np.diff(np.append(speed, speeds)) <= 0.0)
+        assert speeds[-1] == 0.0

@@ -90,11 +90,12 @@ EFFECT = Effect(
 
 
 @inlined
-def yielding(velocity, sliding, static, stribeck_velocity, bristle_stiffness):
-    """How fast a bent bristle slips at that speed, in 1/s: stiffness |v| / g(v)."""
-    share = velocity / stribeck_velocity
-    level = max(LEAST_FORCE, sliding + (static - sliding) * exp(-share * share))
-    return bristle_stiffness * abs(velocity) / level
+def level_of(velocity, sliding, static, stribeck_velocity):
+    """g(v) in N, and its fall over the speed times that speed, as a share of it: -|v| g'(v) / g(v)."""
+    square = (velocity / stribeck_velocity) ** 2
+    excess = (static - sliding) * exp(-square)
+    level = max(LEAST_FORCE, sliding + excess)
+    return level, 2.0 * square * excess / level
 
 
 @inlined
@@ -120,14 +121,21 @@ def contribution(
 
     The bend keeps to its equation to second order in the step, and exactly where it has settled. Its force is taken
     ahead, with the speed to come, by the share of a step in which it settles: so it is stable where it settles at once.
+    The bend's rate there is linearised about the present speed, `gain` v - `loss` z, so that friction that falls over
+    the speed is of second order, too; the damping of that rate goes where the bend settles at once.
     """
-    slip = yielding(velocity, sliding, static, stribeck_velocity, bristle_stiffness)
+    level, fall = level_of(velocity, sliding, static, stribeck_velocity)
+    slip = bristle_stiffness * abs(velocity) / level
     settled = step_size * slip
     bend = memory[slot] + step_size * (1.0 + 0.5 * settled) * velocity
     bend /= 1.0 + settled + 0.5 * settled * settled
     memory[slot] = bend
     held = 1.0 / (1.0 + settled)
     ahead = step_size * held * held * settled
-    force -= (bristle_stiffness * (1.0 - slip * ahead) - bristle_damping * slip * held) * bend
-    damping += bristle_stiffness * ahead + bristle_damping * held
+    towards = 1.0 if velocity > 0.0 else -1.0 if velocity < 0.0 else 0.0
+    gain = 1.0 - (1.0 + fall) * bristle_stiffness * bend * towards / level
+    loss = -fall * slip
+    resisting = bristle_damping / (1.0 + 0.25 * settled * settled)
+    force -= (bristle_stiffness * (1.0 - loss * ahead) - resisting * loss) * bend
+    damping += gain * (bristle_stiffness * ahead + resisting)
     return force, damping, stiffness + bristle_stiffness * held * held, dry_friction

@@ -99,6 +99,10 @@ def contribution(
     stribeck_velocity,
     shape,
 ):
-    """Add the friction of the speed at the step's start; the step itself is too short for it to change much."""
+    """Linearise about the present speed: the fall of the friction there is a damping below zero."""
     share = abs(velocity) / stribeck_velocity
-    return force, damping, stiffness, dry_friction + sliding + (static - sliding) * exp(-(share**shape))
+    power = share**shape
+    excess = (static - sliding) * exp(-power)
+    fall = shape * power * excess
+    slope = fall / (stribeck_velocity * max(share, min(power, 1.0))) if power > 0.0 else 0.0
+    return force, damping - slope, stiffness, dry_friction + sliding + excess + slope * abs(velocity)

@@ -123,12 +123,16 @@ def velocity_step(step_size, position, velocity, driving, resistance, oil_stiffn
     other, damping, stop_stiffness, dry = resistance
     bulky, thin = mass_in_step(mass, step_size * step_size * (oil_stiffness + spring + stop_stiffness))
     drag = step_size * thin * damping
+    # friction that falls faster over the speed than the step can follow is taken at the speed at its start, that much
+    steep = max(0.0, -bulky - drag)
+    drag += steep
     inverse = 1.0 / (bulky * bulky + drag * (bulky + 0.5 * drag))
     shrink = bulky * bulky * inverse
     impulse = step_size * thin * (bulky + 0.5 * drag) * inverse
     new = shrink * velocity + impulse * (driving + other)
     if dry > 0.0:
-        new = max(0.0, new - impulse * dry) if new > 0.0 else min(0.0, new + impulse * dry)
+        held = impulse * dry - (bulky + 0.5 * drag) * inverse * steep * abs(velocity)
+        new = max(0.0, new - held) if new > 0.0 else min(0.0, new + held)
     return effective_velocity(0.5 * step_size, position, new, stroke)
 
 
