@@ -29,6 +29,10 @@ ELASTIC_PRESSURE = 1e6
 """Pa at which the friction of an elastic seal, which grows with the power 2/3 of its load, equals the proportional one
 (assumed)."""
 
+BOILING = 1e3
+"""Pa of absolute pressure over which its fall ends: a tenth of a good sensor's noise, and smooth for the integrator
+(assumed)."""
+
 MAXWELL_WEIGHTS = (0.4, 0.3, 0.2, 0.1)
 """Shares of the total strength of the parallel elasto-slide elements; each has the same stiffness (assumed)."""
 
@@ -103,6 +107,13 @@ def stiffness_of_oil(gauge, p):  # type: ignore[no-untyped-def]
         liquid = (1.0 - fraction) * np.exp(-(absolute - reference) / p.bulk_modulus)
         return (liquid + gas) / (liquid / p.bulk_modulus + gas * exponent / absolute)
     return (1.0 - fraction + gas) ** 2 / ((1.0 - fraction) / p.bulk_modulus + gas * exponent / absolute)
+
+
+@njit(cache=True)
+def down_to_vacuum(rate, gauge, p):  # type: ignore[no-untyped-def]
+    """The rate [Pa/s] of a chamber's gauge pressure [Pa]: at absolute zero the oil boils, and it falls no further."""
+    absolute = gauge + p.atmospheric_pressure
+    return rate if rate >= 0.0 else rate * (1.0 - np.exp(-max(absolute, 0.0) / BOILING))
 
 
 @njit(cache=True)
@@ -256,8 +267,9 @@ def derivatives(time, y, rates, spool, mode, records):  # type: ignore[no-untype
     lost_b = (p.external_leakage + p.external_leakage_coefficient_b) * b
     volume_a = p.line_volume + p.piston_area * (p.actuator_displacement + x)
     volume_b = p.line_volume + p.piston_area_b * (p.actuator_displacement - x)
-    rates[PRESSURE_A] = stiffness_of_oil(a, p) / volume_a * (into_a - past - lost_a - p.piston_area * v)
-    rates[PRESSURE_B] = stiffness_of_oil(b, p) / volume_b * (p.piston_area_b * v - out_of_b + past - lost_b)
+    net_a, net_b = into_a - past - lost_a - p.piston_area * v, p.piston_area_b * v - out_of_b + past - lost_b
+    rates[PRESSURE_A] = down_to_vacuum(stiffness_of_oil(a, p) / volume_a * net_a, a, p)
+    rates[PRESSURE_B] = down_to_vacuum(stiffness_of_oil(b, p) / volume_b * net_b, b, p)
     if p.position_sensor_lag_time_constant > 0.0:
         rates[SENSED_POSITION] = (x - y[SENSED_POSITION]) / p.position_sensor_lag_time_constant
     if len(y) == WITH_LATE_PRESSURES:
