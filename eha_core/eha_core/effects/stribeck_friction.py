@@ -104,5 +104,6 @@ def contribution(
     power = share**shape
     excess = (static - sliding) * exp(-power)
     fall = shape * power * excess
+    # a shape below 1 falls infinitely fast at rest: no faster than over the Stribeck velocity
     slope = fall / (stribeck_velocity * max(share, min(power, 1.0))) if power > 0.0 else 0.0
     return force, damping - slope, stiffness, dry_friction + sliding + excess + slope * abs(velocity)
