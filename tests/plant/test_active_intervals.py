@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eha_core.plant import Plant
-from eha_core.plant.active_intervals import instants, intervals
+from eha_core.plant.active_intervals import Timetable, instants, intervals
 
 FRICTION = {"coulomb_friction.force": 300.0}
 SPAN = {"effects_from": 0.0503, "effects_until": 0.1201}
@@ -65,7 +65,7 @@ def test_a_lag_begins_from_the_position_when_it_begins_to_act() -> None:
 )
 def test_every_step_and_every_row_comes_once(first, count, every, spans) -> None:
     steps, rows = [], []
-    for interval in intervals(first, count, every, spans):
+    for interval in intervals(first, count, every, Timetable(spans)):
         here = range(interval.steps.start, interval.steps.stop)
         steps += here
         rows += range(interval.rows.start, interval.rows.stop)
@@ -80,3 +80,11 @@ def test_every_step_and_every_row_comes_once(first, count, every, spans) -> None
 
 def test_what_is_off_cuts_nothing() -> None:
     assert instants([(0, 0), (8, 5), (4, 9)]) == {4, 9}
+
+
+def test_a_timetable_says_of_every_step_what_the_spans_say() -> None:
+    spans = ((0, 40), (7, 40), (12, 12), (0, 0), (25, 90))
+    timetable = Timetable(spans)
+    for step in range(100):
+        assert timetable.acting(step) == tuple(begin <= step < end for begin, end in spans)
+        assert timetable.beginning(step) == tuple(0 < begin == step < end for begin, end in spans)

@@ -16,7 +16,7 @@ import numpy as np
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.per_recording import values_of
 from eha_core.plant import PAPER, Composition
-from eha_core.plant.active_intervals import intervals, spans
+from eha_core.plant.active_intervals import Timetable, intervals, spans
 from eha_core.plant.composite import compiled_step
 from eha_core.plant.memory import start_memory, starting_memory, trailing
 from eha_core.plant.one_by_one import side_by_side
@@ -126,7 +126,7 @@ class Shooting:
             change: pack({**values, "internal_leakage": values["internal_leakage"] + change}, self.step_size)
             for change in changes
         }
-        acting = spans(values, next(iter(packed.values()))[1], self.step_size)
+        acting = Timetable(spans(values, next(iter(packed.values()))[1], self.step_size))
         start = int(self.edges[windows.start])
         first = self.inputs[0, start]
         current = min(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -42,6 +43,24 @@ def instants(found: Iterable[tuple[int, int]]) -> set[int]:
     return {step for begin, end in found if begin < end for step in (begin, end)}
 
 
+class Timetable:
+    """Which effects act from which step on, worked out once for the many stretches in which a record is advanced."""
+
+    def __init__(self, found: Spans) -> None:
+        self.instants = sorted(instants(found))
+        self._acting = [tuple(begin <= at < end for begin, end in found) for at in (-1, *self.instants)]
+        self._beginning = {at: tuple(0 < begin == at < end for begin, end in found) for at in self.instants}
+        self._none = (False,) * len(found)
+
+    def acting(self, step: int) -> tuple[bool, ...]:
+        """Whether each effect acts in a step of the record."""
+        return self._acting[bisect_right(self.instants, step)]
+
+    def beginning(self, step: int) -> tuple[bool, ...]:
+        """Whether each effect begins to act with a step of the record, but for those that act from its start."""
+        return self._beginning.get(step, self._none)
+
+
 class Piece(NamedTuple):
     """Steps in a row: which, how many make a row, and which rows they fill."""
 
@@ -66,10 +85,8 @@ def pieces(first: int, count: int, every: int, cut_at: Iterable[int]) -> Iterato
             yield Piece(slice(whole, end), every, slice(whole // every, end // every))
 
 
-def intervals(first: int, count: int, every: int, found: Spans) -> Iterator[Interval]:
+def intervals(first: int, count: int, every: int, timetable: Timetable) -> Iterator[Interval]:
     """Cut steps, as `pieces` does, where an effect begins or ceases to act."""
-    for piece in pieces(first, count, every, instants(found)):
+    for piece in pieces(first, count, every, timetable.instants):
         at = first + piece.steps.start
-        acting = tuple(begin <= at < end for begin, end in found)
-        beginning = tuple(0 < begin == at < end for begin, end in found)
-        yield Interval(*piece, acting, beginning)
+        yield Interval(*piece, timetable.acting(at), timetable.beginning(at))

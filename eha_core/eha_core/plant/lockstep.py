@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -48,7 +49,9 @@ class LockStep:
         packed = [pack(values, step_size) for values in filled]
         pairs = zip(filled, packed, strict=True)
         self._spans = np.array([spans(values, active, step_size) for values, (_, active, _) in pairs])
-        self._instants = instants(map(tuple, self._spans.reshape(-1, 2).tolist()))
+        self._instants = sorted(instants(map(tuple, self._spans.reshape(-1, 2).tolist())))
+        self._stretch = -1  # between which instants the effects' rows stand, once they do
+        self._active = 0
         self._leakage = np.array([values["internal_leakage"] for values in filled])
         self._block = _aligned(layout().end)
         self._memory = list(self._memory_rows())
@@ -115,20 +118,23 @@ class LockStep:
         starts, stops = self._spans[:, :, 0], self._spans[:, :, 1]
         for piece in pieces(first, inputs.shape[1], every, self._instants):
             at = first + piece.steps.start
-            beginning = (starts == at) & (starts > 0) & (starts < stops)
-            if beginning.any():
-                self.start_memory(beginning)
-            acts = ((starts <= at) & (at < stops)).T
-            self._fill(layout().acts, acts.astype(np.float64))
-            active = sum(1 << index for index in np.flatnonzero(acts.any(axis=1)).tolist())
+            stretch = bisect_right(self._instants, at)
+            if stretch != self._stretch:
+                self._stretch = stretch
+                beginning = (starts == at) & (starts > 0) & (starts < stops)
+                if beginning.any():
+                    self.start_memory(beginning)
+                acts = ((starts <= at) & (at < stops)).T
+                self._fill(layout().acts, acts.astype(np.float64))
+                self._active = sum(1 << index for index in np.flatnonzero(acts.any(axis=1)).tolist())
             given, rows = inputs[:, piece.steps], out[piece.rows]
             if len(inputs) == 1:
                 self._kernel.advance(
-                    self._block, self.lanes, self._history, active, given[0], self.step_size, piece.every, rows
+                    self._block, self.lanes, self._history, self._active, given[0], self.step_size, piece.every, rows
                 )
             else:
                 self._kernel.advance_driven(
-                    self._block, self.lanes, active, given[0], given[1], self.step_size, piece.every, rows
+                    self._block, self.lanes, self._active, given[0], given[1], self.step_size, piece.every, rows
                 )
 
 

@@ -15,7 +15,7 @@ from scipy.linalg import expm
 from eha_core.effects import effects
 from eha_core.errors import ParameterError
 from eha_core.parameters import step_rows
-from eha_core.plant.active_intervals import intervals, spans
+from eha_core.plant.active_intervals import Timetable, intervals, spans
 from eha_core.plant.composite import compiled_given_step, compiled_step, given_names, given_sources
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.given import VALVES
@@ -175,8 +175,9 @@ class Plant:
         """Put these values in force."""
         self._values, self._places = values, self.composition.places(values)
         self._vector, self._active, self._propagator = pack(self._places, self.step_size, self.composition)
-        self._spans = spans(self._places, self._active, self.step_size)
-        on = [span for span, switched_on in zip(self._spans, self._active, strict=True) if switched_on]
+        found = spans(self._places, self._active, self.step_size)
+        self._timetable = Timetable(found)
+        on = [span for span, switched_on in zip(found, self._active, strict=True) if switched_on]
         self._all_act = max((begin for begin, _ in on), default=0), min((end for _, end in on), default=inf)
 
     def set_parameters(self, changes: Mapping[str, float]) -> None:
@@ -273,7 +274,7 @@ class Plant:
 
     def _run(self, inputs: Array, every: int, rows: Array) -> None:
         self._state[AT.time] = self.time
-        for interval in intervals(self.step_count, len(inputs), every, self._spans):
+        for interval in intervals(self.step_count, len(inputs), every, self._timetable):
             if any(interval.beginning):
                 self._start_memory(interval.beginning)
             self._steps(inputs[interval.steps], interval.every, rows[interval.rows], interval.acting)
