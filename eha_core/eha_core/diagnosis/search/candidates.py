@@ -54,7 +54,11 @@ class Candidate:
 
 @dataclass
 class Search:
-    """What is searched, and all that was fitted on the way, by hypothesis. `shorter`: see `from_short_windows`."""
+    """What is searched, and all that was fitted on the way, by hypothesis.
+
+    `shorter`: see `from_short_windows`. `short`: the problem's windows are the shortest. They tell little about when an
+    effect acts, and nothing goes far in them, so that the valve's dynamics need not wait for the rest.
+    """
 
     problem: Problem
     applicable: Sequence[Effect]
@@ -62,6 +66,7 @@ class Search:
     progress: Progress = lambda _: None
     found: dict[Hypothesis, Fit] = field(default_factory=dict)
     shorter: Sequence[Shooting] = ()
+    short: bool = False
 
     def keep(self, hypothesis: Hypothesis, result: Fit) -> Candidate:
         """Keep a fit if it is the best of its hypothesis; the hypothesis with its best fit."""
@@ -72,7 +77,7 @@ class Search:
 
     def try_proposal(self, proposal: Proposal, iterations: int, give_up_above: float = float("inf")) -> Candidate:
         """Fit a hypothesis from a proposal, and keep what is better than before."""
-        run = fit_in_stages if proposal.in_stages else fit
+        run = fit_in_stages if proposal.in_stages and not self.short else fit
         result = run(
             self.problem, proposal.values, proposal.free, proposal.states,
             iterations=iterations, give_up_above=give_up_above,

@@ -20,7 +20,8 @@ def grow(search: Search, best: Candidate) -> Candidate:
     """The best set that adding to `best` leads to; every set that was fitted stays with the search."""
     while len(best.hypothesis.members) < MOST_EFFECTS:
         score_tests = screen_in_time(search.problem, best.fit, guesses_beside(search, best))
-        try_for_a_while(search, best, score_tests)
+        if not search.short:
+            try_for_a_while(search, best, score_tests)
         race(search, proposals(search, best, score_tests, chance_gain(search.problem.count(), best.times_noise)))
         reached = min(search, key=lambda one: one.fit.objective)
         if reached.hypothesis != best.hypothesis and reached.times_noise > UNFITTED:

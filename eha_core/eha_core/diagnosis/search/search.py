@@ -8,6 +8,7 @@ from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.converge import converge
 from eha_core.diagnosis.search.exchange import exchange
 from eha_core.diagnosis.search.grow import grow, try_for_a_while
+from eha_core.diagnosis.search.over_short_windows import grown_over_short_windows
 from eha_core.diagnosis.search.proposals import guesses_beside
 from eha_core.diagnosis.search.prune import prune
 from eha_core.diagnosis.search.screening import screen_in_time
@@ -51,6 +52,8 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
         return best  # it explains all, or led the single effects and hardly explains anything
     if best.times_noise > NEAR_NOISE:
         best = beside_the_singles(search)
+    if best.times_noise > UNFITTED:
+        best = grown_over_short_windows(search, nominal)
     if best.times_noise > UNFITTED and sticks(best.hypothesis):
         best = forms_of_friction(search, nominal)
     best = grow(search, best)

@@ -15,19 +15,15 @@ from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.candidates import Candidate, Search, in_noise_of
 from eha_core.diagnosis.search.converge import converge
-from eha_core.diagnosis.search.exchange import rivals_for
 from eha_core.diagnosis.search.found import Found, Progress
-from eha_core.diagnosis.search.grow import grow
 from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison, rank, residual_variance
-from eha_core.diagnosis.search.proposals import at_the_fit, in_another_form
+from eha_core.diagnosis.search.proposals import at_the_fit
 from eha_core.diagnosis.search.prune import prune
 from eha_core.diagnosis.search.search import search_sets
-from eha_core.diagnosis.search.simpler_form import CLOSE, for_its_cost, try_forms
+from eha_core.diagnosis.search.settle import settle
+from eha_core.diagnosis.search.simpler_form import CLOSE, for_its_cost
 from eha_core.diagnosis.search.warm_start import refit_nominal, warm_start
 from eha_core.effects import Effect
-
-ROUNDS = 3
-"""How often a set that one of its rivals took the place of is held against its own."""
 
 
 def with_sets(
@@ -46,27 +42,22 @@ def with_sets(
         # a set that stopped short would make any other form of a law look better
         converged = converge(search.problem, {best.hypothesis: best.fit}, progress)
         best = search.keep(best.hypothesis, converged[best.hypothesis])
-        for _ in range(ROUNDS):
-            before, best = best.hypothesis, _against_its_rivals(search, best)
-            if best.hypothesis == before:
-                break
-            # it may lead because its fit converged further, and not because of its new member
-            best = prune(search, grow(search, best))
+        best = settle(search, best)
     calibration = _in_noise_of(search, calibration)
     found = {hypothesis: search.found[hypothesis] for hypothesis in singles}
-    if best.hypothesis != NOTHING:  # a single effect that acts for a while may have been found beside another
-        found[best.hypothesis] = best.fit
     if len(best.hypothesis.members) > 1:
-        size = len(best.hypothesis.members)
-        near = [one for one in search if one.fit.objective < best.fit.objective + CLOSE * max(1.0, best.times_noise)]
-        for one in near:
-            if len(one.hypothesis.members) == size or one.hypothesis == best.hypothesis:
-                found[one.hypothesis] = one.fit
-        sets = {hypothesis: result for hypothesis, result in found.items() if len(hypothesis.members) == size}
-        found = {**found, **warm_start(search.problem, converge(search.problem, sets, progress))}
+        near = _near(search, best)
+        leading = for_its_cost(search, [Candidate(hypothesis, result) for hypothesis, result in near.items()])
+        if leading.hypothesis != best.hypothesis:
+            # another form of a member's law may not need what was beside that
+            best = prune(search, leading)
+            near = near if best.hypothesis == leading.hypothesis else _near(search, best)
+        found |= near
         worse = [hypothesis for hypothesis in singles if best.hypothesis.holds(hypothesis)]
         found = {hypothesis: result for hypothesis, result in found.items() if hypothesis not in worse}
-    elif best.times_noise > FAR_FROM_NOISE and not best.hypothesis.limited:
+    elif best.hypothesis != NOTHING:  # a single effect that acts for a while may have been found beside another
+        found[best.hypothesis] = best.fit
+    if len(best.hypothesis.members) < 2 and best.times_noise > FAR_FROM_NOISE and not best.hypothesis.limited:
         # no set came near the noise either: the single effects are compared, and have to converge for that
         always = {hypothesis: result for hypothesis, result in found.items() if not hypothesis.limited}
         found |= warm_start(search.problem, converge(search.problem, always, progress))
@@ -77,6 +68,17 @@ def with_sets(
     return calibration, ModelComparison(nothing, entries, comparison.score_tests, spread, left_over)
 
 
+def _near(search: Search, best: Candidate) -> Found:
+    """The best set and those of its size that come near it, fitted until they can be compared."""
+    size, behind = len(best.hypothesis.members), CLOSE * max(1.0, best.times_noise)
+    near = {
+        one.hypothesis: one.fit
+        for one in search
+        if len(one.hypothesis.members) == size and one.fit.objective < best.fit.objective + behind
+    }
+    return warm_start(search.problem, converge(search.problem, {**near, best.hypothesis: best.fit}, search.progress))
+
+
 def _left_over(search: Search, best: Candidate) -> dict[str, float]:
     """What one more effect beside the best is predicted to gain, the most of each site."""
     gains: dict[str, float] = {}
@@ -84,23 +86,6 @@ def _left_over(search: Search, best: Candidate) -> dict[str, float]:
         added = next(one for one in proposal.hypothesis.members if one not in best.hypothesis.members)
         gains[added.effect.site] = max(proposal.predicted, gains.get(added.effect.site, 0.0))
     return gains
-
-
-def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
-    """The best set when what has the largest predicted gain in a member's place was fitted to where it can be told."""
-    for member in best.hypothesis.members:
-        for proposal in rivals_for(search, best, member):
-            if proposal.hypothesis not in search.found:
-                search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
-                search.try_proposal(proposal, 15, give_up_above=best.fit.objective + CLOSE)
-    size = len(best.hypothesis.members)
-    while True:
-        try_forms(search, best, in_another_form(search, best))
-        leading = for_its_cost(search, [one for one in search if len(one.hypothesis.members) == size])
-        if leading.hypothesis == best.hypothesis:
-            return leading
-        # where friction sticks, the fit of a simpler form may have stopped above its optimum, and goes on from here
-        best = leading
 
 
 def _in_noise_of(search: Search, calibration: Calibration) -> Calibration:

@@ -33,8 +33,9 @@ def from_a_simpler_form(search: Search, best: Candidate) -> Candidate:
     close = [one for one in try_forms(search, best, simpler, behind) if one.fit.objective < best.fit.objective + behind]
     if not close:
         return best
-    grown = grow(search, min(close, key=lambda one: one.fit.objective))
-    return for_its_cost(search, [search.again(best), grown])
+    grow(search, min(close, key=lambda one: one.fit.objective))
+    # the richer form may still have the least chi^2, and what grew beside the plainer one costs less
+    return for_its_cost(search, list(search))
 
 
 def try_forms(

@@ -1,0 +1,43 @@
+"""Over short windows: a set grown where the objective is smooth, and then led to long windows.
+
+Where much is missing, a fit over long windows rests wherever the piston breaks away too early or too late, and the next
+effect makes up for that. Over 0.1 s nothing can go far another way than measured, so what is missing shows as itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from eha_core.diagnosis.criteria import UNFITTED
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.search.candidates import Candidate, Search
+from eha_core.diagnosis.search.grow import grow
+from eha_core.diagnosis.search.settle import settle
+from eha_core.diagnosis.search.short_windows import at_nominal
+from eha_core.identification.fit import fit
+from eha_core.identification.problem import whole
+from eha_core.identification.short_windows import ITERATIONS, held, starts, to_long_windows
+
+
+def grown_over_short_windows(search: Search, nominal: Candidate) -> Candidate:
+    """The best so far when a set was grown over the shortest windows from the nominal values, and led to long ones.
+
+    Where that leaves more than noise, once more with the nominal values held near what was given: what is free takes
+    the place of what is missing, but a value that is far off needs to move.
+    """
+    problem, free = whole(search.shorter[0]), nominal.fit.free
+    values = at_nominal(nominal.fit.values, free)
+    begun = starts(problem, values)
+    for believed in (free, held(free, values)):
+        nothing = fit(problem, values, believed, begun, iterations=ITERATIONS)
+        found = {NOTHING: nothing}
+        scout = replace(search, problem=problem, found=found, shorter=search.shorter[:1], short=True)
+        grown = settle(scout, grow(scout, Candidate(NOTHING, nothing)))
+        if grown.hypothesis != NOTHING:
+            as_free = {one.name: one for one in free}
+            moved = tuple(as_free.get(one.name, one) for one in grown.fit.free)
+            search.keep(grown.hypothesis, to_long_windows(search.problem, search.shorter, grown.fit.values, moved))
+        best = min(search, key=lambda one: one.fit.objective)
+        if best.times_noise < UNFITTED:
+            break
+    return best

@@ -1,0 +1,50 @@
+"""Settle: hold a set against what could stand in its members' places, until nothing takes its place."""
+
+from __future__ import annotations
+
+from eha_core.diagnosis.criteria import chance_gain
+from eha_core.diagnosis.search.candidates import Candidate, Search
+from eha_core.diagnosis.search.exchange import ITERATIONS, one_in_place_of_two, rivals_for, rivals_with_one_more
+from eha_core.diagnosis.search.found import OUT_OF_REACH
+from eha_core.diagnosis.search.grow import grow
+from eha_core.diagnosis.search.proposals import in_another_form
+from eha_core.diagnosis.search.prune import prune
+from eha_core.diagnosis.search.simpler_form import for_its_cost, try_forms
+
+ROUNDS = 3
+"""How often a set that one of its rivals took the place of is held against its own."""
+
+
+def settle(search: Search, best: Candidate) -> Candidate:
+    """The best set when it, and each that took its place, was held against its rivals."""
+    for _ in range(ROUNDS):
+        before, best = best.hypothesis, _against_its_rivals(search, best)
+        if best.hypothesis == before:
+            break
+        # it may lead because its fit converged further, and not because of its new member
+        best = prune(search, grow(search, best))
+    return best
+
+
+def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
+    """The best set when what has the largest predicted gain in a member's place was fitted to where it can be told, and
+    with one effect more where that is predicted to lead."""
+    for member in best.hypothesis.members:
+        for proposal in rivals_for(search, best, member):
+            if proposal.hypothesis not in search.found:
+                search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
+                search.try_proposal(proposal, ITERATIONS, give_up_above=best.fit.objective + OUT_OF_REACH)
+    size = len(best.hypothesis.members)
+    needed = chance_gain(search.problem.count(), best.times_noise)
+    larger = rivals_with_one_more(search, best, needed)
+    smaller = one_in_place_of_two(search, best) if search.short and size > 2 else []
+    while True:
+        try_forms(search, best, in_another_form(search, best))
+        leading = for_its_cost(search, [one for one in search if len(one.hypothesis.members) == size])
+        if leading.hypothesis == best.hypothesis:
+            break
+        # where friction sticks, the fit of a simpler form may have stopped above its optimum, and goes on from here
+        best = leading
+    # an effect more has to gain what it could not by chance, one less may lose that
+    handicap = {one.hypothesis: needed for one in larger} | {one.hypothesis: -needed for one in smaller}
+    return min((best, *larger, *smaller), key=lambda one: one.fit.objective + handicap.get(one.hypothesis, 0.0))
