@@ -25,7 +25,6 @@ from eha_core.identification.short_windows import OF_STATES
 FOR_ONE_PLACE = 4
 """How many effects compete for a member's place, those that predict most there."""
 
-
 PAIRS = 3
 """How many pairs of members are put up for one effect in their place, those of which it is predicted to explain most
 (assumed)."""
@@ -50,15 +49,20 @@ def weakest_first(candidate: Candidate) -> list[Member]:
     return sorted(candidate.hypothesis.members, key=lambda member: wald(candidate.fit, member.effect))
 
 
-def rivals_for(search: Search, best: Candidate, *members: Member) -> list[Proposal]:
-    """What has the largest predicted gain in the place of members, all else being as it is beside them.
+def rivals_for(search: Search, best: Candidate, member: Member) -> list[Proposal]:
+    """What has the largest predicted gain in a member's place, all else being as it is beside it.
 
-    What imitates them changes the channels as they do. Fitted without them, the others would first bend to make up for
-    them, and a fit of the rival would begin there. The windows begin as measured: where the members led them, a fit of
-    the rival may rest.
+    What imitates the member changes the channels as it does. Fitted without it, the others would first bend to make up
+    for it, and a fit of the rival would begin there.
     """
-    rest = _beside(search, best, members)
-    proposals = at_the_fit(search, rest, FOR_ONE_PLACE + len(members))
+    return _in_place(search, best, _beside(search, best, [member]))
+
+
+def _in_place(search: Search, best: Candidate, rest: Candidate) -> list[Proposal]:
+    """What is predicted to gain most beside what is left of the best set. The windows begin as measured: where the
+    missing members led them, a fit may rest."""
+    missing = len(best.hypothesis.members) - len(rest.hypothesis.members)
+    proposals = at_the_fit(search, rest, FOR_ONE_PLACE + missing)
     others = [replace(one, states=None) for one in proposals if not best.hypothesis.holds(one.hypothesis)]
     return others[:FOR_ONE_PLACE]
 
@@ -81,8 +85,9 @@ def one_in_place_of_two(search: Search, best: Candidate) -> list[Candidate]:
     """
     chosen: list[tuple[float, Proposal]] = []
     for pair in combinations(best.hypothesis.members, 2):
-        lost = _beside(search, best, pair).fit.objective - best.fit.objective
-        chosen += [(one.predicted / max(lost, 1.0), one) for one in rivals_for(search, best, *pair)[:1]]
+        rest = _beside(search, best, pair)
+        lost = max(rest.fit.objective - best.fit.objective, 1.0)
+        chosen += [(one.predicted / lost, one) for one in _in_place(search, best, rest)[:1]]
     found = []
     for _, proposal in sorted(chosen, key=lambda one: -one[0])[:PAIRS]:
         search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
