@@ -1,8 +1,8 @@
 """Exchange: what could take a member's place.
 
 A load is imitated by a valve's null offset and a sensor's bias, oil with air in it by a damping that drifts: what is
-taken for the other early stays for what the others have adapted to. So a member is taken out, and the catalogue competes
-for its place beside all else as it is.
+taken for the other early stays for what the others have adapted to. So a member is taken out, and the catalogue
+competes for its place beside all else as it is.
 """
 
 from __future__ import annotations
