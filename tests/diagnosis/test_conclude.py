@@ -234,7 +234,7 @@ def _fitted_elsewhere(monkeypatch):
     """What the conclusion asks of fits and simulations, which have tests of their own."""
     monkeypatch.setattr(conclude, "polish", lambda evidence, winner: winner.fit)
     monkeypatch.setattr(conclude, "judge", lambda shooting, model: JUDGED)
-    monkeypatch.setattr(conclude, "explained", lambda evidence, final: Explained(1.0, {"position": 1.0}, True))
+    monkeypatch.setattr(conclude, "explained", lambda *given: Explained(1.0, {"position": 1.0}, True))
     monkeypatch.setattr(conclude, "predictions", lambda *given: {})
     monkeypatch.setattr(conclude, "pictures", lambda *given: None)
     monkeypatch.setattr(conclude, "correlation", lambda final: Correlation())

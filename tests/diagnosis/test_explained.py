@@ -11,6 +11,7 @@ from made import explanation, recorded
 
 from eha_core.diagnosis import explained as stage
 from eha_core.diagnosis.explained import explained, predictions
+from eha_core.diagnosis.result import ChannelFit
 from eha_core.identification.observation import observe
 from eha_core.parameters import nominal_values
 
@@ -35,6 +36,10 @@ def evidence(before: float, after: float, **sites: float):
     )
 
 
+def held_out(**after: float):
+    return {name: ChannelFit(9.0, 9.0, after.get(name, 0.5) * 4.0, 4.0) for name in ("position", "pressure_a")}
+
+
 def test_the_share_is_of_what_the_nominal_model_leaves_beside_noise():
     final = fit(0.0, WHITE, 1.1 * WHITE)
     for before, after, share in (
@@ -44,7 +49,7 @@ def test_the_share_is_of_what_the_nominal_model_leaves_beside_noise():
         (20.0 * COUNT, 25.0 * COUNT, 0.0),
         (0.9 * COUNT, 0.9 * COUNT, 1.0),
     ):
-        found = explained(evidence(before, after), final)
+        found = explained(evidence(before, after), final, held_out())
         assert found.share == pytest.approx(share)
         assert found.times_noise == {"position": pytest.approx(1.0), "pressure_a": pytest.approx(1.1)}
         assert found.complete and found.left_over == ()
@@ -54,13 +59,22 @@ def test_the_share_is_of_what_the_nominal_model_leaves_beside_noise():
 def test_what_is_loud_or_coherent_in_one_channel_is_left_over_at_the_sites_that_tell_most(left, monkeypatch):
     monkeypatch.setattr(stage, "whereabouts", lambda *_: ("near zero speed", ((1.0, 2.0),)))
     sites = {"force": 20.0, "valve": 70.0, "sensor": 4.0, "orifice": 6.0}
-    found = explained(evidence(20.0 * COUNT, 2.0 * COUNT, **sites), fit(0.0, WHITE, left))
+    found = explained(evidence(20.0 * COUNT, 2.0 * COUNT, **sites), fit(0.0, WHITE, left), held_out())
     assert not found.complete
     assert [(one.site, one.share) for one in found.left_over] == [("valve", 0.7), ("force", 0.2), ("orifice", 0.06)]
     assert {one.when for one in found.left_over} == {((1.0, 2.0),)}
     few = {"force": 96.0, "valve": 4.0}
-    (alone,) = explained(evidence(20.0 * COUNT, 2.0 * COUNT, **few), fit(0.0, WHITE, left)).left_over
+    (alone,) = explained(evidence(20.0 * COUNT, 2.0 * COUNT, **few), fit(0.0, WHITE, left), held_out()).left_over
     assert (alone.site, alone.share) == ("force", 0.96)
+
+
+def test_what_is_left_on_held_out_windows_alone_is_left_too(monkeypatch):
+    monkeypatch.setattr(stage, "whereabouts", lambda *_: ("near zero speed", ((1.0, 2.0),)))
+    for ratio, complete in ((1.1, True), (1.54, False)):
+        rested = held_out(pressure_a=ratio)
+        found = explained(evidence(20.0 * COUNT, 1.0 * COUNT, force=9.0), fit(0.0, WHITE, 1.05 * WHITE), rested)
+        assert found.complete is complete
+        assert found.times_noise == {"position": pytest.approx(1.0), "pressure_a": pytest.approx(ratio)}
 
 
 def test_the_true_model_predicts_to_the_noise_and_a_wrong_one_worse_the_further_it_runs():

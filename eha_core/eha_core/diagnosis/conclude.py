@@ -58,9 +58,9 @@ def conclude(
     unknown = _unknown(evidence)
     decision = _without_another_curve(evidence, unknown)
     final = polish(evidence, decision.winner)
-    left = explained(replace(evidence, decision=decision), final)
     before, calibrated = evidence.calibration.nominal, evidence.comparison.nominal.fit
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
+    left = explained(replace(evidence, decision=decision), final, held_out)
     composition = evidence.observation.composition
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     recording = recordings[evidence.lead - 1]

@@ -9,7 +9,7 @@ import numpy as np
 from eha_core.diagnosis.criteria import COHERENT, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.locate import whereabouts
-from eha_core.diagnosis.result import Explained, Location, Prediction
+from eha_core.diagnosis.result import ChannelFit, Explained, Location, Prediction
 from eha_core.diagnosis.verdict import coherence
 from eha_core.identification.fit import Fit
 from eha_core.identification.observation import Observation
@@ -19,10 +19,13 @@ AHEAD = (0.25, 1.0)
 """s; how far the model is run on from measured states."""
 
 
-def explained(evidence: Evidence, final: Fit) -> Explained:
-    """What the final fit takes away of the recalibrated nominal model's error, and what is left."""
+def explained(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]) -> Explained:
+    """What the final fit takes away of the recalibrated nominal model's error, and what is left: in each channel the
+    more of what the fit leaves and of what is left where nothing was fitted."""
     names = evidence.calibration.shooting.names
-    left = {name: float(np.sqrt(np.mean(one**2))) for name, one in zip(names, final.residuals, strict=True)}
+    fitted = {name: float(np.sqrt(np.mean(one**2))) for name, one in zip(names, final.residuals, strict=True)}
+    # a local minimum can pass for noise where it was fitted, and nowhere else
+    left = {name: max(size, held_out[name].rmse_after / held_out[name].noise) for name, size in fitted.items()}
     white = all(coherence(residual) < COHERENT for residual in final.residuals)
     complete = max(left.values()) < LEFT_IN_A_CHANNEL and white
     before = evidence.comparison.nominal.fit

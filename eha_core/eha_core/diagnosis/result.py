@@ -71,8 +71,9 @@ class Explained:
     """How much the fitted model explains, and what is left.
 
     `share` is the part of the recalibrated nominal model's squared error beyond noise that it takes away, `times_noise`
-    the RMS of what is left in each channel over that channel's noise. `complete` says that what is left has the size of
-    noise and is white; where it is not, `left_over` says where and when it sits.
+    the RMS of what is left in each channel over that channel's noise, in the fit or on held-out windows, whichever is
+    more. `complete` says that what is left has the size of noise and is white; where it is not, `left_over` says where
+    and when it sits.
     """
 
     share: float
