@@ -93,6 +93,9 @@ def test_intervals_are_held_against_the_truth() -> None:
     marked = mark(case, Answer({"verdict": "missing_physics", "effects": [effect], "parameters": rows}, 0, 1.0))
     assert marked.intervals == (True,)
     assert marked.nominal_intervals == (False,)
+    beside = replace(case, effects=PAIR, decidable=False)
+    unnamed = mark(beside, Answer({"verdict": "missing_physics", "effects": [effect], "parameters": rows}, 0, 1.0))
+    assert (unnamed.outcome, unnamed.intervals, unnamed.nominal_intervals) == ("right", (), ())
 
 
 def test_parameters_of_an_equivalent_law_are_not_held_against_the_truth() -> None:

@@ -39,7 +39,8 @@ class Mark:
     `outcome` is one of OUTCOMES. `site_right`: the site named first is one where something is concealed (None where
     nothing is). `in_stated_set`: an ambiguous verdict lists the truth (None for other verdicts). `discovery`: physics
     was claimed where none is missing. `intervals`: for each parameter of a rightly named effect in the catalogue's own
-    law, whether its 95 % interval holds the truth. `nominal_intervals`: the same for the rig's parameters.
+    law, whether its 95 % interval holds the truth. `nominal_intervals`: the same for the rig's parameters. Both where
+    nothing concealed is unnamed.
     `held_out_ratio`: held-out error after over noise, worst channel. `curve_r_squared`: agreement of a recovered law.
     `resolved`: whether the test that an ambiguous verdict prescribed led to the truth. `seen`: of what is concealed,
     the effects that the recording can show beside the others. `false`: what is named and not concealed, under no name.
@@ -87,6 +88,7 @@ def mark(case: Case, answer: Answer, second: Answer | None = None) -> Mark:
     verdict = str(diagnosis.get("verdict", "none"))
     named = tuple(str(effect["id"]) for effect in diagnosis.get("effects") or ())
     outcome = _outcome(case, verdict, named, diagnosis)
+    held = outcome == "right" and _nothing_unnamed(case, verdict, named)
     plain = not any("law" in values or "rounding" in values or "underlap" in values for _, values in case.effects)
     return Mark(
         name=case.name,
@@ -99,8 +101,8 @@ def mark(case: Case, answer: Answer, second: Answer | None = None) -> Mark:
         site_right=_site_right(case, diagnosis),
         in_stated_set=_in_stated_set(case, diagnosis) if verdict == "ambiguous" else None,
         discovery=not case.effects and verdict in DISCOVERIES,
-        intervals=_effect_intervals(case, diagnosis) if outcome == "right" and plain else (),
-        nominal_intervals=_nominal_intervals(case, diagnosis) if outcome == "right" and not case.windows else (),
+        intervals=_effect_intervals(case, diagnosis) if held and plain else (),
+        nominal_intervals=_nominal_intervals(case, diagnosis) if held and not case.windows else (),
         held_out_ratio=_held_out_ratio(diagnosis),
         curve_r_squared=_curve(case, diagnosis),
         seconds=answer.seconds,
@@ -169,6 +171,12 @@ def accepted(case: Case) -> list[set[str]]:
     own = set(case.effect_ids)
     known_as = {other for name in own for other in EQUIVALENT.get(name, (name,))}
     return [own] if known_as == own else [own, known_as]
+
+
+def _nothing_unnamed(case: Case, verdict: str, named: Sequence[str]) -> bool:
+    """Whether the diagnosis describes all that is concealed, so that its parameters mean what the rig's do: a scale of
+    the position sensor that cannot be told makes every length and speed another."""
+    return not case.effects or verdict == "unknown_physics" or set(named) in accepted(case)
 
 
 def _in_stated_set(case: Case, diagnosis: Mapping[str, Any]) -> bool:
