@@ -1,7 +1,8 @@
-"""What stands in a member's place competes for it, and what stands in the place of two is found out."""
+"""What could stand in a member's place competes for it, with one effect more where it stands for two."""
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from made import recorded
 
@@ -9,10 +10,12 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.search import exchange
 from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search
 from eha_core.diagnosis.search.exchange import rivals_for, rivals_with_one_more
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
 from eha_core.effects import effects
+from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
@@ -54,6 +57,20 @@ def test_in_an_offsets_place_the_load_that_it_imitates_competes(search):
     load = next(one for one in rivals[:2] if one.hypothesis.ids == ("constant_load", "turbulent_leakage"))
     assert load.states is None, "the windows begin as measured"
     assert best.hypothesis not in [one.hypothesis for one in rivals]
+
+
+def test_over_short_windows_those_ahead_after_one_iteration_compete_too(search, monkeypatch):
+    best = fitted(search, IMITATED)
+    leakage = next(member for member in best.hypothesis.members if member.id == "turbulent_leakage")
+    few = rivals_for(search, best, leakage)
+    more = rivals_for(replace(search, short=True, found=dict(search.found)), best, leakage)
+    monkeypatch.setattr(exchange, "FOR_ONE_PLACE", 100)
+    others = rivals_for(search, best, leakage)[len(few) :]
+    assert [one.hypothesis for one in more[: len(few)]] == [one.hypothesis for one in few]
+    reached = [fit(search.problem, one.values, one.free, None, iterations=1).objective for one in others]
+    first, second = np.argsort(reached)[:2]
+    assert [one.hypothesis for one in more[len(few) :]] == [others[first].hypothesis, others[second].hypothesis]
+    assert (first, second) != (0, 1), "a linear prediction has them in another order"
 
 
 def test_a_rival_that_leads_with_one_effect_more_is_taken_that_far(search):

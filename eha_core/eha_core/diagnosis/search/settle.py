@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from eha_core.diagnosis.criteria import chance_gain
+from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.search.candidates import Candidate, Search
-from eha_core.diagnosis.search.exchange import ITERATIONS, one_in_place_of_two, rivals_for, rivals_with_one_more
+from eha_core.diagnosis.search.exchange import ITERATIONS, rivals_for, rivals_with_one_more
 from eha_core.diagnosis.search.found import OUT_OF_REACH
 from eha_core.diagnosis.search.grow import grow
 from eha_core.diagnosis.search.proposals import in_another_form
@@ -17,8 +18,9 @@ ROUNDS = 3
 
 def settle(search: Search, best: Candidate) -> Candidate:
     """The best set when it, and each that took its place, was held against its rivals."""
+    held_against: set[Hypothesis] = set()
     for _ in range(ROUNDS):
-        before, best = best.hypothesis, _against_its_rivals(search, best)
+        before, best = best.hypothesis, _against_its_rivals(search, best, held_against)
         if best.hypothesis == before:
             break
         # it may lead because its fit converged further, and not because of its new member
@@ -26,18 +28,21 @@ def settle(search: Search, best: Candidate) -> Candidate:
     return best
 
 
-def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
+def _against_its_rivals(search: Search, best: Candidate, held_against: set[Hypothesis]) -> Candidate:
     """The best set when what has the largest predicted gain in a member's place was fitted to where it can be told, and
-    with one effect more where that is predicted to lead."""
+    with one effect more where that is predicted to lead; `held_against` grows by the places that were competed for."""
     for member in best.hypothesis.members:
+        rest = best.hypothesis.without(member)
+        if rest in held_against:
+            continue
+        held_against.add(rest)
         for proposal in rivals_for(search, best, member):
-            if proposal.hypothesis not in search.found:
+            if search.short or proposal.hypothesis not in search.found:
                 search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
                 search.try_proposal(proposal, ITERATIONS, give_up_above=best.fit.objective + OUT_OF_REACH)
     size = len(best.hypothesis.members)
     needed = chance_gain(search.problem.count(), best.times_noise)
     larger = rivals_with_one_more(search, best, needed)
-    smaller = one_in_place_of_two(search, best) if search.short and size > 2 else []
     while True:
         try_forms(search, best, in_another_form(search, best))
         leading = for_its_cost(search, [one for one in search if len(one.hypothesis.members) == size])
@@ -45,6 +50,5 @@ def _against_its_rivals(search: Search, best: Candidate) -> Candidate:
             break
         # where friction sticks, the fit of a simpler form may have stopped above its optimum, and goes on from here
         best = leading
-    # an effect more has to gain what it could not by chance, one less may lose that
-    handicap = {one.hypothesis: needed for one in larger} | {one.hypothesis: -needed for one in smaller}
-    return min((best, *larger, *smaller), key=lambda one: one.fit.objective + handicap.get(one.hypothesis, 0.0))
+    # an effect more has to gain what it could not by chance
+    return min((best, *larger), key=lambda one: one.fit.objective + (needed if one in larger else 0.0))
