@@ -47,4 +47,4 @@ def _row(name: str, missing: str) -> Row:
 
 def _named(path: Path) -> str:
     effects = json.loads(path.read_text(encoding="utf-8"))["effects"]
-    return " + ".join(sorted(one["id"] for one in effects)) or "nothing"
+    return " + ".join(sorted(effect["id"] for effect in effects)) or "nothing"

@@ -28,8 +28,8 @@ def measure() -> list[Row]:
         size = path.stat().st_size / 1e6
         used = _eha("diagnose", str(path), "--out", str(out))
         found = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
-    force = next(one["parameters"]["force"] for one in found["effects"] if one["id"] == "coulomb_friction")
-    named = " and ".join(one["id"] for one in found["effects"])
+    force = next(effect["parameters"]["force"] for effect in found["effects"] if effect["id"] == "coulomb_friction")
+    named = " and ".join(effect["id"] for effect in found["effects"])
     error = (force["value"] - FRICTION) / force["std"]
     return [
         Row(

@@ -228,7 +228,7 @@ def _steps(task: Task, every: int) -> Array:
 @cache
 def _at_rest(name: str, step: float) -> Plant:
     """The plant of a task and a step size; setting it up is not part of a run."""
-    task = next(one for one in TASKS if one.name == name)
+    task = next(task for task in TASKS if task.name == name)
     return Plant(task.effects, step, task.position)
 
 

@@ -42,7 +42,7 @@ def measure() -> list[Row]:
     """Time nominal plants, plants with one effect, a Jacobian and a study. The shortest run of each counts, and CPU
     time is taken, so that what else the machine does counts as little as it can."""
     rows = [_step_row(f"{sets} nominal plants", _step_times({}, sets), TARGET) for sets in (8, 16)]
-    found = {one.id: _step_times(_typical(one), 8) for one in effects() if one.named}
+    found = {effect.id: _step_times(_typical(effect), 8) for effect in effects() if effect.named}
     ranked = sorted(found, key=lambda name: found[name][1] / found[name][0])
     for what, name in (("least", ranked[0]), ("median", ranked[len(ranked) // 2]), ("most", ranked[-1])):
         rows.append(_step_row(f"8 plants with the effect of the {what} gain, {name}", found[name], None))
@@ -138,8 +138,8 @@ def _jacobian_row() -> Row:
     coarse, states = problem.slopes, problem.shooting.initial_states
     values = nominal_values()
     moved: list[Point] = [
-        ({**values, one.name: 1.001 * values[one.name]}, states)
-        for one in free_nominal_parameters(values, "voltage", 0.05)
+        ({**values, parameter.name: 1.001 * values[parameter.name]}, states)
+        for parameter in free_nominal_parameters(values, "voltage", 0.05)
     ]
     moved += [(values, states + step) for step in np.diag(STATE_STEP)]
 

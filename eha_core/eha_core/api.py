@@ -121,9 +121,9 @@ def diagnose(
     given = [recording] if isinstance(recording, (Recording, str, Path)) else list(recording)
     composition = given_parts(nominal)
     records, unseen = (
-        [admitted(one, None, composition, progress) for one in several] for several in (given, tests)
+        [admitted(entry, None, composition, progress) for entry in several] for several in (given, tests)
     )
-    recordings, tested = ([one for record in several for one in record.recordings] for several in (records, unseen))
+    recordings, tested = ([piece for record in several for piece in record.recordings] for several in (records, unseen))
     if takes_motion_as_given(recordings, nominal):
         return _diagnose_motion(recordings, progress, tested)
     model = known_model(nominal, recordings[0])

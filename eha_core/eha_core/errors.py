@@ -12,7 +12,7 @@ LONGEST = 1000
 def printable(text: str) -> str:
     """The text as one line that a terminal shows and does not obey: what files hold may be escape sequences."""
     line = " ".join(text.split())
-    shown = "".join(one if one.isprintable() else one.encode("unicode_escape").decode() for one in line[:LONGEST])
+    shown = "".join(char if char.isprintable() else char.encode("unicode_escape").decode() for char in line[:LONGEST])
     return shown if len(line) <= LONGEST else f"{shown} ..."
 
 

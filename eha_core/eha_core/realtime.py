@@ -145,7 +145,7 @@ class Pacer:
         simulated = (self._periods - periods) * self._period
         calls = len(self._lateness_ns)
         lateness = np.asarray(self._lateness_ns or [0.0]) / NANOSECONDS
-        half, most, nearly_all = (float(one) for one in np.quantile(lateness, (0.5, 0.99, 0.999)))
+        half, most, nearly_all = (float(quantile) for quantile in np.quantile(lateness, (0.5, 0.99, 0.999)))
         self._lateness_ns = []
         return Health(
             periods=self._periods,

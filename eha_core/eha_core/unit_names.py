@@ -68,4 +68,4 @@ def unit_named(text: str) -> Unit | None:
 
 def name_of(unit: Unit) -> str:
     """The name of a unit in a topics file; its reference is a key of its own there."""
-    return next(name for name, one in UNITS.items() if (one.si, one.scale) == (unit.si, unit.scale))
+    return next(name for name, known in UNITS.items() if (known.si, known.scale) == (unit.si, unit.scale))

@@ -82,14 +82,16 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
         [admitted(path, arguments.topics, composition, progress) for path in paths]
         for paths in (arguments.recordings, arguments.test)
     )
-    recordings, tests = ([one for record in several for one in record.recordings] for several in (records, unseen))
+    recordings, tests = (
+        [recording for record in several for recording in record.recordings] for several in (records, unseen)
+    )
     if takes_motion_as_given(recordings, given):
         is_long = any(record.blocks for record in records)
         whole = _read(arguments.recordings, arguments) if is_long else recordings
         return _run_motion_given(arguments, whole, progress)
     model = known_model(given, recordings[0])
     recordings, tests = (
-        [admit(one, model.values, arguments.as_recorded, model.composition) for one in several]
+        [admit(recording, model.values, arguments.as_recorded, model.composition) for recording in several]
         for several in (recordings, tests)
     )
     for warning in (
@@ -214,13 +216,13 @@ def diagnose_alone(
         given = given_model(nominal)
         record = admitted(path, topics, given.composition if given else None)
         model = known_model(given, record.recordings[0])
-        recordings = [admit(one, model.values, as_recorded, model.composition) for one in record.recordings]
+        recordings = [admit(recording, model.values, as_recorded, model.composition) for recording in record.recordings]
         diagnosis = judged(diagnose_together(recordings, model, jobs=1), [record], model)
         diagnosis = with_provenance(diagnosis, [record], nominal)
         (write_report if with_report else write_document)(diagnosis, folder)
     except EhaError as error:
         return path, UNUSABLE, str(error)
-    told = " ".join([diagnosis.summary, *(one.statement for one in diagnosis.long_records)])
+    told = " ".join([diagnosis.summary, *(long_record.statement for long_record in diagnosis.long_records)])
     return path, DAMAGED if record.damaged else 0, told
 
 

@@ -118,7 +118,7 @@ def _run_real(arguments: argparse.Namespace) -> int:
     (folder / "table.md").write_text(table, encoding="utf-8")
     print(table)
     print(f"table and sealed predictions: {folder}/")
-    share = sum(one.met for one in questions) / len(questions)
+    share = sum(question.met for question in questions) / len(questions)
     if arguments.require is not None and share < arguments.require:
         print(f"eha exam: {share:.3f} of the questions are met, below --require {arguments.require}", file=sys.stderr)
         return BELOW_REQUIRED

@@ -61,7 +61,10 @@ def _listing(inspection: Inspection, suggestions: Suggestions) -> list[str]:
     rows: list[tuple[str, ...]] = [("name", "values", "rate [Hz]", "lowest", "highest", "unit", "channel")]
     channels = used(suggestions)
     unknown = {
-        (one.field.topic, one.field.path) for asked in suggestions.questions if asked.is_open for one in asked.readings
+        (reading.field.topic, reading.field.path)
+        for asked in suggestions.questions
+        if asked.is_open
+        for reading in asked.readings
     }
     sure = {(reading.field.topic, reading.field.path) for reading in suggestions.certain}
     for field in inspection.fields:

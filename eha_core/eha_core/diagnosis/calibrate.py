@@ -51,7 +51,9 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     """Fit the nominal equations; correct each channel's noise by what the residual's roughness shows; fit again."""
     nominal = model.values
     shooting = cut_together(observations, nominal, step_size, per_recording=model.per_recording)
-    positions = [channel.values for one in observations for channel in one.measured if channel.name == "position"]
+    positions = [
+        channel.values for observation in observations for channel in observation.measured if channel.name == "position"
+    ]
     farthest = max(float(np.max(np.abs(values))) for values in positions)
     free = free_nominal_parameters(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
     first = fit_in_stages(whole(shooting), nominal, free)
@@ -59,7 +61,7 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
-    shorter = tuple(cut_together(observations, nominal, STEPS[0], one, model.per_recording) for one in SHORT)
+    shorter = tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in SHORT)
     return Calibration(shooting, problem, at_nominal_values, fitted, shorter)
 
 
@@ -77,12 +79,12 @@ def step_error(observations: Sequence[Observation], calibration: Calibration) ->
     """Chi^2 between the calibrated plant's response and the same at half the step, at the samples that both have."""
     coarse, fitted = calibration.shooting, calibration.fitted
     fine = cut_together(observations, fitted.values, 0.5 * coarse.step_size)
-    responses = [one.sample(one.simulate(fitted.values, fitted.states)[0]) for one in (coarse, fine)]
+    responses = [shooting.sample(shooting.simulate(fitted.values, fitted.states)[0]) for shooting in (coarse, fine)]
     total = 0.0
-    for one, other, first, second in zip(coarse.samplings, fine.samplings, *responses, strict=True):
-        stamps, others = np.round(1e9 * coarse.times(one)), np.round(1e9 * fine.times(other))
+    for sampling, other, first, second in zip(coarse.samplings, fine.samplings, *responses, strict=True):
+        stamps, others = np.round(1e9 * coarse.times(sampling)), np.round(1e9 * fine.times(other))
         _, here, there = np.intersect1d(stamps, others, return_indices=True)
-        total += float(np.sum(((first[here] - second[there]) / one.noise) ** 2))
+        total += float(np.sum(((first[here] - second[there]) / sampling.noise) ** 2))
     return total
 
 
@@ -91,8 +93,10 @@ def calibrate_but_for_the_ends(
 ) -> tuple[tuple[Observation, ...], Calibration]:
     """Calibrate, and once more without a recording's last window where only that departs from the model."""
     calibration = calibrate_finely_enough(observations, model)
-    rest = tuple(_but_for_its_end(one, calibration, number) for number, one in enumerate(observations, 1))
-    if all(one is other for one, other in zip(rest, observations, strict=True)):
+    rest = tuple(
+        _but_for_its_end(observation, calibration, number) for number, observation in enumerate(observations, 1)
+    )
+    if all(observation is other for observation, other in zip(rest, observations, strict=True)):
         return rest, calibration
     return rest, calibrate(rest, model, calibration.shooting.step_size)
 
@@ -113,8 +117,8 @@ def _share_of_last_window(shooting: Shooting, fitted: Fit) -> float:
     if shooting.windows < 3:
         return 0.0
     before = at_the_end = 0.0
-    for one, residual in zip(shooting.samplings, fitted.residuals, strict=True):
-        square, last = residual**2, one.window == shooting.windows - 1
+    for sampling, residual in zip(shooting.samplings, fitted.residuals, strict=True):
+        square, last = residual**2, sampling.window == shooting.windows - 1
         before += max(0.0, float(np.sum(square[~last] - 1.0)))
         at_the_end += float(np.sum(square[last] - min(1.0, float(square[~last].mean()))))
     return at_the_end / (before + at_the_end) if at_the_end > AT_ALL else 0.0
@@ -123,22 +127,25 @@ def _share_of_last_window(shooting: Shooting, fitted: Fit) -> float:
 def corrected_noise(shooting: Shooting, result: Fit) -> list[float]:
     """The noise that the residual's second differences show, within a factor two of what the channel itself showed."""
     return [
-        max(one.noise * float(np.clip(residual_noise(residual), 0.5, 2.0)), RESOLVED["Pa" if one.column > 1 else "m"])
-        for one, residual in zip(shooting.samplings, result.residuals, strict=True)
+        max(
+            sampling.noise * float(np.clip(residual_noise(residual), 0.5, 2.0)),
+            RESOLVED["Pa" if sampling.column > 1 else "m"],
+        )
+        for sampling, residual in zip(shooting.samplings, result.residuals, strict=True)
     ]
 
 
 def identifiable(result: Fit, name: str) -> bool:
     """Whether the recording says more about a parameter than its nominal value did."""
-    place = [one.name for one in result.free].index(name)
+    place = [parameter.name for parameter in result.free].index(name)
     return bool(np.sqrt(max(result.covariance[place, place], 0.0)) < 0.5 * result.free[place].prior_deviation)
 
 
 def has_changed(result: Fit, nominal: Mapping[str, float], name: str) -> bool:
     """Whether a fitted parameter has left its nominal value, noticeably and relevantly."""
-    place = [one.name for one in result.free].index(name)
-    one = result.free[place]
+    place = [parameter.name for parameter in result.free].index(name)
+    parameter = result.free[place]
     given = nominal[base_name(name)]
     departure = abs(result.values[name] - given)
-    relevant = RELEVANT * (abs(given) if one.logarithmic else max(abs(given), one.scale))
+    relevant = RELEVANT * (abs(given) if parameter.logarithmic else max(abs(given), parameter.scale))
     return departure > NOTICEABLE * result.deviation(name) and departure > relevant

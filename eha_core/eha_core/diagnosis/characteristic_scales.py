@@ -33,13 +33,15 @@ class Scales:
 
 def characteristic_scales(observations: Sequence[Observation], shooting: Shooting, calibrated: Fit) -> Scales:
     """Simulate the calibrated model once more, in full, and read the scales off it and off the measured positions."""
-    positions = [channel for one in observations for channel in one.measured if channel.name == "position"]
-    low, high = np.quantile(np.concatenate([one.values for one in positions]), [0.002, 0.998])
+    positions = [
+        channel for observation in observations for channel in observation.measured if channel.name == "position"
+    ]
+    low, high = np.quantile(np.concatenate([channel.values for channel in positions]), [0.002, 0.998])
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
-    speed = float(np.std(np.concatenate([smooth(one, 1) for one in positions])))
+    speed = float(np.std(np.concatenate([smooth(channel, 1) for channel in positions])))
     by_quantity = {
         "position": (float(centre), float(half)),
-        "time": (0.0, max(one.duration for one in observations)),
+        "time": (0.0, max(observation.duration for observation in observations)),
         "speed": (0.0, speed),
     }
     if shooting.drive in WITH_OIL:

@@ -65,9 +65,9 @@ def conclude(
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     recording = recordings[evidence.lead - 1]
     steps, without = ladder(replace(evidence, decision=decision), final)
-    order = [one.added for one in steps]
+    order = [step.added for step in steps]
     effects = named_effects(decision.winner, final, composition)
-    effects = tuple(sorted(effects, key=lambda one: order.index(one.id)))
+    effects = tuple(sorted(effects, key=lambda effect: order.index(effect.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
         path=str(recording.path),
@@ -75,7 +75,7 @@ def conclude(
         channels=evidence.observation.channels,
         not_examined=evidence.observation.not_examined,
         remarks=(*zeros_to_correct(effects, recording), *_remarks(evidence)),
-        damaged=next((one.damaged for one in recordings if one.damaged), None),
+        damaged=next((record.damaged for record in recordings if record.damaged), None),
         verdict=decision.verdict,
         summary=summary(decision, effects, unknown, left),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
@@ -133,7 +133,7 @@ def _channel_fits(
         (channel_rmse(training, before.residuals), judged_nominal.training, judged_winner.training),
         (channel_rmse(judged, before.residuals), judged_nominal.held_out, judged_winner.held_out),
     )
-    noise = {name: one.noise for name, one in zip(shooting.names, shooting.samplings, strict=True)}
+    noise = {name: sampling.noise for name, sampling in zip(shooting.names, shooting.samplings, strict=True)}
     made = [
         {name: ChannelFit(first[name], second[name], third[name], noise[name]) for name in shooting.names}
         for first, second, third in parts
@@ -161,23 +161,26 @@ def _remarks(evidence: Evidence) -> tuple[str, ...]:
     what = ("the actuator turns: for m, m/s and N of the channels read rad, rad/s and N m",) if turns else ()
     if len(evidence.observations) == 1:
         return (*what, *evidence.observation.remarks)
-    return (*what, *(f"{one.path}: {remark}" for one in evidence.observations for remark in one.remarks))
+    return (
+        *what,
+        *(f"{observation.path}: {remark}" for observation in evidence.observations for remark in observation.remarks),
+    )
 
 
 def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, ...]:
     """The named effect's site first: where the name is certain, so is the site, and when it acts."""
     sites = {effect.site for effect in winner.effects}
-    always = {one.effect.site for one in winner.hypothesis.members if not one.limited}
-    limited = (one for one in winner.hypothesis.limited if one.effect.site not in always)
-    spans = {one.effect.site: one.span(winner.fit.values) for one in limited}
-    location = tuple(_in_span(one, spans.get(one.site)) for one in location)
-    return tuple(sorted(location, key=lambda one: (one.site not in sites, -one.share)))
+    always = {member.effect.site for member in winner.hypothesis.members if not member.limited}
+    limited = (member for member in winner.hypothesis.limited if member.effect.site not in always)
+    spans = {member.effect.site: member.span(winner.fit.values) for member in limited}
+    location = tuple(_in_span(place, spans.get(place.site)) for place in location)
+    return tuple(sorted(location, key=lambda place: (place.site not in sites, -place.share)))
 
 
-def _in_span(one: Location, span: tuple[float, float] | None) -> Location:
+def _in_span(location: Location, span: tuple[float, float] | None) -> Location:
     if span is None:
-        return one
-    return replace(one, when=(span,), statement=stated(one.site, one.share, one.where, (span,)))
+        return location
+    return replace(location, when=(span,), statement=stated(location.site, location.share, location.where, (span,)))
 
 
 def _unknown(evidence: Evidence) -> UnknownLaw | None:
@@ -220,7 +223,7 @@ def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, 
     where, when = (location[0].where, location[0].when) if location else ("all over the states that were visited", ())
     share = 100.0 * law.r_squared
     statement = f"{share:.0f} % of what is missing {SITES[law.site].words} is a law over {law.function_of}"
-    others = (one for one in location if one.site != law.site)
+    others = (place for place in location if place.site != law.site)
     return (Location(law.site, law.r_squared, where, when, statement), *others)
 
 
@@ -232,8 +235,8 @@ def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
         return not_proposed(names, evidence.observation.driving, source.id)
     shooting, values = evidence.shown(evidence.calibration.shooting), decision.winner.fit.values
     noises = {
-        name: one.noise * float(np.sqrt(RATE * evidence.observation.duration / len(one.values)))
-        for name, one in zip(shooting.names, shooting.samplings, strict=True)
+        name: sampling.noise * float(np.sqrt(RATE * evidence.observation.duration / len(sampling.values)))
+        for name, sampling in zip(shooting.names, shooting.samplings, strict=True)
     }
     limit = values["saturation_current"] * values["coil_resistance"]
     used = float(np.std(shooting.inputs[0])) if evidence.observation.drive == "voltage" else 0.0

@@ -34,7 +34,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             "parameters": _rows(
                 diagnosis.parameters, ("name", "nominal", "fitted", "std", "unit", "changed", "note", "at_bound")
             ),
-            "effects": [_effect(one) for one in diagnosis.effects],
+            "effects": [_effect(effect) for effect in diagnosis.effects],
             "alternatives": _rows(diagnosis.alternatives, ("effects", "evidence_gap")),
             "unknown": _row(diagnosis.unknown, ("site", "function_of", "expression", "r_squared", "samples")),
             "fit": {"training": _fits(diagnosis.training), "held_out": _fits(diagnosis.held_out)},
@@ -49,19 +49,19 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             },
             "prediction": _predictions(diagnosis.prediction),
             "recordings": [
-                {"path": one.path, "own_values": one.own_values, "held_out": _fits(one.held_out)}
-                for one in diagnosis.together
+                {"path": recording.path, "own_values": recording.own_values, "held_out": _fits(recording.held_out)}
+                for recording in diagnosis.together
             ],
             "tests": [
                 {
-                    "path": one.path,
-                    "noise": one.noise,
-                    "prediction": {model: _predictions(each) for model, each in one.prediction.items()},
+                    "path": recording.path,
+                    "noise": recording.noise,
+                    "prediction": {model: _predictions(each) for model, each in recording.prediction.items()},
                 }
-                for one in diagnosis.tests
+                for recording in diagnosis.tests
             ],
-            "steps": [{"added": one.added, **_residual(one.residual)} for one in diagnosis.steps],
-            "without": {name: _residual(one) for name, one in diagnosis.without.items()},
+            "steps": [{"added": step.added, **_residual(step.residual)} for step in diagnosis.steps],
+            "without": {name: _residual(residual) for name, residual in diagnosis.without.items()},
             "correlation": _row(diagnosis.correlation, ("names", "matrix")),
             **_long_records(diagnosis.long_records),
         }
@@ -91,30 +91,30 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
 def _predictions(channels: Mapping[str, Prediction]) -> dict[str, Any]:
     return {
         name: {
-            "ahead": {f"{ahead:g}": rmse for ahead, rmse in one.ahead.items()},
-            "free_running": one.free_running,
+            "ahead": {f"{ahead:g}": rmse for ahead, rmse in prediction.ahead.items()},
+            "free_running": prediction.free_running,
         }
-        for name, one in channels.items()
+        for name, prediction in channels.items()
     }
 
 
 def _fits(fits: Mapping[str, ChannelFit]) -> dict[str, Any]:
     names = ("rmse_before", "rmse_calibrated", "rmse_after", "noise")
-    return {channel: _row(one, names) for channel, one in fits.items()}
+    return {channel: _row(fit, names) for channel, fit in fits.items()}
 
 
 def _long_records(records: Sequence[LongRecord]) -> dict[str, Any]:
     """The records of which stretches were fitted; no such word where there is none."""
     found = []
-    for one in records:
-        row = _rows([one], ("path", "stretches", "window", "passed_over", "departs", "statement"))[0]
-        blocks = _rows(one.blocks, ("start", "end", "fitted", "before", "after"))
-        found.append({**row, "duration_s": one.duration, "blocks": blocks})
+    for record in records:
+        row = _rows([record], ("path", "stretches", "window", "passed_over", "departs", "statement"))[0]
+        blocks = _rows(record.blocks, ("start", "end", "fitted", "before", "after"))
+        found.append({**row, "duration_s": record.duration, "blocks": blocks})
     return {"long_records": found} if found else {}
 
 
-def _residual(one: Residual) -> dict[str, Any]:
-    return _rows([one], ("times_noise", "overall"))[0]
+def _residual(residual: Residual) -> dict[str, Any]:
+    return _rows([residual], ("times_noise", "overall"))[0]
 
 
 def _plain(value: Any) -> Any:

@@ -21,7 +21,7 @@ def fitted_recordings(evidence: Evidence, final: Fit, held_out: Mapping[str, Cha
     observations, marked = evidence.observations, evidence.calibration.shooting.per_recording
     if len(observations) == 1:
         return ()
-    own = [one.name for one in final.free if one.name in marked]
+    own = [parameter.name for parameter in final.free if parameter.name in marked]
     return tuple(
         RecordingFit(
             observation.path,
@@ -34,7 +34,7 @@ def fitted_recordings(evidence: Evidence, final: Fit, held_out: Mapping[str, Cha
 
 def of_recording(channels: Mapping[str, ChannelFit], number: int) -> Mapping[str, ChannelFit]:
     """The channels of one recording, by their plain names."""
-    return {base_name(name): one for name, one in channels.items() if name == named(base_name(name), number)}
+    return {base_name(name): fit for name, fit in channels.items() if name == named(base_name(name), number)}
 
 
 def predicted_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recording]) -> tuple[PredictedRecording, ...]:

@@ -45,9 +45,9 @@ def with_effects(
     free: Sequence[FreeParameter], effects: Sequence[Effect], values: Mapping[str, float]
 ) -> tuple[FreeParameter, ...]:
     """The free parameters with those of more effects, which are free about where `values` has them."""
-    extra = [one for effect in effects for one in free_effect_parameters(effect, values)]
-    names = {one.name for one in extra}
-    return (*(one for one in free if one.name not in names), *extra)
+    extra = [parameter for effect in effects for parameter in free_effect_parameters(effect, values)]
+    names = {parameter.name for parameter in extra}
+    return (*(parameter for parameter in free if parameter.name not in names), *extra)
 
 
 SPAN_SCALE = 0.3
@@ -68,7 +68,7 @@ def parameters_used(result: Fit) -> int:
 
     A deadband with sharp edges has no rounding to pay for.
     """
-    return sum(not _is_no_shape(result, one.name) for one in result.free)
+    return sum(not _is_no_shape(result, parameter.name) for parameter in result.free)
 
 
 def _is_no_shape(result: Fit, name: str) -> bool:

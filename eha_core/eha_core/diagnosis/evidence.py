@@ -58,4 +58,4 @@ class Evidence:
 def telling_most(shooting: Shooting, fitted: Fit) -> int:
     """The number of the recording that a model leaves most of, a sample."""
     each = [fit_alone(shooting, fitted, number) for number in range(1, len(shooting.first_windows) + 1)]
-    return 1 + int(np.argmax([one.data / max(one.count, 1) for one in each]))
+    return 1 + int(np.argmax([result.data / max(result.count, 1) for result in each]))

@@ -23,7 +23,7 @@ def explained(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]
     """What the final fit takes away of the recalibrated nominal model's error, and what is left: in each channel the
     more of what the fit leaves and of what is left where nothing was fitted."""
     names = evidence.calibration.shooting.names
-    fitted = {name: float(np.sqrt(np.mean(one**2))) for name, one in zip(names, final.residuals, strict=True)}
+    fitted = {name: float(np.sqrt(np.mean(residual**2))) for name, residual in zip(names, final.residuals, strict=True)}
     # a local minimum can pass for noise where it was fitted, and nowhere else
     left = {name: max(size, held_out[name].rmse_after / held_out[name].noise) for name, size in fitted.items()}
     white = all(coherence(residual) < COHERENT for residual in final.residuals)
@@ -66,4 +66,4 @@ def _errors(
     shooting = cut(observation, values, step_size, seconds)
     rows, _ = shooting.simulate(values, shooting.initial_states)
     triples = zip(shooting.names, shooting.samplings, shooting.sample(rows), strict=True)
-    return {name: float(np.sqrt(np.mean((one.values - model) ** 2))) for name, one, model in triples}
+    return {name: float(np.sqrt(np.mean((sampling.values - model) ** 2))) for name, sampling, model in triples}

@@ -20,22 +20,26 @@ def fitted_parameters(
     """The plant's own parameters that were free, each with its deviation and whether it has changed."""
     rows = composition.place_rows
     found = []
-    for one in final.free:
-        base = base_name(one.name)
+    for parameter in final.free:
+        base = base_name(parameter.name)
         if base not in rows:
             continue
-        note = "" if identifiable(final, one.name) else "this recording does not tell it; held near its nominal value"
-        at_bound = one.is_bound_by(final.values[one.name])
+        note = (
+            ""
+            if identifiable(final, parameter.name)
+            else "this recording does not tell it; held near its nominal value"
+        )
+        at_bound = parameter.is_bound_by(final.values[parameter.name])
         if at_bound:
             note = "at the bound of what is believed of it: its interval does not count"
         found.append(
             FittedParameter(
-                one.name,
+                parameter.name,
                 nominal[base],
-                final.values[one.name],
-                final.deviation(one.name),
+                final.values[parameter.name],
+                final.deviation(parameter.name),
                 rows[base].unit,
-                has_changed(final, nominal, one.name),
+                has_changed(final, nominal, parameter.name),
                 note,
                 at_bound,
             )
@@ -46,7 +50,7 @@ def fitted_parameters(
 def named_effects(winner: Entry, final: Fit, composition: Composition) -> tuple[NamedEffect, ...]:
     """The effects that were named, with the values, intervals and statement of each."""
     found = []
-    for member in (one for one in winner.hypothesis.members if one.effect.named):
+    for member in (member for member in winner.hypothesis.members if member.effect.named):
         effect = composition.as_shown(member.effect)
         values = {
             row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
@@ -66,11 +70,11 @@ def _in_other_recordings(effect: Effect, final: Fit) -> dict[str, FittedValue]:
     """The values of an effect's parameters that differ between recordings, in all but the first: `force@2`."""
     units = {name: row.unit for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}
     return {
-        one.name.removeprefix(f"{effect.id}."): FittedValue(
-            final.values[one.name], final.deviation(one.name), units[base_name(one.name)]
+        parameter.name.removeprefix(f"{effect.id}."): FittedValue(
+            final.values[parameter.name], final.deviation(parameter.name), units[base_name(parameter.name)]
         )
-        for one in final.free
-        if "@" in one.name and is_one_of(one.name, units)
+        for parameter in final.free
+        if "@" in parameter.name and is_one_of(parameter.name, units)
     }
 
 

@@ -67,7 +67,7 @@ class Hypothesis:
 
     def without(self, member: Member) -> Hypothesis:
         """The set without one of its members."""
-        return Hypothesis(tuple(one for one in self.members if one != member), self.law)
+        return Hypothesis(tuple(other for other in self.members if other != member), self.law)
 
     def holds(self, other: Hypothesis) -> bool:
         """Whether it says all that another says, or more."""

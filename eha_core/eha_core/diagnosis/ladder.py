@@ -27,13 +27,15 @@ def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, 
     ends = (
         (NOMINAL, evidence.calibration.nominal),
         (RECALIBRATED, evidence.comparison.nominal.fit),
-        *((member.id, one.fit) for member, one in models),
+        *((member.id, candidate.fit) for member, candidate in models),
     )
     scales = _scales(evidence)
-    steps = [Step(added, _residual(evidence, one, scales)) for added, one in ends]
+    steps = [Step(added, _residual(evidence, result, scales)) for added, result in ends]
     if models:
         steps[-1] = Step(steps[-1].added, _residual(evidence, final, [1.0] * len(scales)))
-    return tuple(steps), {member.id: _residual(evidence, one.fit, scales) for member, one in without.items()}
+    return tuple(steps), {
+        member.id: _residual(evidence, candidate.fit, scales) for member, candidate in without.items()
+    }
 
 
 def _taken_apart(
@@ -49,9 +51,9 @@ def _taken_apart(
     without: dict[Member, Candidate] = {}
     rest = whole
     while len(rest.hypothesis.members) > 1:
-        smaller = {one: _refit_without(evidence, rest, one, known) for one in rest.hypothesis.members}
+        smaller = {member: _refit_without(evidence, rest, member, known) for member in rest.hypothesis.members}
         without = without or smaller
-        goes = min(smaller, key=lambda one: smaller[one].fit.objective)
+        goes = min(smaller, key=lambda member: smaller[member].fit.objective)
         found.append((goes, rest))
         rest = smaller[goes]
     found += [(member, rest) for member in rest.hypothesis.members]
@@ -65,20 +67,20 @@ def _refit_without(evidence: Evidence, at: Candidate, member: Member, known: Map
     result = fit(evidence.calibration.problem, values, free, at.fit.states, iterations=REFITTED)
     hypothesis = at.hypothesis.without(member)
     earlier = known.get(hypothesis, result)
-    return Candidate(hypothesis, min(result, earlier, key=lambda one: one.objective))
+    return Candidate(hypothesis, min(result, earlier, key=lambda model: model.objective))
 
 
 def _scales(evidence: Evidence) -> list[float]:
     """What the search took for each channel's noise, over what the final model shows it to be."""
     shooting = evidence.calibration.shooting
     final = corrected_noise(shooting, evidence.decision.winner.fit)
-    return [one.noise / noise for one, noise in zip(shooting.samplings, final, strict=True)]
+    return [sampling.noise / noise for sampling, noise in zip(shooting.samplings, final, strict=True)]
 
 
 def _residual(evidence: Evidence, result: Fit, scales: Sequence[float]) -> Residual:
-    left = [scale * one for scale, one in zip(scales, result.residuals, strict=True)]
+    left = [scale * residual for scale, residual in zip(scales, result.residuals, strict=True)]
     names = evidence.calibration.shooting.names
-    each = {name: float(np.sqrt(np.mean(one**2))) for name, one in zip(names, left, strict=True)}
+    each = {name: float(np.sqrt(np.mean(residual**2))) for name, residual in zip(names, left, strict=True)}
     return Residual(each, float(np.sqrt(np.mean(np.concatenate(left) ** 2))))
 
 
@@ -90,4 +92,4 @@ def correlation(final: Fit) -> Correlation:
     # a parameter rises with its coordinate, so both have the same correlation
     matrix = np.clip(covariance / np.outer(deviations, deviations), -1.0, 1.0)
     np.fill_diagonal(matrix, 1.0)
-    return Correlation(tuple(one.name for one in final.free), tuple(map(tuple, matrix.tolist())))
+    return Correlation(tuple(parameter.name for parameter in final.free), tuple(map(tuple, matrix.tolist())))

@@ -146,9 +146,9 @@ def weak_law(alternatives: Sequence[Sequence[EquationResidual]]) -> UnknownLaw |
     best: UnknownLaw | None = None
     most = 0.0
     for form in FORMS:
-        parts = [one[:1] if form.site == "force" else one[1:] for one in alternatives]
-        sides = [one for one in parts if one]
-        energies = [float(np.mean([one.chi_square for one in chosen])) for chosen in sides]
+        parts = [residuals[:1] if form.site == "force" else residuals[1:] for residuals in alternatives]
+        sides = [part for part in parts if part]
+        energies = [float(np.mean([residual.chi_square for residual in chosen])) for chosen in sides]
         # the equation that is violated most comes first, whatever explains a little of another
         lacking = min(energies, default=0.0)
         if lacking < VIOLATED:
@@ -183,19 +183,19 @@ def _law(form: Form, residuals: Sequence[EquationResidual], least_share: float =
 
 def _regression_data(form: Form, residuals: Sequence[EquationResidual]) -> RegressionData:
     """The residuals as observations of the form's function, in units of noise."""
-    bases = [np.linalg.qr(one.terms)[0] for one in residuals]
-    factors = [_factor(form, one) / one.noise for one in residuals]
+    bases = [np.linalg.qr(residual.terms)[0] for residual in residuals]
+    factors = [_factor(form, residual) / residual.noise for residual in residuals]
 
     def rows(values: Array) -> Array:
         return np.concatenate(
             [
-                _freed(one.grid.average(values * factor), basis)
-                for one, factor, basis in zip(residuals, factors, bases, strict=True)
+                _freed(residual.grid.average(values * factor), basis)
+                for residual, factor, basis in zip(residuals, factors, bases, strict=True)
             ],
             axis=-1,
         )
 
-    seen = np.concatenate([one.missing / one.noise for one in residuals])
+    seen = np.concatenate([residual.missing / residual.noise for residual in residuals])
     at = residuals[0].states[form.variable]
     return RegressionData(at, seen, rows, float(seen @ seen), len(seen) / OVERLAP)
 
@@ -246,6 +246,7 @@ def _text(form: Form, found: Sum) -> str:
     variables = [form.variable, *([form.times] if form.times else [])]
     times = "sign(v)" if form.times == DIRECTION else SYMBOLS[form.times][0] if form.times else ""
     units = [
-        f"{symbol.strip('()')} in {unit}" for symbol, unit in (SYMBOLS[one] for one in variables if one in SYMBOLS)
+        f"{symbol.strip('()')} in {unit}"
+        for symbol, unit in (SYMBOLS[variable] for variable in variables if variable in SYMBOLS)
     ]
     return f"{found.written(times)} [{UNITS[form.site]}], {', '.join(units)}"

@@ -45,7 +45,7 @@ def stated(site: str, share: float, where: str, when: tuple[tuple[float, float],
 
 def _energy(shooting: Shooting, result: Fit) -> tuple[Array, Array]:
     """Residual energy beyond the noise at every sample's time, all channels together: times and energies."""
-    times = [shooting.times(one) for one in shooting.samplings]
+    times = [shooting.times(sampling) for sampling in shooting.samplings]
     return np.concatenate(times), np.concatenate([residual**2 for residual in result.residuals])
 
 
@@ -105,8 +105,8 @@ def regions(shooting: Shooting, result: Fit, scales: Scales) -> tuple[Region, ..
 
 def _where(shooting: Shooting, result: Fit, scales: Scales) -> str:
     """The region that holds most beyond its share of time, if any stands out."""
-    candidates = [one for one in regions(shooting, result, scales) if one.time_share > 0.005]
-    best = max(candidates, key=lambda one: one.energy_share / one.time_share, default=None)
+    candidates = [region for region in regions(shooting, result, scales) if region.time_share > 0.005]
+    best = max(candidates, key=lambda region: region.energy_share / region.time_share, default=None)
     if best is None or best.energy_share < 2.0 * best.time_share or best.energy_share < 0.15:
         return "all over the states that were visited"
     return best.name

@@ -17,9 +17,9 @@ def pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pi
     """Measured channels and the three models' at the same times, windows restarted."""
     whole = evidence.calibration.shooting
     shooting = evidence.shown(whole)
-    models = [_modelled(shooting, evidence.shown_fit(whole, one)) for one in (before, calibrated, after)]
-    times = {name: shooting.times(one) for name, one in zip(shooting.names, shooting.samplings, strict=True)}
-    measured = {name: one.values for name, one in zip(shooting.names, shooting.samplings, strict=True)}
+    models = [_modelled(shooting, evidence.shown_fit(whole, result)) for result in (before, calibrated, after)]
+    times = {name: shooting.times(sampling) for name, sampling in zip(shooting.names, shooting.samplings, strict=True)}
+    measured = {name: sampling.values for name, sampling in zip(shooting.names, shooting.samplings, strict=True)}
     variables: dict[str, Array] = {}
     scales = scales_alone(whole, evidence.scales, evidence.lead)
     if len(scales.rows):
@@ -28,7 +28,7 @@ def pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pi
         variables["time"] = np.asarray((np.arange(len(scales.rows)) + 1) * shooting.every * shooting.step_size)
     if evidence.observation.drive == "voltage":
         times["voltage_command"], measured["voltage_command"] = evidence.observation.inputs[0]
-    equations = {one.equation: (one.time, one.residual) for one in evidence.equations}
+    equations = {residual.equation: (residual.time, residual.residual) for residual in evidence.equations}
     outside = split(whole, instants_of(after))[1]
     lead = whole.recordings[evidence.lead - 1]
     spans = whole.local_edges.tolist()
@@ -38,4 +38,4 @@ def pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pi
 
 def _modelled(shooting: Shooting, result: Fit) -> dict[str, Array]:
     pairs = zip(shooting.names, shooting.samplings, result.residuals, strict=True)
-    return {name: one.values - residual * one.noise for name, one, residual in pairs}
+    return {name: sampling.values - residual * sampling.noise for name, sampling, residual in pairs}

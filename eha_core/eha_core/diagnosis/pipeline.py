@@ -65,7 +65,7 @@ def _holding_back(evidence: Evidence) -> frozenset[str]:
     rivals = evidence.comparison.entries[:RIVALS] if winner.data > NEAR_NOISE * winner.count else []
     needed = chance_gain(problem.count(), evidence.comparison.residual_variance)
     found: frozenset[str] = frozenset()
-    for at in (winner, *(one.fit for one in rivals if one.fit is not winner)):
+    for at in (winner, *(entry.fit for entry in rivals if entry.fit is not winner)):
         bounds = at.held_by_belief()
         if bounds and winner.objective - _without(evidence, at, bounds).objective > needed:
             found |= bounds
@@ -75,7 +75,10 @@ def _holding_back(evidence: Evidence) -> frozenset[str]:
 def _without(evidence: Evidence, at: Fit, bounds: frozenset[str]) -> Fit:
     """A model fitted further without these bounds."""
     rows = evidence.observation.composition.place_rows
-    free = [not_believed(one, rows[base_name(one.name)]) if base_name(one.name) in bounds else one for one in at.free]
+    free = [
+        not_believed(parameter, rows[base_name(parameter.name)]) if base_name(parameter.name) in bounds else parameter
+        for parameter in at.free
+    ]
     return fit(evidence.calibration.problem, at.values, free, at.states, iterations=BEYOND)
 
 

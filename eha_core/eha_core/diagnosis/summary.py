@@ -34,7 +34,9 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
     named = "; and ".join(effect.statement for effect in effects)
     kind = kind_alone(decision)
     if decision.verdict == "ambiguous" and kind:
-        forms = " and ".join(" + ".join(ids) for ids in (decision.winner.ids, *(one.ids for one, _ in decision.rivals)))
+        forms = " and ".join(
+            " + ".join(ids) for ids in (decision.winner.ids, *(entry.ids for entry, _ in decision.rivals))
+        )
         return (
             f"Physics is missing: {kind}; most simply, {named}. Its law cannot be told from this recording:"
             f" {forms} explain it alike."
@@ -49,7 +51,7 @@ def kind_alone(decision: Decision) -> str:
     """The kind of law, if the winner and all its rivals are the same but for the form of one law; else nothing."""
     kinds = set()
     for entry, _ in decision.rivals:
-        own, other = (set(one.hypothesis.members) for one in (decision.winner, entry))
+        own, other = (set(explanation.hypothesis.members) for explanation in (decision.winner, entry))
         differing = [*(own - other), *(other - own)]
         if len(differing) != 2 or differing[0].effect.kind != differing[1].effect.kind:
             return ""

@@ -68,8 +68,12 @@ def recover(
     bases = [comparison.nominal, *([best] if best.effects and not best.hypothesis.limited else [])]
     found = [_beside(problem, base, comparison, scales, progress) for base in bases]
     # beside a curve that is not the law either, a name only makes up for what the curve leaves
-    stands = [one for one in found if one is not None and not (one.named and one.fit.data > UNFITTED * one.fit.count)]
-    return max(stands, key=lambda one: one.score, default=None)
+    stands = [
+        recovery
+        for recovery in found
+        if recovery is not None and not (recovery.named and recovery.fit.data > UNFITTED * recovery.fit.count)
+    ]
+    return max(stands, key=lambda recovery: recovery.score, default=None)
 
 
 def _beside(
@@ -82,7 +86,7 @@ def _beside(
         fits.append((law, effect, variable, result))
     if not fits:
         return None
-    hypothesis, effect, variable, result = min(fits, key=lambda one: one[3].objective)
+    hypothesis, effect, variable, result = min(fits, key=lambda curve: curve[3].objective)
     hypothesis, result = _without_idle(problem, hypothesis, result)
     nominal = comparison.nominal.fit
     variance = max(1.0, min(result.data / result.count, comparison.residual_variance))
@@ -102,7 +106,7 @@ def _fitted_curves(
     for effect, variable, values in _curves(base.fit.values, scales, problem.shooting):
         free = (*base.fit.free, *_knots_free(effect, values, scales))
         score_tests.append((_predicted_gain(problem, base.fit, values, free), effect, variable, values, free))
-    score_tests.sort(key=lambda one: -one[0])
+    score_tests.sort(key=lambda score_test: -score_test[0])
     beside = f" beside {' and '.join(base.ids)}" if base.ids else ""
     for gain, effect, variable, values, free in score_tests[:FULLY_FITTED]:
         if gain > 0.0:
@@ -188,7 +192,7 @@ def _seen(effect: Effect, result: Fit) -> tuple[tuple[float, float], ...]:
     lower, upper = result.values[f"{effect.id}.lower"], result.values[f"{effect.id}.upper"]
     places = np.linspace(lower, upper, KNOTS)
     found = []
-    names = [one.name for one in result.free]
+    names = [parameter.name for parameter in result.free]
     for place, k in zip(places, range(KNOTS), strict=True):
         name = f"{effect.id}.knot_{k:02d}"
         index = names.index(name)

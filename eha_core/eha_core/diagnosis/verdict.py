@@ -113,8 +113,8 @@ def _beats_the_catalogue(recovery: Recovery, comparison: ModelComparison) -> boo
     left = (best.fit.data - best.fit.count) / max(nominal.data - nominal.count, 1.0)
     if left < NEARLY_ALL and best.effects and curve.data > FAR_FROM_NOISE * curve.count:
         return False
-    forms = [one for one in best.effects if one.approximate]
-    if left < WHATEVER_FORM and forms or left < ITS_FORM and any(one.site == recovery.effect.site for one in forms):
+    forms = [effect for effect in best.effects if effect.approximate]
+    if left < WHATEVER_FORM and forms or left < ITS_FORM and any(form.site == recovery.effect.site for form in forms):
         return False
     if recovery.named and recovery.share < LEAST_OF_A_LAW:
         return False
@@ -142,7 +142,7 @@ def _without_physics(calibration: Calibration, nominal: Mapping[str, float], com
     """Nothing is named: say whether parameters differ. A set of values differs if the data say so, taken together."""
     result = comparison.nominal.fit
     gain = calibration.nominal.objective - result.objective
-    changed = [one.name for one in result.free if has_changed(result, nominal, one.name)]
+    changed = [parameter.name for parameter in result.free if has_changed(result, nominal, parameter.name)]
     different = gain / comparison.residual_variance > ENOUGH + len(changed) * log(max(result.count, 2)) and changed
     return Decision("parameters" if different else "consistent", comparison.nominal, (), None, None)
 

@@ -48,7 +48,7 @@ def as_html(
     """
     style = (files("eha_core.exam") / "page.css").read_text(encoding="utf-8")
     items = "".join(f"<li>{escape(name)}: {escape(str(value))}</li>" for name, value in about.items())
-    key = "".join(f'<li><i class="{one}"></i>{one}</li>' for one in OUTCOMES)
+    key = "".join(f'<li><i class="{outcome}"></i>{outcome}</li>' for outcome in OUTCOMES)
     parts = [
         '<!doctype html><html lang="en"><head><meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1"><title>The exam</title>',
@@ -79,10 +79,10 @@ def _tool(summary: Summary, marks: Sequence[Mark], reports: Mapping[str, str]) -
     if summary.confusion or summary.rightly:
         parts += [f"<h3>What was named in place of what</h3><p>{MATRIX}</p>", _matrix(summary)]
     if marks:
-        count = sum(one.outcome in ("wrong", "failed") for one in marks)
+        count = sum(mark.outcome in ("wrong", "failed") for mark in marks)
         parts.append(f"<details{' open' if count else ''}><summary>Wrong or failed cases ({count})</summary>")
         parts.append(f"<p>{LINKED}</p>")
-        parts.append(_cases([one for one in marks if one.outcome in ("wrong", "failed")], reports) + "</details>")
+        parts.append(_cases([mark for mark in marks if mark.outcome in ("wrong", "failed")], reports) + "</details>")
         parts.append(f"<details><summary>All cases ({len(marks)})</summary>{_cases(marks, reports)}</details>")
     return parts
 
@@ -90,7 +90,7 @@ def _tool(summary: Summary, marks: Sequence[Mark], reports: Mapping[str, str]) -
 def _outcome(row: Row) -> str:
     """A group of cases: a bar of its outcomes, each share with its interval, and the seconds that a case took."""
     shares = (row.right, row.abstained, row.wrong, row.failed)
-    cells = "".join(f"<td>{_told(one)}</td>" for one in (*shares, row.site_right))
+    cells = "".join(f"<td>{_told(share)}</td>" for share in (*shares, row.site_right))
     seconds = _cells((f"{row.median_seconds:.1f}", f"{row.longest_seconds:.1f}"))
     return f"<td>{escape(row.group)}</td><td>{_bar(shares)}</td><td>{row.cases}</td>{cells}{seconds}"
 
@@ -136,16 +136,16 @@ def _colour(share: float) -> str:
 
 def _matrix(summary: Summary) -> str:
     """Concealed effects over named ones, each count a colour."""
-    counts = {(one, other): count for one, other, count in summary.confusion}
+    counts = {(concealed, other): count for concealed, other, count in summary.confusion}
     counts |= {(name, name): count for name, count in summary.rightly}
-    rows = _ordered({one for one, _ in counts})
+    rows = _ordered({concealed for concealed, _ in counts})
     columns = _ordered({other for _, other in counts})
     head = "".join(f"<th><span>{escape(name.replace('_', ' '))}</span></th>" for name in columns)
     most = max(counts.values())
     body = []
-    for one in rows:
-        cells = (_count(counts.get((one, other), 0), most, one == other) for other in columns)
-        body.append(f"<tr><th>{escape(one.replace('_', ' '))}</th>{''.join(cells)}</tr>")
+    for concealed in rows:
+        cells = (_count(counts.get((concealed, other), 0), most, concealed == other) for other in columns)
+        body.append(f"<tr><th>{escape(concealed.replace('_', ' '))}</th>{''.join(cells)}</tr>")
     table = f"<thead><tr><th>concealed \\ named</th>{head}</tr></thead><tbody>{''.join(body)}</tbody>"
     return f'<div class="scroll"><table class="names">{table}</table></div>'
 
@@ -165,18 +165,18 @@ def _count(count: int, most: int, right: bool) -> str:
 
 def _cases(marks: Sequence[Mark], reports: Mapping[str, str]) -> str:
     rows = []
-    for one in marks:
-        link = reports.get(one.name)
-        name = f'<a href="{escape(link)}">{escape(one.name)}</a>' if link else escape(one.name)
-        concealed, named = " + ".join(one.concealed) or NOTHING, " + ".join(one.named) or "-"
-        cells = _cells((f"{one.noise:g}x", concealed, one.verdict, named, f"{one.seconds:.1f}"))
-        rows.append(f'<td>{name}</td><td><i class="chip {one.outcome}"></i>{one.outcome}</td>{cells}')
+    for mark in marks:
+        link = reports.get(mark.name)
+        name = f'<a href="{escape(link)}">{escape(mark.name)}</a>' if link else escape(mark.name)
+        concealed, named = " + ".join(mark.concealed) or NOTHING, " + ".join(mark.named) or "-"
+        cells = _cells((f"{mark.noise:g}x", concealed, mark.verdict, named, f"{mark.seconds:.1f}"))
+        rows.append(f'<td>{name}</td><td><i class="chip {mark.outcome}"></i>{mark.outcome}</td>{cells}')
     return _table(("case", "outcome", "noise", "concealed", "verdict", "named", "s"), rows, "cases")
 
 
 def _table(head: Sequence[str], rows: Iterable[str], kind: str = "") -> str:
     """A table of rows of cells, each of which names its column, as a phone shows them below each other."""
-    headings = "".join(f"<th>{escape(one)}</th>" for one in head)
+    headings = "".join(f"<th>{escape(heading)}</th>" for heading in head)
     body = "".join(f"<tr>{_labelled(row, head)}</tr>" for row in rows)
     table = f"<thead><tr>{headings}</tr></thead><tbody>{body}</tbody>"
     return f'<div class="scroll"><table class="{kind}">{table}</table></div>'
@@ -184,7 +184,7 @@ def _table(head: Sequence[str], rows: Iterable[str], kind: str = "") -> str:
 
 def _labelled(row: str, head: Sequence[str]) -> str:
     before, *cells = row.split("<td")
-    labelled = (f'<td data-label="{escape(one)}"{cell}' for one, cell in zip(head, cells, strict=True))
+    labelled = (f'<td data-label="{escape(heading)}"{cell}' for heading, cell in zip(head, cells, strict=True))
     return before + "".join(labelled)
 
 

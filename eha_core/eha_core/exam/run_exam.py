@@ -256,13 +256,13 @@ def _read(path: Path) -> Answer:
 def report_lost(exam: Exam, lost: Sequence[Mark]) -> dict[str, str]:
     """Write the reports of lost cases; returns each one's page, relative to the exam's folder, by case name."""
     pages = {}
-    for one in lost:
-        sealed = (exam.folder / "sealed" / f"{one.name}.json").read_text(encoding="utf-8")
+    for case in lost:
+        sealed = (exam.folder / "sealed" / f"{case.name}.json").read_text(encoding="utf-8")
         recording = (exam.folder / "recordings" / recording_name(read_answer(sealed))).resolve()
-        place = exam.folder / "lost" / one.name
+        place = exam.folder / "lost" / case.name
         place.mkdir(parents=True, exist_ok=True)
         words = [sys.executable, "-m", "eha_core.cli", "diagnose", str(recording), "--out", str(place.resolve())]
         _run(words, str(place))
         if (place / "report.html").is_file():
-            pages[one.name] = f"lost/{one.name}/report.html"
+            pages[case.name] = f"lost/{case.name}/report.html"
     return pages

@@ -112,8 +112,8 @@ def _of_sets(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
     ]
 
 
-def _truthful(one: Mark) -> bool:
-    return bool(one.truthful)
+def _truthful(mark: Mark) -> bool:
+    return bool(mark.truthful)
 
 
 def _found(marks: Sequence[Mark]) -> Proportion:
@@ -133,8 +133,8 @@ def confusion(marks: Sequence[Mark]) -> list[tuple[str, str, int]]:
     for m in marks:
         missed = sorted(set(m.seen or m.concealed) - set(m.named)) or ["nothing"]
         false = sorted(m.false) or ["nothing"]
-        counts.update((one, other) for one in missed for other in false if one != other)
-    return [(one, other, count) for (one, other), count in counts.most_common()]
+        counts.update((concealed, other) for concealed in missed for other in false if concealed != other)
+    return [(concealed, other, count) for (concealed, other), count in counts.most_common()]
 
 
 def _rightly(marks: Sequence[Mark]) -> list[tuple[str, int]]:

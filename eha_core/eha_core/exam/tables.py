@@ -52,16 +52,16 @@ def shown_rows(shown: Sequence[Shown]) -> list[list[str]]:
     """A row for each recording that the exam did not make, under SHOWN."""
     return [
         [
-            one.recording,
-            one.source,
-            " + ".join(one.expected) or "nothing",
-            one.verdict,
-            " + ".join(one.named) or "-",
-            "yes" if one.right else "no",
-            f"{one.seconds:.1f}",
-            one.note,
+            result.recording,
+            result.source,
+            " + ".join(result.expected) or "nothing",
+            result.verdict,
+            " + ".join(result.named) or "-",
+            "yes" if result.right else "no",
+            f"{result.seconds:.1f}",
+            result.note,
         ]
-        for one in shown
+        for result in shown
     ]
 
 

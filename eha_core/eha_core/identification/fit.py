@@ -81,11 +81,12 @@ class Fit:
         """The plant's own parameters that rest on a bound which is no limit of the catalogue's, but of belief."""
         rows = catalogue()
         return frozenset(
-            base_name(one.name)
-            for one in self.free
-            if "." not in one.name
-            and one.is_bound_by(self.values[one.name])
-            and self.values[one.name] not in (rows[base_name(one.name)].lower, rows[base_name(one.name)].upper)
+            base_name(parameter.name)
+            for parameter in self.free
+            if "." not in parameter.name
+            and parameter.is_bound_by(self.values[parameter.name])
+            and self.values[parameter.name]
+            not in (rows[base_name(parameter.name)].lower, rows[base_name(parameter.name)].upper)
         )
 
     def deviation(self, name: str) -> float:
@@ -93,21 +94,23 @@ class Fit:
 
         An instant is known no better than the span over which its derivative is taken.
         """
-        one = next(one for one in self.free if one.name == name)
+        parameter = next(parameter for parameter in self.free if parameter.name == name)
         spread = float(np.sqrt(max(self.covariance_of([name])[0, 0], 0.0)))
-        return max(spread, one.resolution / float(np.sqrt(12.0)) * one.slope(self.values[name]))
+        return max(spread, parameter.resolution / float(np.sqrt(12.0)) * parameter.slope(self.values[name]))
 
     def covariance_of(self, names: Sequence[str]) -> Array:
         """Covariance of fitted parameters' values, from the curvature at the optimum: (names, names)."""
-        places = {one.name: place for place, one in enumerate(self.free)}
+        places = {parameter.name: place for place, parameter in enumerate(self.free)}
         by_coordinate = np.zeros((len(names), len(self.free)))
         for row, name in zip(by_coordinate, names, strict=True):
-            one = self.free[places[name]]
-            row[places[name]] = one.slope(self.values[name]) * (self.values[one.above] if one.above else 1.0)
-            if one.above in places:
-                below = self.values[one.above]
+            parameter = self.free[places[name]]
+            row[places[name]] = parameter.slope(self.values[name]) * (
+                self.values[parameter.above] if parameter.above else 1.0
+            )
+            if parameter.above in places:
+                below = self.values[parameter.above]
                 times = self.values[name] / below if below > 0.0 else 1.0
-                row[places[one.above]] = times * self.free[places[one.above]].slope(below)
+                row[places[parameter.above]] = times * self.free[places[parameter.above]].slope(below)
         count = len(self.free)
         return by_coordinate @ self.covariance[:count, :count] @ by_coordinate.T
 
@@ -131,7 +134,7 @@ def fit(
     free, values = in_each(free, values, shooting.per_recording, len(shooting.first_windows))
     states = (shooting.initial_states if states is None else states).copy()
     q = coordinates(free, values)
-    resolution = np.array([one.resolution for one in free])
+    resolution = np.array([parameter.resolution for parameter in free])
     steps = np.maximum(1e-3, resolution)
     rows, ends = simulate(shooting, values, free, q, states)
     objective = objective_of(problem, free, q, states, rows, ends)
@@ -187,7 +190,7 @@ def fit_in_stages(
     give_up_above: float = np.inf,
 ) -> Fit:
     """`fit` from far away: the parameters of LATE stay where they are until the others have settled."""
-    early = [one for one in free if not is_one_of(one.name, LATE)]
+    early = [parameter for parameter in free if not is_one_of(parameter.name, LATE)]
     first = fit(problem, values, early, states, iterations=8)
     return fit(problem, first.values, free, first.states, iterations=iterations, give_up_above=give_up_above)
 
@@ -245,9 +248,9 @@ def _step(
         for _ in range(4):
             move = system.solve(gradient, fixed, move[:count])
             crossing = False
-            for place, one in enumerate(free):
-                reached = float(q[place] + np.clip(move[place], -one.longest_move, one.longest_move))
-                inside = one.coordinate(one.value(reached))
+            for place, parameter in enumerate(free):
+                reached = float(q[place] + np.clip(move[place], -parameter.longest_move, parameter.longest_move))
+                inside = parameter.coordinate(parameter.value(reached))
                 if not fixed[place] and abs(inside - reached) > 1e-12:
                     move[place] = inside - q[place]
                     fixed[place] = crossing = True
@@ -261,7 +264,7 @@ def _step(
 def _moved(
     problem: Problem, free: Sequence[FreeParameter], q: Array, states: Array, move: Array
 ) -> tuple[Array, Array]:
-    longest = np.array([one.longest_move for one in free])
+    longest = np.array([parameter.longest_move for parameter in free])
     new_q = q + np.clip(move[: len(free)], -longest, longest)
     new_states = states + np.where(problem.used()[:, None], move[len(free) :].reshape(states.shape), 0.0)
     return new_q, new_states
@@ -281,7 +284,10 @@ def _finish(
 ) -> Fit:
     used = problem.used()
     left = residuals(problem.shooting, rows)
-    data = sum(float(np.sum(r[used[one.window]] ** 2)) for one, r in zip(problem.shooting.samplings, left, strict=True))
+    data = sum(
+        float(np.sum(r[used[sampling.window]] ** 2))
+        for sampling, r in zip(problem.shooting.samplings, left, strict=True)
+    )
     return Fit(
         free,
         q,
@@ -300,4 +306,4 @@ def _finish(
 def with_noise(shooting: Shooting, noise: Sequence[float]) -> Shooting:
     """The same recording with the channels' noise replaced."""
     pairs = zip(shooting.samplings, noise, strict=True)
-    return replace(shooting, samplings=tuple(replace(one, noise=level) for one, level in pairs))
+    return replace(shooting, samplings=tuple(replace(sampling, noise=level) for sampling, level in pairs))

@@ -62,23 +62,23 @@ class FreeParameter:
 
 def coordinates(free: Sequence[FreeParameter], values: Mapping[str, float]) -> Array:
     """The coordinates at which the free parameters have these values."""
-    return np.array([one.coordinate(_own(one, values)) for one in free])
+    return np.array([parameter.coordinate(_own(parameter, values)) for parameter in free])
 
 
-def _own(one: FreeParameter, values: Mapping[str, float]) -> float:
+def _own(parameter: FreeParameter, values: Mapping[str, float]) -> float:
     """What the coordinate is of: the value, or the share above another, inside its bounds: past one is no slope."""
-    if not one.above:
-        return values[one.name]
-    share = values[one.name] / values[one.above] - 1.0 if values[one.above] > 0.0 else 0.0
-    return min(max(share, one.lower), one.upper)
+    if not parameter.above:
+        return values[parameter.name]
+    share = values[parameter.name] / values[parameter.above] - 1.0 if values[parameter.above] > 0.0 else 0.0
+    return min(max(share, parameter.lower), parameter.upper)
 
 
 def values_at(values: Mapping[str, float], free: Sequence[FreeParameter], q: Array) -> dict[str, float]:
     """Every parameter's value: `values`, and the free ones at coordinates `q`."""
-    found = {**values, **{one.name: one.value(float(at)) for one, at in zip(free, q, strict=True)}}
-    for one in free:
-        if one.above:
-            found[one.name] = found[one.above] * (1.0 + found[one.name])
+    found = {**values, **{parameter.name: parameter.value(float(at)) for parameter, at in zip(free, q, strict=True)}}
+    for parameter in free:
+        if parameter.above:
+            found[parameter.name] = found[parameter.above] * (1.0 + found[parameter.name])
     return found
 
 
@@ -183,11 +183,12 @@ def _not_known(prior: Prior) -> Prior:
     return replace(NOT_KNOWN, scale=prior.scale)
 
 
-def not_believed(one: FreeParameter, row: Parameter) -> FreeParameter:
+def not_believed(parameter: FreeParameter, row: Parameter) -> FreeParameter:
     """A nominal parameter as free as if nobody knew its value, within the limits of its `row` in the catalogue."""
     bound_factor = NOT_KNOWN.bound_factor
-    if one.logarithmic:
-        lower, upper = max(row.lower, one.reference / bound_factor), min(row.upper, one.reference * bound_factor)
+    if parameter.logarithmic:
+        lower = max(row.lower, parameter.reference / bound_factor)
+        upper = min(row.upper, parameter.reference * bound_factor)
     else:
-        lower, upper = row.lower, min(row.upper, one.reference + bound_factor * one.scale)
-    return replace(one, prior_deviation=NOT_KNOWN.deviation, lower=lower, upper=upper)
+        lower, upper = row.lower, min(row.upper, parameter.reference + bound_factor * parameter.scale)
+    return replace(parameter, prior_deviation=NOT_KNOWN.deviation, lower=lower, upper=upper)

@@ -115,7 +115,7 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
         if name == "velocity":
             continue
         measured.append(_measured(channels[name], column, remarks))
-    used = {*driving, *(one.name for one in measured)}
+    used = {*driving, *(channel.name for channel in measured)}
     not_examined += [f"{name}: {NOT_COMPARED[name]}" for name in channels if name not in used]
     position = measured[0]
     if np.ptp(position.values) < 4.0 * position.noise:
@@ -177,8 +177,8 @@ def without_end(observation: Observation, moment: float, why: str) -> Observatio
         observation,
         inputs=tuple((time[time < duration], values[time < duration]) for time, values in observation.inputs),
         measured=tuple(
-            replace(one, time=one.time[one.time < duration], values=one.values[one.time < duration])
-            for one in observation.measured
+            replace(channel, time=channel.time[channel.time < duration], values=channel.values[channel.time < duration])
+            for channel in observation.measured
         ),
         leakage=tuple(change for change in observation.leakage if change[0] < duration),
         duration=duration,

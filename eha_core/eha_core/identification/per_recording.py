@@ -36,16 +36,16 @@ def in_each(
 
     A new one begins at the first recording's value. What is not marked has no value of its own anywhere.
     """
-    known = {one.name for one in free}
+    known = {parameter.name for parameter in free}
     wanted = frozenset(marked)
     more: list[FreeParameter] = []
     begun = {name: value for name, value in values.items() if base_name(name) in wanted or "@" not in name}
-    for one in free:
-        for number in range(2, recordings + 1 if one.name in wanted else 2):
-            name = named(one.name, number)
-            begun.setdefault(name, begun[one.name])
+    for parameter in free:
+        for number in range(2, recordings + 1 if parameter.name in wanted else 2):
+            name = named(parameter.name, number)
+            begun.setdefault(name, begun[parameter.name])
             if name not in known:
-                more.append(replace(one, name=name))
+                more.append(replace(parameter, name=name))
     return (*free, *more), begun
 
 

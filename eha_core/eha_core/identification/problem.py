@@ -55,7 +55,7 @@ class Problem:
     def count(self) -> int:
         """How many samples are in use."""
         used = self.used()
-        return sum(int(used[one.window].sum()) for one in self.shooting.samplings)
+        return sum(int(used[sampling.window].sum()) for sampling in self.shooting.samplings)
 
     def links(self) -> Integers:
         """Windows in use whose successor is in use too, and of the same recording."""
@@ -68,8 +68,10 @@ class Problem:
     def order(self) -> tuple[Integers, Integers, list[Flags]]:
         """How the samples in use, channel after channel, are sorted by window; their windows; and which are in use."""
         used = self.used()
-        keep = [used[one.window] for one in self.shooting.samplings]
-        window = np.concatenate([one.window[flags] for one, flags in zip(self.shooting.samplings, keep, strict=True)])
+        keep = [used[sampling.window] for sampling in self.shooting.samplings]
+        window = np.concatenate(
+            [sampling.window[flags] for sampling, flags in zip(self.shooting.samplings, keep, strict=True)]
+        )
         order = np.argsort(window, kind="stable")
         return order, window[order], keep
 
@@ -83,13 +85,13 @@ class Problem:
         """One value a sample of each channel, over the noise: the samples in use as one vector, sorted by window."""
         order, _, keep = self.order
         pieces = zip(self.shooting.samplings, samples, keep, strict=True)
-        return np.concatenate([values[flags] / one.noise for one, values, flags in pieces])[order]
+        return np.concatenate([values[flags] / sampling.noise for sampling, values, flags in pieces])[order]
 
     def flat_times(self) -> Array:
         """The time [s] of each sample in use, in the order of `flat`."""
         order, _, keep = self.order
         pairs = zip(self.shooting.samplings, keep, strict=True)
-        return np.concatenate([self.shooting.times(one)[flags] for one, flags in pairs])[order]
+        return np.concatenate([self.shooting.times(sampling)[flags] for sampling, flags in pairs])[order]
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,8 @@ def simulate(
 def residuals(shooting: Shooting, rows: Array) -> tuple[Array, ...]:
     """Measured less simulated, over the noise, channel by channel."""
     return tuple(
-        (one.values - model) / one.noise for one, model in zip(shooting.samplings, shooting.sample(rows), strict=True)
+        (sampling.values - model) / sampling.noise
+        for sampling, model in zip(shooting.samplings, shooting.sample(rows), strict=True)
     )
 
 
@@ -129,13 +132,13 @@ def objective_of(
 ) -> float:
     used, shooting = problem.used(), problem.shooting
     total = 0.0
-    for one, residual in zip(shooting.samplings, residuals(shooting, rows), strict=True):
-        total += float(np.sum(residual[used[one.window]] ** 2))
+    for sampling, residual in zip(shooting.samplings, residuals(shooting, rows), strict=True):
+        total += float(np.sum(residual[used[sampling.window]] ** 2))
     links, size = problem.links(), shooting.free_states
     gaps = ((ends[links] - states[links + 1]) / LINK)[:, :size]
     total += float(np.sum(gaps**2))
     total += float(np.sum((((states - shooting.initial_states) / STATE_PRIOR)[used, :size]) ** 2))
-    total += sum((float(at) / one.prior_deviation) ** 2 for one, at in zip(free, q, strict=True))
+    total += sum((float(at) / parameter.prior_deviation) ** 2 for parameter, at in zip(free, q, strict=True))
     return total if np.isfinite(total) else np.inf
 
 
@@ -153,15 +156,15 @@ def linearise(
     `simulated`: rows and ends of this very point, where they are known.
     """
     shooting = problem.shooting
-    steps = np.maximum(1e-3, [one.resolution for one in free]) if steps is None else steps
+    steps = np.maximum(1e-3, [parameter.resolution for parameter in free]) if steps is None else steps
     rows, ends = simulated or simulate(shooting, values, free, q, states)
     base = shooting.sample(rows)
     here = values_at(values, free, q)
     moves, moved = [], []
-    for place, one in enumerate(free):
+    for place, parameter in enumerate(free):
         there, move = q.copy(), float(steps[place])
         # step inwards where a step outwards would meet the bound
-        if one.value(float(q[place]) + move) == one.value(float(q[place])):
+        if parameter.value(float(q[place]) + move) == parameter.value(float(q[place])):
             move = -move
         there[place] += move
         moves.append(move)
@@ -174,7 +177,7 @@ def linearise(
     columns, ends_by = changes(problem, (here, states), moved, moves)
     return Linearised(
         base,
-        problem.flat(one.values - at for one, at in zip(shooting.samplings, base, strict=True)),
+        problem.flat(sampling.values - at for sampling, at in zip(shooting.samplings, base, strict=True)),
         np.ascontiguousarray(columns[:, : len(free)]),
         np.ascontiguousarray(columns[:, len(free) :]),
         problem.order[1],
@@ -204,8 +207,11 @@ def changes(
         block = slice(place, place + room)
         rows, ends = coarse.simulate_many([base, *moved[block]])
         ends_by[:, :, block] = (ends[:, :, 1:] - ends[:, :, :1]) / over[block]
-        for one, used, to in zip(coarse.samplings, problem.order[2], problem.places, strict=True):
-            _sample_changes(rows, over[block], one.row[used], one.late[used], one.column, one.noise, to, place, columns)
+        for sampling, used, to in zip(coarse.samplings, problem.order[2], problem.places, strict=True):
+            _sample_changes(
+                rows, over[block], sampling.row[used], sampling.late[used], sampling.column, sampling.noise, to, place,
+                columns,
+            )  # fmt: skip
 
     each(fill, range(0, len(moved), room))
     return columns, ends_by
@@ -252,7 +258,7 @@ def normal_equations(
     shared[links + 1, :size] -= by_parameter * weight[:, None]
     towards[links, :size] -= (by_start @ gap[:, :, None])[:, :, 0]
     towards[links + 1, :size] += gap * weight
-    prior = np.array([1.0 / one.prior_deviation**2 for one in free])
+    prior = np.array([1.0 / parameter.prior_deviation**2 for parameter in free])
     own += np.diag(1.0 / STATE_PRIOR**2)
     towards -= (states - shooting.initial_states) / STATE_PRIOR**2
     flat = by_parameter.reshape(gap.size, len(free))

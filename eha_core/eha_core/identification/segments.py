@@ -80,14 +80,14 @@ def coarser(fine: Shooting, step_size: float) -> Shooting:
     # a held voltage keeps its mean over the coarser step
     cells = np.minimum((np.arange(fine.edges[-1]) / factor).astype(np.int64), edges[-1] - 1)
     counts = np.bincount(cells, minlength=edges[-1])
-    inputs = np.stack([np.bincount(cells, weights=one, minlength=edges[-1]) / counts for one in fine.inputs])
+    inputs = np.stack([np.bincount(cells, weights=values, minlength=edges[-1]) / counts for values in fine.inputs])
     samplings = []
-    for one in fine.samplings:
-        place = (one.row + 1 + one.late) * (fine.every / (factor * every)) - 1.0
-        first, last = edges[one.window] // every, edges[one.window + 1] // every - 1
+    for sampling in fine.samplings:
+        place = (sampling.row + 1 + sampling.late) * (fine.every / (factor * every)) - 1.0
+        first, last = edges[sampling.window] // every, edges[sampling.window + 1] // every - 1
         # a sample beside a window's edge is reached by extrapolation from inside the window
         row = np.clip(np.floor(place + 1e-6).astype(np.int64), first, np.maximum(last - 1, first))
-        samplings.append(replace(one, row=row, late=place - row))
+        samplings.append(replace(sampling, row=row, late=place - row))
     return replace(
         fine,
         step_size=step_size,
@@ -108,7 +108,7 @@ def rows_every(observation: Observation, step_size: float) -> int:
             return 1
         if abs(regular / step_size - round(regular / step_size)) > 1e-6:
             return 1
-    spacings = [round(float(np.median(np.diff(one.time))) / step_size) for one in observation.measured]
+    spacings = [round(float(np.median(np.diff(channel.time))) / step_size) for channel in observation.measured]
     return int(np.gcd.reduce([round(TICK / step_size), *spacings]))
 
 

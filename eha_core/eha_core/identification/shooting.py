@@ -93,7 +93,7 @@ class Shooting:
     @property
     def local_edges(self) -> Array:
         """(windows, 2) when each window begins and ends [s], counted from its own recording's start."""
-        starts = np.repeat(self.edges[list(self.first_windows)], [len(one) for one in self.recordings])
+        starts = np.repeat(self.edges[list(self.first_windows)], [len(windows) for windows in self.recordings])
         return np.asarray(np.stack([self.edges[:-1] - starts, self.edges[1:] - starts], axis=1) * self.step_size)
 
     def times(self, sampling: Sampling) -> Array:
@@ -194,8 +194,8 @@ class Shooting:
 
     def sample(self, rows: Array) -> list[Array]:
         """The simulated value at each sample of each channel: (samples,), or (samples, sets) of rows of several."""
-        late = [one.late.reshape(-1, *[1] * (rows.ndim - 2)) for one in self.samplings]
+        late = [sampling.late.reshape(-1, *[1] * (rows.ndim - 2)) for sampling in self.samplings]
         return [
-            (1.0 - share) * rows[one.row, one.column] + share * rows[one.row + 1, one.column]
-            for one, share in zip(self.samplings, late, strict=True)
+            (1.0 - share) * rows[sampling.row, sampling.column] + share * rows[sampling.row + 1, sampling.column]
+            for sampling, share in zip(self.samplings, late, strict=True)
         ]

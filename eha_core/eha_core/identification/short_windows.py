@@ -57,7 +57,7 @@ def from_short_windows(
 def over_the_shortest(shorter: Sequence[Shooting], values: Mapping[str, float], free: Sequence[FreeParameter]) -> Fit:
     """The effects fitted alone over the shortest windows, then with the plant's own parameters held, and then free."""
     short = whole(shorter[0])
-    alone = _from_its_starts(short, values, [one for one in free if is_of_an_effect(one)])
+    alone = _from_its_starts(short, values, [parameter for parameter in free if is_of_an_effect(parameter)])
     return _from_its_starts(short, _from_its_starts(short, alone.values, held(free, values)).values, free)
 
 
@@ -78,16 +78,16 @@ def _from_its_starts(problem: Problem, values: Mapping[str, float], free: Sequen
 def held(free: Sequence[FreeParameter], values: Mapping[str, float]) -> tuple[FreeParameter, ...]:
     """What is free, the plant's own parameters believed more (HELD) where they have their nominal values."""
     return tuple(
-        replace(one, prior_deviation=HELD * one.prior_deviation)
-        if not is_of_an_effect(one) and values.get(one.name, one.reference) == one.reference
-        else one
-        for one in free
+        replace(parameter, prior_deviation=HELD * parameter.prior_deviation)
+        if not is_of_an_effect(parameter) and values.get(parameter.name, parameter.reference) == parameter.reference
+        else parameter
+        for parameter in free
     )
 
 
-def is_of_an_effect(one: FreeParameter) -> bool:
+def is_of_an_effect(parameter: FreeParameter) -> bool:
     """Whether a parameter is an effect's, and not the plant's own."""
-    return "." in one.name
+    return "." in parameter.name
 
 
 def with_finer_slopes(problem: Problem) -> Problem:

@@ -30,8 +30,11 @@ def cut_together(
 
     The channels of the second are called `position@2`, and so on. `per_recording`: parameters with a value in each.
     """
-    every = int(np.gcd.reduce([rows_every(one, step_size) for one in observations]))
-    each = [cut(one, values_of(values, number), step_size, window, every) for number, one in enumerate(observations, 1)]
+    every = int(np.gcd.reduce([rows_every(observation, step_size) for observation in observations]))
+    each = [
+        cut(observation, values_of(values, number), step_size, window, every)
+        for number, observation in enumerate(observations, 1)
+    ]
     return joined(each, per_recording)
 
 
@@ -49,21 +52,23 @@ def check_alike(observations: Sequence[Observation]) -> None:
 def joined(each: Sequence[Shooting], per_recording: Sequence[str] = ()) -> Shooting:
     """Recordings cut at the same step and rows, one after another."""
     first = each[0]
-    windows = np.cumsum([0, *(one.windows for one in each)])
-    steps = np.cumsum([0, *(int(one.edges[-1]) for one in each)])
+    windows = np.cumsum([0, *(shooting.windows for shooting in each)])
+    steps = np.cumsum([0, *(int(shooting.edges[-1]) for shooting in each)])
     samplings = [
         replace(sampling, row=sampling.row + begin // first.every, window=sampling.window + window)
-        for one, begin, window in zip(each, steps, windows, strict=False)
-        for sampling in one.samplings
+        for shooting, begin, window in zip(each, steps, windows, strict=False)
+        for sampling in shooting.samplings
     ]
     return replace(
         first,
-        inputs=np.ascontiguousarray(np.concatenate([one.inputs for one in each], axis=1)),
-        edges=np.concatenate([[0], *(one.edges[1:] + begin for one, begin in zip(each, steps, strict=False))]),
-        leakage=np.concatenate([one.leakage for one in each]),
+        inputs=np.ascontiguousarray(np.concatenate([shooting.inputs for shooting in each], axis=1)),
+        edges=np.concatenate(
+            [[0], *(shooting.edges[1:] + begin for shooting, begin in zip(each, steps, strict=False))]
+        ),
+        leakage=np.concatenate([shooting.leakage for shooting in each]),
         samplings=tuple(samplings),
-        names=tuple(named(name, number) for number, one in enumerate(each, 1) for name in one.names),
-        initial_states=np.concatenate([one.initial_states for one in each]),
+        names=tuple(named(name, number) for number, shooting in enumerate(each, 1) for name in shooting.names),
+        initial_states=np.concatenate([shooting.initial_states for shooting in each]),
         first_windows=tuple(int(window) for window in windows[:-1]),
         per_recording=tuple(per_recording),
     )
@@ -75,7 +80,7 @@ def recording_alone(shooting: Shooting, number: int) -> Shooting:
         return shooting
     windows = shooting.recordings[number - 1]
     begin, end = int(shooting.edges[windows.start]), int(shooting.edges[windows.stop])
-    inside = [_belongs(one, windows) for one in shooting.samplings]
+    inside = [_belongs(sampling, windows) for sampling in shooting.samplings]
     names = [name for name, belongs in zip(shooting.names, inside, strict=True) if belongs]
     return replace(
         shooting,
@@ -83,8 +88,8 @@ def recording_alone(shooting: Shooting, number: int) -> Shooting:
         edges=shooting.edges[windows.start : windows.stop + 1] - begin,
         leakage=shooting.leakage[windows.start : windows.stop],
         samplings=tuple(
-            replace(one, row=one.row - begin // shooting.every, window=one.window - windows.start)
-            for one, belongs in zip(shooting.samplings, inside, strict=True)
+            replace(sampling, row=sampling.row - begin // shooting.every, window=sampling.window - windows.start)
+            for sampling, belongs in zip(shooting.samplings, inside, strict=True)
             if belongs
         ),
         names=tuple(name.partition("@")[0] for name in names),
@@ -99,9 +104,9 @@ def fit_alone(shooting: Shooting, result: Fit, number: int) -> Fit:
     if len(shooting.first_windows) == 1:
         return result
     windows = shooting.recordings[number - 1]
-    inside = [_belongs(one, windows) for one in shooting.samplings]
-    residuals = tuple(one for one, belongs in zip(result.residuals, inside, strict=True) if belongs)
-    data = sum(float(np.sum(one**2)) for one in residuals)
+    inside = [_belongs(sampling, windows) for sampling in shooting.samplings]
+    residuals = tuple(residual for residual, belongs in zip(result.residuals, inside, strict=True) if belongs)
+    data = sum(float(np.sum(residual**2)) for residual in residuals)
     return replace(
         result,
         values=values_of(result.values, number),
@@ -109,7 +114,7 @@ def fit_alone(shooting: Shooting, result: Fit, number: int) -> Fit:
         residuals=residuals,
         data=data,
         objective=data,
-        count=sum(len(one) for one in residuals),
+        count=sum(len(residual) for residual in residuals),
     )
 
 

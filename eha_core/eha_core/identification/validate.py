@@ -67,14 +67,14 @@ def judge(shooting: Shooting, model: Fit, instants: Sequence[float] = ()) -> Jud
 
 def instants_of(model: Fit) -> list[float]:
     """The instants that a model moves [s]."""
-    return [model.values[one.name] for one in model.free if one.resolution > 0.0]
+    return [model.values[parameter.name] for parameter in model.free if parameter.resolution > 0.0]
 
 
 def channel_rmse(problem: Problem, residuals: tuple[Array, ...]) -> dict[str, float]:
     """RMSE of each channel over the problem's windows, in the channel's unit."""
     used = problem.used()
     found = {}
-    for name, one, residual in zip(problem.shooting.names, problem.shooting.samplings, residuals, strict=True):
-        part = residual[used[one.window]]
-        found[name] = float(np.sqrt(np.mean(part**2)) * one.noise) if len(part) else float("nan")
+    for name, sampling, residual in zip(problem.shooting.names, problem.shooting.samplings, residuals, strict=True):
+        part = residual[used[sampling.window]]
+        found[name] = float(np.sqrt(np.mean(part**2)) * sampling.noise) if len(part) else float("nan")
     return found

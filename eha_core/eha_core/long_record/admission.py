@@ -44,7 +44,7 @@ class Admitted:
         """Whether only a part of the record could be read."""
         if self.blocks is not None:
             return self.blocks.damaged is not None
-        return any(one.damaged for one in self.recordings)
+        return any(recording.damaged for recording in self.recordings)
 
 
 def admitted(
@@ -104,8 +104,8 @@ def _stretches(blocks: Blocks, composition: Composition | None, progress: Progre
         if block.recording is None or block.end - block.start <= 0.99 * limits.STRETCH:
             return
         parts = composition or composition_of(block.recording.parts)
-        if (one := shown(block, parts)) is not None:
-            seen.append(one)
+        if (found := shown(block, parts)) is not None:
+            seen.append(found)
 
     blocks.each(survey, progress=progress)
     if blocks.duration <= limits.LONGEST_WHOLE or not seen:
@@ -119,5 +119,5 @@ def _stretches(blocks: Blocks, composition: Composition | None, progress: Progre
         cut.append(block.recording)
 
     blocks.each(keep, frozenset(chosen), progress)
-    spans = tuple((one.start, one.end) for one in seen if one.number in chosen)
+    spans = tuple((block.start, block.end) for block in seen if block.number in chosen)
     return Admitted(blocks.path, tuple(cut), blocks, tuple(chosen), spans)

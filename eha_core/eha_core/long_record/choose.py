@@ -17,7 +17,7 @@ def choose(blocks: Sequence[Shown], count: int) -> list[int]:
     """
     given = list(blocks)
     if len(given) <= count:
-        return [one.number for one in given]
+        return [block.number for block in given]
     visited = cells(given)
     beyond = NEARLY * len(frozenset().union(*visited))
     first, last = given[0].number, given[-1].number
@@ -31,14 +31,16 @@ def choose(blocks: Sequence[Shown], count: int) -> list[int]:
         best = max(gains.values())
         good = [place for place in places if gains[place] >= best - beyond]
         if origin is not None:  # at an end, the nearer to it the better
-            place = min(good, key=lambda one: abs(given[one].number - origin))
+            place = min(good, key=lambda candidate: abs(given[candidate].number - origin))
         else:
-            place = max(good, key=lambda one: min(abs(given[one].number - given[other].number) for other in chosen))
+            place = max(
+                good, key=lambda candidate: min(abs(given[candidate].number - given[other].number) for other in chosen)
+            )
         chosen.append(place)
         seen |= visited[place]
 
-    take([place for place, one in enumerate(given) if one.number - first <= edge], first)
-    take([place for place, one in enumerate(given) if last - one.number <= edge], last)
+    take([place for place, block in enumerate(given) if block.number - first <= edge], first)
+    take([place for place, block in enumerate(given) if last - block.number <= edge], last)
     while len(chosen) < count:
         take([place for place in range(len(given)) if place not in chosen], None)
     return sorted(given[place].number for place in chosen)

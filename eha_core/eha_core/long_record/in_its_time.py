@@ -33,7 +33,7 @@ def in_time_of_record(diagnosis: Diagnosis, records: Sequence[Stretches]) -> Dia
 
 
 def _moved(diagnosis: Diagnosis, by: float, duration: float) -> Diagnosis:
-    effects = tuple(_effect(one, by) for one in diagnosis.effects)
+    effects = tuple(_effect(effect, by) for effect in diagnosis.effects)
     summary = diagnosis.summary
     for old, new in zip(diagnosis.effects, effects, strict=True):
         summary = summary.replace(old.statement, new.statement)
@@ -42,39 +42,42 @@ def _moved(diagnosis: Diagnosis, by: float, duration: float) -> Diagnosis:
         diagnosis,
         summary=summary,
         effects=effects,
-        location=tuple(_location(one, by, duration) for one in diagnosis.location),
-        explained=replace(left, left_over=tuple(_location(one, by, duration) for one in left.left_over)),
+        location=tuple(_location(location, by, duration) for location in diagnosis.location),
+        explained=replace(left, left_over=tuple(_location(location, by, duration) for location in left.left_over)),
         pictures=_pictures(diagnosis.pictures, by, duration),
     )
 
 
-def _effect(one: NamedEffect, by: float) -> NamedEffect:
-    if one.active is None:
-        return one
-    before, after = one.active, (one.active[0] + by, one.active[1] + by)
+def _effect(effect: NamedEffect, by: float) -> NamedEffect:
+    if effect.active is None:
+        return effect
+    before, after = effect.active, (effect.active[0] + by, effect.active[1] + by)
     told = f"from {before[0]:.4g} s to {before[1]:.4g} s"
     return replace(
-        one, active=after, statement=one.statement.replace(told, f"from {after[0]:.6g} s to {after[1]:.6g} s")
+        effect, active=after, statement=effect.statement.replace(told, f"from {after[0]:.6g} s to {after[1]:.6g} s")
     )
 
 
-def _location(one: Location, by: float, duration: float) -> Location:
-    when = tuple((start + by, end + by) for start, end in one.when)
-    if one.statement != stated(one.site, one.share, one.where, one.when):
-        return replace(one, when=when)
-    if len(one.when) == 1 and one.when[0][1] - one.when[0][0] > WHOLE * duration:
-        said = f"{stated(one.site, one.share, one.where, ())}, through all of the stretch from {when[0][0]:.0f} s on"
+def _location(location: Location, by: float, duration: float) -> Location:
+    when = tuple((start + by, end + by) for start, end in location.when)
+    if location.statement != stated(location.site, location.share, location.where, location.when):
+        return replace(location, when=when)
+    if len(location.when) == 1 and location.when[0][1] - location.when[0][0] > WHOLE * duration:
+        said = (
+            f"{stated(location.site, location.share, location.where, ())}, through all of the stretch from"
+            f" {when[0][0]:.0f} s on"
+        )
     else:
-        said = stated(one.site, one.share, one.where, when)
-    return replace(one, when=when, statement=said)
+        said = stated(location.site, location.share, location.where, when)
+    return replace(location, when=when, statement=said)
 
 
-def _pictures(one: Pictures, by: float, duration: float) -> Pictures:
+def _pictures(pictures: Pictures, by: float, duration: float) -> Pictures:
     return replace(
-        one,
-        time={name: time + by for name, time in one.time.items()},
-        variables={name: values + by if name == "time" else values for name, values in one.variables.items()},
-        equations={name: (time + by, residual) for name, (time, residual) in one.equations.items()},
-        held_out=tuple((start + by, end + by) for start, end in one.held_out),
+        pictures,
+        time={name: time + by for name, time in pictures.time.items()},
+        variables={name: values + by if name == "time" else values for name, values in pictures.variables.items()},
+        equations={name: (time + by, residual) for name, (time, residual) in pictures.equations.items()},
+        held_out=tuple((start + by, end + by) for start, end in pictures.held_out),
         span=(by, by + duration),
     )

@@ -55,7 +55,7 @@ def errors_held(observation: Observation, values: Mapping[str, float]) -> dict[s
     shooting = cut(observation, values, STEP, WINDOW)
     found = fit(whole(shooting), values, (), iterations=ITERATIONS)
     triples = zip(shooting.names, shooting.samplings, found.residuals, strict=True)
-    return {name: float(np.sqrt(np.mean(residual**2))) * one.noise for name, one, residual in triples}
+    return {name: float(np.sqrt(np.mean(residual**2))) * sampling.noise for name, sampling, residual in triples}
 
 
 def long_record(
@@ -71,16 +71,18 @@ def long_record(
 
 def _departing(blocks: Sequence[JudgedBlock]) -> tuple[tuple[float, float], ...]:
     """Spans of time in which the model errs by far more than on any stretch that it was fitted to."""
-    fitted = [one for one in blocks if one.fitted]
+    fitted = [block for block in blocks if block.fitted]
     if not fitted:
         return ()
-    most = {name: DEPARTS * max(one.after[name] for one in fitted if name in one.after) for name in fitted[0].after}
+    most = {
+        name: DEPARTS * max(block.after[name] for block in fitted if name in block.after) for name in fitted[0].after
+    }
     spans: list[tuple[float, float]] = []
-    for one in blocks:
-        if not any(one.after[name] > most[name] for name in one.after if name in most):
+    for block in blocks:
+        if not any(block.after[name] > most[name] for name in block.after if name in most):
             continue
-        touching = spans and one.start - spans[-1][1] < 1e-6
-        spans = [*spans[:-1], (spans[-1][0], one.end)] if touching else [*spans, (one.start, one.end)]
+        touching = spans and block.start - spans[-1][1] < 1e-6
+        spans = [*spans[:-1], (spans[-1][0], block.end)] if touching else [*spans, (block.start, block.end)]
     return tuple(spans)
 
 
@@ -92,7 +94,7 @@ def _stated(
 ) -> str:
     length = stretches[0][1] - stretches[0][0]
     said = f"Of {duration:.0f} s, {len(stretches)} stretches of {length:.0f} s were fitted."
-    unseen, fitted = ([one for one in blocks if one.fitted is seen] for seen in (False, True))
+    unseen, fitted = ([block for block in blocks if block.fitted is seen] for seen in (False, True))
     if not unseen or not fitted:
         return said
     name = "position" if "position" in fitted[0].after else next(iter(fitted[0].after))
@@ -100,15 +102,15 @@ def _stated(
     after, nominal, own = (
         quantity(float(np.median(values)), unit)
         for values in (
-            [one.after[name] for one in unseen],
-            [one.before[name] for one in unseen],
-            [one.after[name] for one in fitted],
+            [block.after[name] for block in unseen],
+            [block.before[name] for block in unseen],
+            [block.after[name] for block in fitted],
         )
     )
     said += (
         f" With its parameters held, the model errs by {after} in {name.replace('_', ' ')} over the"
-        f" {sum(one.end - one.start for one in unseen):.0f} s that were not fitted, and by {own} over those that were"
-        f" (medians of blocks; the nominal model: {nominal})"
+        f" {sum(block.end - block.start for block in unseen):.0f} s that were not fitted, and by {own} over those that"
+        f" were (medians of blocks; the nominal model: {nominal})"
     )
     if not departs:
         return f"{said}; from the first to the last block, nowhere by {DEPARTS:g} times what it does on these."

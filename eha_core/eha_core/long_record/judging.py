@@ -20,15 +20,19 @@ def judged(
 
     Without a long record among `records` it is the diagnosis as given.
     """
-    long = [one for one in records if one.blocks is not None]
+    long = [record for record in records if record.blocks is not None]
     if not long:
         return diagnosis
     composition = model.composition
     found = {**composition.places(composition.nominal_values()), **diagnosis.fitted_values}
-    told = [_judged(one, model, found, progress) for one in long]
-    remarks = [remark for one in long if one.blocks for remark in one.blocks.remarks]
-    damaged = next((one.blocks.damaged for one in long if one.blocks and one.blocks.damaged), diagnosis.damaged)
-    stretches = [(one.path, one.blocks.duration, one.recordings, one.spans) for one in long if one.blocks]
+    told = [_judged(record, model, found, progress) for record in long]
+    remarks = [remark for record in long if record.blocks for remark in record.blocks.remarks]
+    damaged = next(
+        (record.blocks.damaged for record in long if record.blocks and record.blocks.damaged), diagnosis.damaged
+    )
+    stretches = [
+        (record.path, record.blocks.duration, record.recordings, record.spans) for record in long if record.blocks
+    ]
     diagnosis = in_time_of_record(diagnosis, stretches)
     return replace(
         diagnosis,
@@ -38,14 +42,14 @@ def judged(
     )
 
 
-def _judged(one: Admitted, model: NominalModel, found: Mapping[str, float], progress: Progress) -> LongRecord:
-    assert one.blocks is not None
-    judge = Judge(model.values, found, model.composition, one.chosen)
+def _judged(record: Admitted, model: NominalModel, found: Mapping[str, float], progress: Progress) -> LongRecord:
+    assert record.blocks is not None
+    judge = Judge(model.values, found, model.composition, record.chosen)
 
     def take(block: Block) -> None:
         judge.take(block)
-        progress(f"judging the model on the whole of {one.path.name}: {block.end:.0f} of {duration:.0f} s")
+        progress(f"judging the model on the whole of {record.path.name}: {block.end:.0f} of {duration:.0f} s")
 
-    duration = one.blocks.duration
-    one.blocks.each(take)
-    return long_record(str(one.path), duration, one.spans, judge)
+    duration = record.blocks.duration
+    record.blocks.each(take)
+    return long_record(str(record.path), duration, record.spans, judge)

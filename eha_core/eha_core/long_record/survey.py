@@ -74,8 +74,8 @@ def _instants(observation: Observation, driving: Array, at: Array) -> Array:
         np.interp(at, position.time, smooth(position, 1)),
     ]
     pressures = [observation.channel(name) for name in ("pressure_a", "pressure_b")]
-    if all(one is not None for one in pressures):
-        first, second = (np.interp(at, one.time, one.values) for one in pressures if one is not None)
+    if all(channel is not None for channel in pressures):
+        first, second = (np.interp(at, channel.time, channel.values) for channel in pressures if channel is not None)
         columns.append(first - second)
     return np.stack(columns, axis=1)
 
@@ -84,8 +84,8 @@ def cells(blocks: list[Shown]) -> list[frozenset[int]]:
     """The cells that each block visits: of (command, its change) for every driving channel, (position, speed) and
     (pressures' difference, speed), each quantity's range over the record divided evenly, and the speed's around
     standstill once more."""
-    width, further = min(one.instants.shape[1] for one in blocks), min(len(one.further) for one in blocks)
-    quantities = [np.hstack([one.instants[:, :width], *one.further[:further]]) for one in blocks]
+    width, further = min(block.instants.shape[1] for block in blocks), min(len(block.further) for block in blocks)
+    quantities = [np.hstack([block.instants[:, :width], *block.further[:further]]) for block in blocks]
     everything = np.concatenate(quantities)
     lowest, highest = np.quantile(everything, [EXTREME, 1.0 - EXTREME], axis=0)
     spread = np.where(highest > lowest, highest - lowest, 1.0)
@@ -100,5 +100,5 @@ def cells(blocks: list[Shown]) -> list[frozenset[int]]:
             (number * (CELLS + 1) + part[:, first]) * (CELLS + 1) + part[:, second]
             for number, (first, second) in enumerate(pairs)
         ]
-        found.append(frozenset(chain.from_iterable(one.tolist() for one in each)))
+        found.append(frozenset(chain.from_iterable(numbers.tolist() for numbers in each)))
     return found

@@ -112,7 +112,7 @@ def _predicted(motions: Sequence[Motion], law: Law, tests: Sequence[Motion]) -> 
     straight = force - np.polyval(line, speed)
     noise = float(np.sqrt(np.mean([m.noise**2 for m in tests])))
     about_mean, about_line, about_law = (
-        float(np.sqrt(np.mean(one**2))) for one in (force - force.mean(), straight, left)
+        float(np.sqrt(np.mean(residual**2))) for residual in (force - force.mean(), straight, left)
     )
     return ChannelFit(about_mean, about_line, about_law, noise)
 
@@ -130,7 +130,9 @@ def _effects(motions: Sequence[Motion], law: Law) -> tuple[NamedEffect, ...]:
             id=term.id,
             site="sensor" if term.kind == "smoothing" else "force",
             equation=f"F = ... + {term.equation}",
-            parameters={name: FittedValue(one.value, one.std, one.unit) for name, one in law.values[term.id].items()},
+            parameters={
+                name: FittedValue(value.value, value.std, value.unit) for name, value in law.values[term.id].items()
+            },
             evidence=worth[term.id],
             statement=term.statement.format(**_told(law.values[term.id])),
             kind=term.kind,
@@ -141,7 +143,7 @@ def _effects(motions: Sequence[Motion], law: Law) -> tuple[NamedEffect, ...]:
 
 def _told(values: Mapping[str, Value]) -> dict[str, str]:
     """Each value with its unit, as a sentence says it."""
-    return {name: quantity(one.value, one.unit, 4) for name, one in values.items()}
+    return {name: quantity(value.value, value.unit, 4) for name, value in values.items()}
 
 
 def _left_over(motions: Sequence[Motion], law: Law) -> Location:

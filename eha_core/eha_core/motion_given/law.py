@@ -266,8 +266,8 @@ def _values(terms: Sequence[Term], shape: Array, sizes: Array, deviations: Array
         for name, unit in term.sizes:
             own[name] = Value(float(sizes[size_place - len(shape)]), float(deviations[size_place]), unit)
             size_place += 1
-        for one in term.shapes:
-            own[one.name] = Value(float(shape[shape_place]), float(deviations[shape_place]), one.unit)
+        for searched in term.shapes:
+            own[searched.name] = Value(float(shape[shape_place]), float(deviations[shape_place]), searched.unit)
             shape_place += 1
         found[term.id] = own
     return found

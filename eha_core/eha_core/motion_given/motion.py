@@ -99,7 +99,7 @@ def motion_of(recording: Recording, areas: tuple[float, float] | None = None) ->
         raise RecordingError(f"{where}: {len(stamps)} samples of the force are too few; record {FEWEST} or more")
     step = float(np.median(np.diff(stamps)))
     time = np.arange(stamps[0], stamps[-1] + 0.5 * step, step)
-    on_axis = {name: np.interp(time, one.time, one.values) for name, one in channels.items()}
+    on_axis = {name: np.interp(time, channel.time, channel.values) for name, channel in channels.items()}
     position = on_axis["position"]
     if pushed and areas is not None:
         on_axis["force"] = areas[0] * on_axis["pressure_a"] - areas[1] * on_axis["pressure_b"]

@@ -64,7 +64,7 @@ def find_law(motions: Sequence[Motion], progress: Callable[[str], None] = lambda
     nothing = _try(regression, (), None)
     together = _pruned(regression, _try(regression, _linear(regression, able), None), total)
     found = [_grown(regression, start, able, total, progress) for start in (nothing, together)]
-    best = _simplest([one for one in found if np.isfinite(one.mean)])
+    best = _simplest([tried for tried in found if np.isfinite(tried.mean)])
     return finish(regression, best.law.terms, best.law)
 
 
@@ -86,7 +86,7 @@ def _grown(
         progress(f"{' + '.join(best.law.ids) or 'nothing'} leaves {100 * np.sqrt(best.mean / total):.1f} %")
         larger = [terms for terms in _neighbours(best.law.terms, able) if not _collinear(regression, terms, best.law)]
         grown = [_try(regression, terms, best.law) for terms in larger]
-        earning = [one for one in grown if _earns(best, one, total)]
+        earning = [tried for tried in grown if _earns(best, tried, total)]
         if not earning:
             break
         best = _pruned(regression, _simplest(earning), total)
@@ -99,7 +99,7 @@ def worth_of(motions: Sequence[Motion], law: Law) -> dict[str, float]:
     whole = held_out_errors(regression, law.terms, law.shape)
     found = {}
     for term in law.terms:
-        fewer = _try(regression, [one for one in law.terms if one is not term], law)
+        fewer = _try(regression, [other for other in law.terms if other is not term], law)
         # a block counts once, however many samples it has: what is left in it is correlated
         found[term.id] = float(len(whole) * np.log(fewer.mean / np.mean(whole)))
     return found
@@ -107,9 +107,11 @@ def worth_of(motions: Sequence[Motion], law: Law) -> dict[str, float]:
 
 def _simplest(tries: Sequence[Try]) -> Try:
     """The one of fewest parameters among those that are as good as the best, but for what a term must be worth."""
-    least = min(one.mean for one in tries)
-    near = [one for one in tries if one.mean * (1.0 - WORTH) <= least]
-    return min(near, key=lambda one: (sum(len(term.sizes) + len(term.shapes) for term in one.law.terms), one.mean))
+    least = min(tried.mean for tried in tries)
+    near = [tried for tried in tries if tried.mean * (1.0 - WORTH) <= least]
+    return min(
+        near, key=lambda tried: (sum(len(term.sizes) + len(term.shapes) for term in tried.law.terms), tried.mean)
+    )
 
 
 def _can_show(term: Term, motions: Sequence[Motion]) -> bool:
@@ -169,17 +171,19 @@ def _plainer(terms: Sequence[Term]) -> list[Term]:
     def parameters(term: Term) -> int:
         return len(term.sizes) + len(term.shapes)
 
-    return [one for one in TERMS for term in terms if one.kind == term.kind and parameters(one) < parameters(term)]
+    return [
+        plain for plain in TERMS for term in terms if plain.kind == term.kind and parameters(plain) < parameters(term)
+    ]
 
 
 def _pruned(regression: Regression, best: Try, total: float) -> Try:
     """The set without the terms that do not earn their place beside the others."""
     while len(best.law.terms) > 1:
-        fewer = [ordered([one for one in best.law.terms if one is not term]) for term in best.law.terms]
-        fewer += [ordered([one for one in best.law.terms if one.kind != plain.kind] + [plain]) for plain in
+        fewer = [ordered([other for other in best.law.terms if other is not term]) for term in best.law.terms]
+        fewer += [ordered([term for term in best.law.terms if term.kind != plain.kind] + [plain]) for plain in
                   _plainer(best.law.terms)]  # fmt: skip
         tries = [_try(regression, terms, best.law) for terms in fewer]
-        weakest = min(tries, key=lambda one: one.mean)
+        weakest = min(tries, key=lambda tried: tried.mean)
         if _earns(weakest, best, total):
             return best
         best = weakest

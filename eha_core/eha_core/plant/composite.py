@@ -88,7 +88,8 @@ def write_source() -> str:
         "from eha_core.plant.given import current_of, given_at, spool_of, supply_in_force, through_line, voltage_of"
     ]
     lines += [
-        f"from eha_core.plant.parts.sources.{one.id} import contribution as {one.id}" for one in given_sources()
+        f"from eha_core.plant.parts.sources.{source.id} import contribution as {source.id}"
+        for source in given_sources()
     ]
     lines += ["", "", "@called", f"def delivered({', '.join(['number', full, *own])}):"]
     for number, source in enumerate(given_sources()):
@@ -106,7 +107,7 @@ def _write_feed(own: list[str], places: list[str]) -> list[str]:
     head = ["line_pressure", "supply_pressure", "return_pressure"]
     lined = [(number, source) for number, source in enumerate(given_sources()) if source.line]
     lines = ["", "", "from eha_core.plant.vector import SUPPLY_PRESSURE"]
-    lines += [f"from eha_core.plant.parts.sources.{one.id} import feed as {one.id}_feed" for _, one in lined]
+    lines += [f"from eha_core.plant.parts.sources.{source.id} import feed as {source.id}_feed" for _, source in lined]
     taken = ["number", "spool_position", "first", "second", *head, *own]
     lines += ["", "", "@called", f"def feed({', '.join(taken)}):"]
     for number, source in lined:

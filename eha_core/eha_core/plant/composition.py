@@ -74,15 +74,15 @@ class Composition:
     def _rows_of_parts(self) -> dict[str, Parameter]:
         nominal = {row.name: row for row in NOMINAL}
         found: dict[str, Parameter] = {}
-        for one in (self.source, self.cylinder, self.load):
-            found |= {name: nominal[name] for name in one.uses} | {row.name: row for row in one.parameters}
+        for component in (self.source, self.cylinder, self.load):
+            found |= {name: nominal[name] for name in component.uses} | {row.name: row for row in component.parameters}
         return {name: row for name, row in found.items() if not set(self.stands_for(name)) <= set(self.source.ignores)}
 
     def stands_for(self, name: str) -> tuple[str, ...]:
         """The places of the equations that a parameter takes."""
-        for one in (self.source, self.cylinder, self.load):
-            if name in one.stands_for:
-                return one.stands_for[name]
+        for component in (self.source, self.cylinder, self.load):
+            if name in component.stands_for:
+                return component.stands_for[name]
         return (name,)
 
     @cached_property
@@ -148,7 +148,7 @@ class Composition:
 @cache
 def _all_rows() -> frozenset[str]:
     """Every name of a parameter that some part has."""
-    return frozenset(row.name for kind in FOLDERS for one in parts(kind).values() for row in one.parameters)
+    return frozenset(row.name for kind in FOLDERS for component in parts(kind).values() for row in component.parameters)
 
 
 @cache
@@ -174,8 +174,8 @@ def compose(
 
 def _load_for(cylinder: Cylinder) -> Part:
     """The load of those that move as the cylinder does: the paper's, else the first."""
-    fitting = {name: one for name, one in parts("load").items() if isinstance(one, Load)}
-    names = [name for name, one in fitting.items() if one.motion == cylinder.motion]
+    fitting = {name: load for name, load in parts("load").items() if isinstance(load, Load)}
+    names = [name for name, load in fitting.items() if load.motion == cylinder.motion]
     return fitting[PAPER_PARTS["load"] if PAPER_PARTS["load"] in names else names[0]]
 
 

@@ -70,7 +70,7 @@ def simulate_many(
         raise ParameterError(f"there is no column {min(unknown)}; there are {', '.join(COLUMNS)}")
     if every < 1 or jobs < 1:
         raise ParameterError(f"every = {every} and jobs = {jobs} must both be 1 or more")
-    sets = [_complete(number, one, initial_position, composition) for number, one in enumerate(parameters)]
+    sets = [_complete(number, changes, initial_position, composition) for number, changes in enumerate(parameters)]
     shape = (len(sets), len(held) // every, len(columns))
     if 8.0 * np.prod(shape, dtype=np.float64) > MOST_BYTES:
         raise ParameterError(
@@ -87,8 +87,8 @@ def simulate_many(
         values[first : first + LANES] = rows[:, places, : len(block)].transpose(2, 0, 1)
 
     def fill_alone(first: int) -> None:
-        for number, one in enumerate(sets[first : first + LANES], first):
-            rows = Plant(one, step_size, initial_position, composition).run(command, every).values
+        for number, parameter_set in enumerate(sets[first : first + LANES], first):
+            rows = Plant(parameter_set, step_size, initial_position, composition).run(command, every).values
             values[number] = rows[:, [COLUMNS.index(name) for name in columns]]
 
     together = composition.source.valve == "coil"

@@ -25,7 +25,7 @@ def starting_memory(current: float, piston: Array) -> Array:
 def start_memory(memory: Array, chosen: Sequence[bool], current: float, piston: Array) -> None:
     """Put the states of the chosen effects (catalogue order) where they are when an effect begins to act."""
     starting = starting_memory(current, piston)
-    take = [one for effect, one in zip(effects(), chosen, strict=True) for _ in effect.memory] or [True]
+    take = [is_chosen for effect, is_chosen in zip(effects(), chosen, strict=True) for _ in effect.memory] or [True]
     memory[take] = starting[take]
 
 

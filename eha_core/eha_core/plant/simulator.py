@@ -102,7 +102,7 @@ def pack(values: Mapping[str, float], step_size: float, composition: Composition
     spool = source.switched or ("valve_damping_ratio", "valve_natural_frequency")
     valve = held_propagator(values[spool[0]], values[spool[1]], step_size)
     own = [values.get(name.partition(".")[2], 0.0) for name in given_names()[:-3]]
-    number = [one.id for one in given_sources()].index(source.id)
+    number = [given.id for given in given_sources()].index(source.id)
     last = (float(source.line), VALVES["sign" if source.switched else source.valve], float(number))
     return (*vector, *own, *last), active, valve
 

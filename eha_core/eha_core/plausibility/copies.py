@@ -23,13 +23,15 @@ MISSING = 0.25
 
 def copies(recording: Recording) -> Suspect | None:
     """The pair of channels that tell the same to the last digit, if there is one; without the second of them."""
-    for one, other in combinations(recording.channels.values(), 2):
-        if one.unit != other.unit:
+    for channel, other in combinations(recording.channels.values(), 2):
+        if channel.unit != other.unit:
             continue
-        difference = one.values - np.interp(one.time, other.time, other.values)
-        identical = float(np.ptp(difference)) + abs(float(np.mean(difference))) <= IDENTICAL * float(np.ptp(one.values))
-        if identical and np.ptp(one.values) > 0.0:
-            return _recorded_twice(one.name, other.name)
+        difference = channel.values - np.interp(channel.time, other.time, other.values)
+        identical = (
+            float(np.ptp(difference)) + abs(float(np.mean(difference))) <= IDENTICAL * float(np.ptp(channel.values))
+        )
+        if identical and np.ptp(channel.values) > 0.0:
+            return _recorded_twice(channel.name, other.name)
     return None
 
 
@@ -38,16 +40,16 @@ def noisy_copies(recording: Recording, nominal: Mapping[str, float]) -> Suspect 
 
     That compares the pressures' scale with the position's: it holds where neither has another unit.
     """
-    one, other = (recording.channels.get(name) for name in ("pressure_a", "pressure_b"))
-    if one is None or other is None:
+    channel, other = (recording.channels.get(name) for name in ("pressure_a", "pressure_b"))
+    if channel is None or other is None:
         return None
-    difference = one.values - np.interp(one.time, other.time, other.values)
+    difference = channel.values - np.interp(channel.time, other.time, other.values)
     alike = _is_noise(difference) and _moves_nothing(recording, nominal)
-    return _recorded_twice(one.name, other.name) if alike else None
+    return _recorded_twice(channel.name, other.name) if alike else None
 
 
-def _recorded_twice(one: str, other: str) -> Suspect:
-    return Suspect(f"{one} and {other} are one signal recorded twice", {other: None})
+def _recorded_twice(name: str, other: str) -> Suspect:
+    return Suspect(f"{name} and {other} are one signal recorded twice", {other: None})
 
 
 def _is_noise(difference: FloatArray) -> bool:

@@ -87,11 +87,11 @@ def _moves_without(signals: Signals, name: str) -> str:
 
     Without a recorded flow only a signal that never changes is told: another may be of another run.
     """
-    flow = next((one for one in ("flow_a", "flow_b") if one in signals.channels), None)
+    flow = next((channel for channel in ("flow_a", "flow_b") if channel in signals.channels), None)
     if flow is None:
         if np.ptp(signals.channels[name]) > 0.0:
             return ""
-        pressures = all(one in signals.channels for one in ("pressure_a", "pressure_b"))
+        pressures = all(channel in signals.channels for channel in ("pressure_a", "pressure_b"))
         return "pressure_a and pressure_b change and the piston moves" if pressures else "the piston moves"
     if not np.ptp(signals.channels[flow]) > 0.0:
         return ""

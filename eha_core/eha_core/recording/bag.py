@@ -60,7 +60,7 @@ def bag_extent(path: Path) -> float | None:
         if file.suffix == ".db3" or not file.is_file():
             return None
         extents.append(mcap_extent(file))
-    known = [one for one in extents if one is not None]
+    known = [extent for extent in extents if extent is not None]
     if len(known) < len(extents) or not known:
         return None
     return (max(last for _, last in known) - min(first for first, _ in known)) / 1e9
@@ -68,7 +68,7 @@ def bag_extent(path: Path) -> float | None:
 
 def bag_size(path: Path) -> int:
     """Bytes of a file, or of all files of a folder."""
-    return sum(one.stat().st_size for one in (_files_of(path) if path.is_dir() else [path]) if one.is_file())
+    return sum(file.stat().st_size for file in (_files_of(path) if path.is_dir() else [path]) if file.is_file())
 
 
 def bag_metadata(path: Path) -> dict[str, dict[str, str]]:

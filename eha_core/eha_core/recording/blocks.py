@@ -189,7 +189,7 @@ class _Cutter:
             ordered, notes = put_in_order(samples[name])
             self._note([f"{name} ({self._file.rules[name].topic}): {note}" for note in notes])
             self._append(name, ordered)
-        filled = [one.stamps for one in self._pending.values() if len(one.stamps)]
+        filled = [series.stamps for series in self._pending.values() if len(series.stamps)]
         if not filled:
             return
         if self.start is None:
@@ -242,8 +242,8 @@ class _Cutter:
         for name, series in self._pending.items():
             place = int(np.searchsorted(series.stamps, end))
             part = Samples(series.stamps[:place], series.values[:place])
-            if wanted and (one := self._with_held(name, part, begin)) is not None:
-                inside[name] = one
+            if wanted and (samples := self._with_held(name, part, begin)) is not None:
+                inside[name] = samples
             if place:
                 self._held[name] = float(part.values[-1])
             self._pending[name] = Samples(series.stamps[place:].copy(), series.values[place:].copy())
@@ -267,6 +267,6 @@ class _Cutter:
             found = assemble(path, samples, self._file.rules, self._file.types, self._raw, [])
         except RecordingError as error:
             return Block(number, first, last, None, str(error))
-        self._note([one for one in found.remarks if "left out" not in one])
+        self._note([remark for remark in found.remarks if "left out" not in remark])
         leakage = leakage_within(self._leakage, (found.start_stamp - self.start) / 1e9, last)
         return Block(number, first, last, replace(found, remarks=(), leakage_changes=leakage))

@@ -26,14 +26,14 @@ def named_stretch(path: Path, start: float, end: float) -> Path:
 def cut_out(recording: Recording, start: float, end: float) -> Recording | None:
     """What a recording holds from `start` up to `end` [s]; None where no channel has a sample there."""
     channels = {}
-    for name, one in recording.channels.items():
-        first, last = (int(place) for place in np.searchsorted(one.time, [start, end]))
-        time, values = one.time[first:last], one.values[first:last]
+    for name, channel in recording.channels.items():
+        first, last = (int(place) for place in np.searchsorted(channel.time, [start, end]))
+        time, values = channel.time[first:last], channel.values[first:last]
         if name in HELD and first > 0 and not (len(time) and time[0] == start):
             time = np.concatenate([[start], time])
-            values = np.concatenate([one.values[first - 1 : first], values])
+            values = np.concatenate([channel.values[first - 1 : first], values])
         if len(time):
-            channels[name] = (one, time, values)
+            channels[name] = (channel, time, values)
     if not channels:
         return None
     begin = min(float(time[0]) for _, time, _ in channels.values())
@@ -41,7 +41,7 @@ def cut_out(recording: Recording, start: float, end: float) -> Recording | None:
     return replace(
         recording,
         path=named_stretch(recording.path, start, end),
-        channels={name: _moved(one, time - begin, values) for name, (one, time, values) in channels.items()},
+        channels={name: _moved(channel, time - begin, values) for name, (channel, time, values) in channels.items()},
         start_stamp=recording.start_stamp + round(begin * 1e9),
         duration=duration,
         leakage_changes=leakage_within(recording.leakage_changes, begin, begin + duration),

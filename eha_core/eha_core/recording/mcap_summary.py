@@ -62,8 +62,8 @@ def mcap_metadata(path: Path) -> dict[str, dict[str, str]]:
         if summary_of(stream, size) is None:
             return found
         try:
-            for one in make_reader(stream).iter_metadata():
-                found.setdefault(one.name, {}).update(one.metadata)
+            for record in make_reader(stream).iter_metadata():
+                found.setdefault(record.name, {}).update(record.metadata)
         except (*UNREADABLE, OSError):
             return found
         return found

@@ -53,5 +53,5 @@ def _is_sequence(type_name: str, field: str) -> bool:
     return kinds[field][0] == Nodetype.SEQUENCE
 
 
-def _first_difference(one: bytes, other: bytes) -> int:
-    return int(np.flatnonzero(np.frombuffer(one, np.uint8) != np.frombuffer(other, np.uint8))[0])
+def _first_difference(pattern: bytes, other: bytes) -> int:
+    return int(np.flatnonzero(np.frombuffer(pattern, np.uint8) != np.frombuffer(other, np.uint8))[0])

@@ -148,10 +148,10 @@ class Recording:
 
         Voltage is held between its samples, everything else is interpolated; pressures are gauge.
         """
-        longest = max(self.channels.values(), key=lambda one: len(one.time))
+        longest = max(self.channels.values(), key=lambda channel: len(channel.time))
         found = {"time": longest.time}
-        for name, one in self.channels.items():
-            held = np.clip(np.searchsorted(one.time, longest.time, side="right") - 1, 0, None)
+        for name, channel in self.channels.items():
+            held = np.clip(np.searchsorted(channel.time, longest.time, side="right") - 1, 0, None)
             is_held = name == "voltage_command"
-            found[name] = one.values[held] if is_held else np.interp(longest.time, one.time, one.values)
+            found[name] = channel.values[held] if is_held else np.interp(longest.time, channel.time, channel.values)
         return found

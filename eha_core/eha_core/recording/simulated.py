@@ -153,7 +153,8 @@ def simulate_sweep(experiment: Experiment, name: str, values: Sequence[float]) -
         raise ParameterError("a sweep changes nothing on its way; give every parameter from the start, without @S")
     sets = [{**experiment.parameters, name: value} for value in values]
     plants = [
-        Plant(one, experiment.step_size, experiment.initial_position, experiment.composition) for one in sets
+        Plant(parameters, experiment.step_size, experiment.initial_position, experiment.composition)
+        for parameters in sets
     ]
     run = simulate_many(
         sets, _driving(experiment), step_size=experiment.step_size, every=experiment.steps_per_period,

@@ -91,7 +91,7 @@ def suggest(inspection: Inspection) -> Suggestions:
     known = _by_contract(inspection)
     taken = [reading.field for reading in known.values()]
     channels = [channel for channel in _NAMES if channel != "time" or not inspection.topics]
-    claims = {channel: [one for one in _claims(channel, inspection) if one not in taken] for channel in channels}
+    claims = {channel: [field for field in _claims(channel, inspection) if field not in taken] for channel in channels}
     for channel, fields in claims.items():
         in_place = channel == "force" and all(claims[name] or name in known for name in ("pressure_a", "pressure_b"))
         if channel in known or not fields:
@@ -99,7 +99,7 @@ def suggest(inspection: Inspection) -> Suggestions:
             continue
         if in_place and known:
             continue
-        others = [one for one in claims if one != channel and fields[0] in claims[one]]
+        others = [other for other in claims if other != channel and fields[0] in claims[other]]
         readings = [reading for field in fields for reading in _readings(channel, field)]
         is_told = len(fields) == 1 and len(readings) == 1 and not others and (fields[0].unit or channel == "time")
         if is_told and not in_place:
@@ -112,7 +112,9 @@ def suggest(inspection: Inspection) -> Suggestions:
     left = [field for field in left if not field.unit and not _called(field) and not _WANTED.search(_words(field.path))]
     left = [field for field in left if field.low < field.high and not _is_doubled(field, inspection)]
     if not (inspection.topics and known):
-        questions += [_what_is(field) for field in left[:MOST_UNNAMED] if field not in [one.field for one in certain]]
+        questions += [
+            _what_is(field) for field in left[:MOST_UNNAMED] if field not in [reading.field for reading in certain]
+        ]
     return Suggestions(tuple(certain), tuple(questions))
 
 
@@ -167,7 +169,7 @@ def _claims(channel: str, inspection: Inspection) -> list[Field]:
     called = [field for field in fields if channel in _called(field)]
     if called or channel == "time":
         return called or [field for field in fields if field.step > 0.0]
-    return [field for field in fields if field.unit and not any(_fits(one, field) for one in _called(field))]
+    return [field for field in fields if field.unit and not any(_fits(other, field) for other in _called(field))]
 
 
 def _fits(channel: str, field: Field) -> bool:
@@ -189,7 +191,7 @@ def _is_doubled(field: Field, inspection: Inspection) -> bool:
     return (
         last == "full"
         and inspection.topics.get(f"{start}/values", "").endswith("/StatisticsValues")
-        and any(one.topic == f"{start}/values" and not re.search(r"\[\d+\]", one.path) for one in inspection.fields)
+        and any(copy.topic == f"{start}/values" and not re.search(r"\[\d+\]", copy.path) for copy in inspection.fields)
     )
 
 
@@ -206,7 +208,9 @@ def _called(field: Field) -> frozenset[str]:
         name = name[: -len(field.unit)]
     levels = [level for level in _words(name).split("__") if level]
     for words in ("_".join(levels), "_".join(levels[-2:]), *reversed(levels)):
-        found = frozenset(one for one, names in _NAMES.items() if re.fullmatch(names, words) and _has_unit(one, field))
+        found = frozenset(
+            channel for channel, names in _NAMES.items() if re.fullmatch(names, words) and _has_unit(channel, field)
+        )
         if found:
             return found
     return frozenset()
@@ -228,9 +232,9 @@ def _readings(channel: str, field: Field, any_range: bool = True) -> list[Readin
     unit = unit_named(field.unit)
     units = [unit] if unit else _likely(channel, field, any_range)
     readings = []
-    for one in units:
-        references = _references(one, field) if _is_pressure(channel) else (None,)
-        readings += [Reading(channel, field, name_of(one), reference) for reference in references]
+    for candidate in units:
+        references = _references(candidate, field) if _is_pressure(channel) else (None,)
+        readings += [Reading(channel, field, name_of(candidate), reference) for reference in references]
     return readings
 
 
@@ -279,7 +283,10 @@ def _text(channel: str, fields: Sequence[Field], readings: Sequence[Reading], ot
 def used(suggestions: Suggestions) -> Mapping[tuple[str, str], list[str]]:
     """The channels that each field may be, by topic and path."""
     found: dict[tuple[str, str], list[str]] = {}
-    for reading in (*suggestions.certain, *(one for question in suggestions.questions for one in question.readings)):
+    for reading in (
+        *suggestions.certain,
+        *(reading for question in suggestions.questions for reading in question.readings),
+    ):
         channels = found.setdefault((reading.field.topic, reading.field.path), [])
         if reading.channel not in channels:
             channels.append(reading.channel)

@@ -21,9 +21,11 @@ def topics_text(inspection: Inspection, suggestions: Suggestions) -> str:
     for question in suggestions.questions:
         lines += _asked(question)
     found = used(suggestions)
-    unused = [one for one in inspection.fields if (one.topic, one.path) not in found]
+    unused = [field for field in inspection.fields if (field.topic, field.path) not in found]
     if unused:
-        lines.append("# not taken for a channel: " + ", ".join(_quoted(_name(one.topic, one.path)) for one in unused))
+        lines.append(
+            "# not taken for a channel: " + ", ".join(_quoted(_name(field.topic, field.path)) for field in unused)
+        )
     return "\n".join(lines) + "\n"
 
 

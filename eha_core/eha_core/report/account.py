@@ -45,8 +45,8 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         f"{Path(diagnosis.path).name}: {diagnosis.duration:.1f} s of {channels_listed(diagnosis.channels)}",
     )
     yield "Verdict", diagnosis.summary
-    for one in diagnosis.long_records:
-        yield "Whole", one.statement
+    for record in diagnosis.long_records:
+        yield "Whole", record.statement
     for location in diagnosis.location[:1]:
         yield "Located", _located(location)
     for place, effect in enumerate(diagnosis.effects[:_MOST_EFFECTS]):
@@ -55,23 +55,31 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         law = diagnosis.unknown
         expression = f": {law.expression}" if law.expression else ""
         yield "Recovered", f"a law over {law.function_of}{expression} (R² {law.r_squared:.3f})"
-    changed = "; ".join(_changed(one) for one in diagnosis.parameters if one.changed)
+    changed = "; ".join(_changed(parameter) for parameter in diagnosis.parameters if parameter.changed)
     yield "Parameters", f"biased, it may be, by what is missing: {changed}" if changed and diagnosis.biased else changed
-    rivals = [f"{' + '.join(one.effects)} (evidence {one.evidence_gap:.1f} less)" for one in diagnosis.alternatives]
+    rivals = [
+        f"{' + '.join(alternative.effects)} (evidence {alternative.evidence_gap:.1f} less)"
+        for alternative in diagnosis.alternatives
+    ]
     yield "Not told", f"from {', nor from '.join(rivals)}" if rivals else ""
 
 
 def _named(effect: NamedEffect) -> str:
-    values = [f"{name} {within(one.value, one.std, one.unit)}" for name, one in told_parameters(effect).items()]
+    values = [
+        f"{name} {within(fitted.value, fitted.std, fitted.unit)}" for name, fitted in told_parameters(effect).items()
+    ]
     return f"{effect.id} ({', '.join(values)}; 95 %)"
 
 
-def _changed(one: FittedParameter) -> str:
-    return f"{one.name} {within(one.fitted, one.std, one.unit)} (nominal {quantity(one.nominal, one.unit)})"
+def _changed(parameter: FittedParameter) -> str:
+    return (
+        f"{parameter.name} {within(parameter.fitted, parameter.std, parameter.unit)}"
+        f" (nominal {quantity(parameter.nominal, parameter.unit)})"
+    )
 
 
 def _located(location: Location) -> str:
-    spans = f"; {listed([span(one) for one in location.when[:4]])}" if 1 < len(location.when) <= 4 else ""
+    spans = f"; {listed([span(interval) for interval in location.when[:4]])}" if 1 < len(location.when) <= 4 else ""
     return f"{location.statement}{spans}"
 
 
@@ -93,7 +101,7 @@ def _improvement(diagnosis: Diagnosis) -> list[str]:
 def _notes(diagnosis: Diagnosis) -> Iterator[str]:
     if diagnosis.damaged:
         yield f"damaged: {diagnosis.damaged}"
-    yield from (f"not examined: {one}" for one in diagnosis.not_examined)
+    yield from (f"not examined: {note}" for note in diagnosis.not_examined)
     yield from diagnosis.remarks
 
 

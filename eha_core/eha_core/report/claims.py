@@ -28,13 +28,13 @@ def judged(diagnosis: Diagnosis) -> Mapping[str, ChannelFit]:
 
 def largest_ratio(diagnosis: Diagnosis) -> float:
     """The largest error of the final model, in units of its channel's noise."""
-    ratios = [one.rmse_after / one.noise for one in judged(diagnosis).values() if np.isfinite(one.rmse_after)]
+    ratios = [fit.rmse_after / fit.noise for fit in judged(diagnosis).values() if np.isfinite(fit.rmse_after)]
     return max(ratios, default=float("nan"))
 
 
 def coloured(diagnosis: Diagnosis) -> list[str]:
     """The channels whose residual is not white."""
-    return [name for name, one in diagnosis.whiteness.items() if one > WHITE]
+    return [name for name, largest in diagnosis.whiteness.items() if largest > WHITE]
 
 
 def is_noise(diagnosis: Diagnosis) -> bool:
@@ -54,7 +54,7 @@ def left_over(diagnosis: Diagnosis) -> str:
 
 def left_in_words(diagnosis: Diagnosis) -> str:
     """How large what the final model leaves is and whether it is white; empty where nothing was judged."""
-    ratios = [one.rmse_after / one.noise for one in judged(diagnosis).values() if np.isfinite(one.rmse_after)]
+    ratios = [fit.rmse_after / fit.noise for fit in judged(diagnosis).values() if np.isfinite(fit.rmse_after)]
     if not ratios or not diagnosis.whiteness:
         return ""
     least, most = (f"{end:.2f}" for end in (min(ratios), max(ratios)))
@@ -108,7 +108,7 @@ def _at_noise(diagnosis: Diagnosis, name: str, fit: ChannelFit) -> bool:
 
 def noise_floor(diagnosis: Diagnosis) -> str:
     """What the estimated noise means: a floor only where no model is below it."""
-    below = [name for name, one in judged(diagnosis).items() if one.rmse_after * NOISE_ALONE < one.noise]
+    below = [name for name, fit in judged(diagnosis).items() if fit.rmse_after * NOISE_ALONE < fit.noise]
     if not below:
         return "Each channel's noise is estimated from the data themselves; no model can be expected to come closer."
     return (

@@ -26,13 +26,13 @@ MODELS = ("nominal", "recalibrated", "augmented")
 def each_recording(diagnosis: Diagnosis) -> list[str]:
     """A line for every recording that the model was fitted to, and a table for every one it was only tested on."""
     lines = ["Recordings fitted together"] if diagnosis.together else []
-    for one in diagnosis.together:
+    for recording in diagnosis.together:
         left = ", ".join(
-            f"{channel_title(name)} {fit.rmse_after / fit.noise:.2f}" for name, fit in one.held_out.items()
+            f"{channel_title(name)} {fit.rmse_after / fit.noise:.2f}" for name, fit in recording.held_out.items()
         )
-        rows = ((_row(name, diagnosis.composition), value) for name, value in one.own_values.items())
+        rows = ((_row(name, diagnosis.composition), value) for name, value in recording.own_values.items())
         own = "".join(f"; {row.name} {row.symbol} = {quantity(value, row.unit)}" for row, value in rows)
-        lines.append(f"  {Path(one.path).name}: {left} times the noise on held-out data{own}")
+        lines.append(f"  {Path(recording.path).name}: {left} times the noise on held-out data{own}")
     for tested in diagnosis.tests:
         lines += _tested(tested)
     return lines
@@ -46,9 +46,9 @@ def _tested(tested: PredictedRecording) -> Iterator[str]:
         each = [tested.prediction[model][channel] for model in MODELS]
         for seconds in each[0].ahead:
             label = f"  {channel_title(channel)}, {seconds:g} s ahead"
-            yield f"{label:40}" + "".join(f"{quantity(one.ahead[seconds], unit):>14}" for one in each)
+            yield f"{label:40}" + "".join(f"{quantity(prediction.ahead[seconds], unit):>14}" for prediction in each)
         label = f"  {channel_title(channel)}, free-running"
-        yield f"{label:40}" + "".join(f"{quantity(one.free_running, unit):>14}" for one in each)
+        yield f"{label:40}" + "".join(f"{quantity(prediction.free_running, unit):>14}" for prediction in each)
 
 
 def _row(name: str, composition: Composition) -> Parameter:
@@ -63,7 +63,7 @@ def _row(name: str, composition: Composition) -> Parameter:
 def recording_tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
     """The same for the page: a table of the recordings fitted together, and one for each that was only predicted."""
     tables = [_together(diagnosis)] if diagnosis.together else []
-    whole = (_whole(one) for one in diagnosis.long_records)
+    whole = (_whole(record) for record in diagnosis.long_records)
     return (*tables, *whole, *(_prediction(tested) for tested in diagnosis.tests))
 
 
@@ -73,11 +73,11 @@ def _together(diagnosis: Diagnosis) -> Table:
     own = {name: _row(name, diagnosis.composition) for name in first.own_values}
     rows = tuple(
         (
-            Path(one.path).name,
-            *(f"{one.held_out[name].rmse_after / one.held_out[name].noise:.2f}" for name in channels),
-            *(quantity(one.own_values[name], row.unit) for name, row in own.items()),
+            Path(recording.path).name,
+            *(f"{recording.held_out[name].rmse_after / recording.held_out[name].noise:.2f}" for name in channels),
+            *(quantity(recording.own_values[name], row.unit) for name, row in own.items()),
         )
-        for one in diagnosis.together
+        for recording in diagnosis.together
     )
     titles = (f"{words(row.name)} {row.symbol}" for row in own.values())
     headings = ("recording", *(f"{channel_title(name)} [× noise]" for name in channels), *titles)
@@ -92,12 +92,12 @@ def _whole(record: LongRecord) -> Table:
         blocks = [record.blocks[place] for place in part]
         if not blocks:
             continue
-        fitted = sum(one.end - one.start for one in blocks if one.fitted)
+        fitted = sum(block.end - block.start for block in blocks if block.fitted)
         cells = []
         for name in names:
             unit = CHANNEL_KINDS[name].unit
-            after = [one.after[name] for one in blocks if name in one.after]
-            before = [one.before[name] for one in blocks if name in one.before]
+            after = [block.after[name] for block in blocks if name in block.after]
+            before = [block.before[name] for block in blocks if name in block.before]
             cells += [_median(before, unit), _median(after, unit), quantity(max(after), unit) if after else "-"]
         rows.append((f"{blocks[0].start:.0f} to {blocks[-1].end:.0f} s", f"{fitted:.0f} s", *cells))
     kinds = ("nominal, median", "augmented, median", "augmented, largest")
@@ -117,9 +117,9 @@ def _prediction(tested: PredictedRecording) -> Table:
         each = [tested.prediction[model][channel] for model in MODELS]
         title = channel_title(channel)
         for seconds in each[0].ahead:
-            shown = (quantity(one.ahead[seconds], unit) for one in each)
+            shown = (quantity(prediction.ahead[seconds], unit) for prediction in each)
             rows.append((f"{title}, {seconds:g} s ahead", *shown, quantity(tested.noise[channel], unit)))
-        shown = (quantity(one.free_running, unit) for one in each)
+        shown = (quantity(prediction.free_running, unit) for prediction in each)
         rows.append((f"{title}, free-running", *shown, quantity(tested.noise[channel], unit)))
     title = f"Test on {Path(tested.path).name}, which no model was fitted to: RMSE"
     return Table(("prediction", *MODELS, "noise"), tuple(rows), title)

@@ -49,28 +49,28 @@ def rung(effects: set[str], chosen: set[str]) -> str:
     if chosen & effects and len(chosen - effects) == len(effects - chosen) == 1:
         (lost,), (other,) = chosen - effects, effects - chosen
         return f"{effect_title(other)} in place of {effect_title(lost)}"
-    lacks = [f"without {effect_title(one)}" for one in sorted(chosen - effects)]
-    more = [f"with {effect_title(one)}" for one in sorted(effects - chosen)]
+    lacks = [f"without {effect_title(effect)}" for effect in sorted(chosen - effects)]
+    more = [f"with {effect_title(effect)}" for effect in sorted(effects - chosen)]
     return f"the named effects {listed([*lacks, *more])}" if chosen & effects else named(tuple(sorted(effects)))
 
 
 def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-name", title: str = "") -> Picture:
     """How far each hypothesis is behind the best, on a logarithmic axis; the model that adds nothing is among them."""
     best = float(diagnosis.rivals[0][1])
-    chosen = {one.id for one in diagnosis.effects}
+    chosen = {effect.id for effect in diagnosis.effects}
     ranked = [(rung(set(effects), chosen), set(effects), score) for effects, score in diagnosis.rivals[:most]]
     if all(effects for _, effects, _ in ranked):
         ranked.append((NULL, set(), 0.0))
-    ranked.sort(key=lambda one: -one[2])
+    ranked.sort(key=lambda rival: -rival[2])
     top = max(best, 0.0)
     behind = np.array([top - score for _, _, score in ranked])
-    tied = [set(one.effects) for one in diagnosis.alternatives]
+    tied = [set(alternative.effects) for alternative in diagnosis.alternatives]
     unnamed = diagnosis.verdict == "unknown_physics" and not chosen
     roles = tuple(
         "after" if effects == chosen and not unnamed else "calibrated" if effects in tied else "other"
         for _, effects, _ in ranked
     )
-    texts = tuple(behind_in_words(one) for one in behind)
+    texts = tuple(behind_in_words(gap) for gap in behind)
     short = min(score for _, _, score in ranked) < -STOPPED_SHORT
     rungs = Bars(tuple(name for name, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
     decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)

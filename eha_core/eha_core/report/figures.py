@@ -211,6 +211,6 @@ def _cells(axes: Any, mark: Cells) -> None:
 
 def _intervals(axes: Any, mark: Intervals) -> None:
     rows = enumerate(mark.roles)
-    for role, members in groupby(sorted(rows, key=lambda one: one[1]), key=lambda one: one[1]):
+    for role, members in groupby(sorted(rows, key=lambda item: item[1]), key=lambda item: item[1]):
         at = [row for row, _ in members]
         axes.errorbar(mark.x[at], at, xerr=mark.reach[at], fmt="o", color=COLOURS[role], capsize=3, markersize=5)

@@ -49,8 +49,8 @@ def missing(effect: NamedEffect) -> Missing:
     switching = [row.name for row in declared.parameters if row.switches and row.name in told]
     values = []
     for name in switching[:MOST_VALUES]:
-        one = told[name]
-        values.append(f"{words(name)} {within(one.value, one.std, one.unit, SURE)}")
+        fitted = told[name]
+        values.append(f"{words(name)} {within(fitted.value, fitted.std, fitted.unit, SURE)}")
     cause, colon, _ = effect.statement.partition(":")
     active = getattr(effect, "active", None)
     return Missing(effect_title(effect.id), tuple(values), cause if colon else "", span(active) if active else "")
@@ -62,12 +62,12 @@ def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
     An edge that may be sharp is no finding. An effect of which no parameter is told keeps them all.
     A term of a law of given motion that the catalogue does not have keeps them too.
     """
-    declared = next((one.parameters for one in effects() if one.id == effect.id), ())
+    declared = next((entry.parameters for entry in effects() if entry.id == effect.id), ())
     neutral = {row.name for row in declared if row.nominal == 0.0}
     told = {
-        name: one
-        for name, one in effect.parameters.items()
-        if name not in neutral or (one.value != 0.0 and not abs(one.value) <= SURE * one.std < float("inf"))
+        name: fitted
+        for name, fitted in effect.parameters.items()
+        if name not in neutral or (fitted.value != 0.0 and not abs(fitted.value) <= SURE * fitted.std < float("inf"))
     }
     return told or effect.parameters
 
@@ -105,26 +105,29 @@ def effects_listed(diagnosis: Diagnosis) -> str:
     """The named effects with their values, as a sentence lists them."""
     named = [missing(effect) for effect in diagnosis.effects]
     return listed(
-        [f"{one.title} ({', '.join(one.values)})" + (f" from {one.when}" if one.when else "") for one in named]
+        [
+            f"{absent.title} ({', '.join(absent.values)})" + (f" from {absent.when}" if absent.when else "")
+            for absent in named
+        ]
     )
 
 
 def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
     """What casts doubt on everything below it: data taken although they cannot be right, or a damaged file."""
-    doubts = [one for one in diagnosis.remarks if "warning: " in one]
+    doubts = [remark for remark in diagnosis.remarks if "warning: " in remark]
     # of several recordings, a remark begins with the path of its own
-    told = [sentence(one) if one.startswith("warning") else f"{one}." for one in doubts]
+    told = [sentence(remark) if remark.startswith("warning") else f"{remark}." for remark in doubts]
     damaged = f"Warning: the file is damaged, and this rests on what could be read: {diagnosis.damaged}."
     return (*told, damaged) if diagnosis.damaged else tuple(told)
 
 
 def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The sentences below it: the likely causes, changed parameters, and how much of the mismatch is explained."""
-    causes = [(one.title, one.cause) for one in map(missing, diagnosis.effects) if one.cause]
+    causes = [(absent.title, absent.cause) for absent in map(missing, diagnosis.effects) if absent.cause]
     likely = "; ".join(f"{cause} ({title})" for title, cause in causes)
-    rivals = listed([" + ".join(map(effect_title, one.effects)) for one in diagnosis.alternatives])
-    changed = [one for one in diagnosis.parameters if one.changed]
-    values = listed([f"{words(one.name)} {_departure(one)}" for one in changed[: MOST_VALUES + 1]])
+    rivals = listed([" + ".join(map(effect_title, alternative.effects)) for alternative in diagnosis.alternatives])
+    changed = [parameter for parameter in diagnosis.parameters if parameter.changed]
+    values = listed([f"{words(parameter.name)} {_departure(parameter)}" for parameter in changed[: MOST_VALUES + 1]])
     found = (
         f"Likely cause{'s' if len(causes) > 1 else ''}: {likely}." if likely else "",
         f"This recording does not tell it from {rivals}." if rivals else "",
@@ -132,15 +135,19 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
         if changed and not diagnosis.biased
         else "",
         explanation(diagnosis),
-        *(one.statement for one in diagnosis.long_records),
+        *(record.statement for record in diagnosis.long_records),
     )
-    return tuple(one for one in found if one)
+    return tuple(text for text in found if text)
 
 
-def _departure(one: FittedParameter) -> str:
+def _departure(parameter: FittedParameter) -> str:
     """A changed parameter's value, and how far it is from nominal."""
-    value = quantity(one.fitted, one.unit)
-    return f"{value} ({one.fitted / one.nominal - 1.0:+.1%})".replace("%", " %") if one.nominal else value
+    value = quantity(parameter.fitted, parameter.unit)
+    return (
+        f"{value} ({parameter.fitted / parameter.nominal - 1.0:+.1%})".replace("%", " %")
+        if parameter.nominal
+        else value
+    )
 
 
 def explanation(diagnosis: Diagnosis) -> str:
@@ -154,7 +161,7 @@ def explanation(diagnosis: Diagnosis) -> str:
     if explained.complete:
         return f"{said}."
     name, most = max(explained.times_noise.items(), key=lambda item: item[1])
-    sites = listed([SITES[one.site].words for one in explained.left_over])
+    sites = listed([SITES[location.site].words for location in explained.left_over])
     where = f", most likely {sites}" if sites else ""
     left = f"what is left is up to {most:.3g} times the noise, in {channel_title(name)}"
     return f"{said}; more is missing{where}: {left}."

@@ -44,7 +44,7 @@ def pictures(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tu
         evidence_picture(diagnosis, RIVALS, "0-evidence", title) if rivals else None,
         residual_picture(diagnosis),
     )
-    return tuple(one for one in shown if one)
+    return tuple(picture for picture in shown if picture)
 
 
 def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> Picture | None:
@@ -57,13 +57,13 @@ def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) ->
         "Solid: the law as fitted, with the 95 % band of its parameters (which may be narrower than the line). Dashed:"
         " the nominal model."
     )
-    if any(len(one.points_x) for one in found.values()):
+    if any(len(law.points_x) for law in found.values()):
         caption += (
             " Points: the law as the measured channels give it by the law's equation, without any simulation; of a"
             " force, where the piston neither stops nor reverses."
         )
     return Picture(
-        "0-laws", tuple(Group((law_panel(one),)) for one in found.values()), columns, "The missing physics", caption
+        "0-laws", tuple(Group((law_panel(law),)) for law in found.values()), columns, "The missing physics", caption
     )
 
 

@@ -38,21 +38,21 @@ def page(diagnosis: Diagnosis, contents: Contents | None = None) -> str:
         recording=escape(Path(diagnosis.path).name),
         verdict=diagnosis.verdict,
         verdict_title=escape(VERDICT_TITLES[diagnosis.verdict]),
-        warnings="".join(f'<p class="warning" role="alert">{escape(one)}</p>' for one in warnings(diagnosis)),
+        warnings="".join(f'<p class="warning" role="alert">{escape(warning)}</p>' for warning in warnings(diagnosis)),
         headline=_text(headline(diagnosis)),
         key_figures="".join(map(_key_figure, key_figures(diagnosis))),
-        supporting="".join(f"<li>{_text(one)}</li>" for one in supporting(diagnosis)),
+        supporting="".join(f"<li>{_text(sentence)}</li>" for sentence in supporting(diagnosis)),
         summary=f"<h3>{escape(summary.title)}</h3>{_table(summary, folded=False, kind='summary')}" if summary else "",
-        proof="".join(_picture(one) for one in contents.first_screen),
+        proof="".join(_picture(picture) for picture in contents.first_screen),
         errors_title=escape(error_table(diagnosis).title),
         errors=_table(error_table(diagnosis), folded=False, kind="errors"),
         files=_files(diagnosis),
         provenance=_provenance(diagnosis),
         steps="".join(
-            f'<a href="#{one.name}"><span>{number}</span>{escape(one.title)}</a>'
-            for number, one in enumerate(contents.stages, start=1)
+            f'<a href="#{stage.name}"><span>{number}</span>{escape(stage.title)}</a>'
+            for number, stage in enumerate(contents.stages, start=1)
         ),
-        stages="".join(_stage(number, one) for number, one in enumerate(contents.stages, start=1)),
+        stages="".join(_stage(number, stage) for number, stage in enumerate(contents.stages, start=1)),
     )
 
 
@@ -71,8 +71,11 @@ FILES = {
 }
 
 
-def _key_figure(one: KeyFigure) -> str:
-    return f"<div><dt>{_text(one.question)}</dt><dd><b>{_text(one.answer)}</b>{_text(one.basis)}</dd></div>"
+def _key_figure(key_figure: KeyFigure) -> str:
+    return (
+        f"<div><dt>{_text(key_figure.question)}</dt><dd><b>{_text(key_figure.answer)}</b>"
+        f"{_text(key_figure.basis)}</dd></div>"
+    )
 
 
 def _text(words: str) -> str:
@@ -99,8 +102,9 @@ def _stage(number: int, stage: Stage) -> str:
     return (
         f'<section id="{stage.name}"><p class="step"><span>{number}</span>{escape(stage.title)}</p>'
         f"<h2>{_text(stage.headline)}</h2>{_paragraphs(stage.sentences)}{code}"
-        f"{''.join(_part(one) for one in stage.parts)}"
-        f"{''.join(_picture(one) for one in stage.pictures)}{''.join(_table(one) for one in stage.tables)}</section>"
+        f"{''.join(_part(part) for part in stage.parts)}"
+        f"{''.join(_picture(picture) for picture in stage.pictures)}"
+        f"{''.join(_table(table) for table in stage.tables)}</section>"
     )
 
 
@@ -109,12 +113,12 @@ def _part(part: Part) -> str:
     code = f"<pre>{escape(part.code)}</pre>" if part.code else ""
     return (
         f"<article><div><h3>{escape(part.title)}</h3>{_paragraphs(part.sentences)}{code}</div>"
-        f"<div>{''.join(_picture(one) for one in part.pictures)}</div></article>"
+        f"<div>{''.join(_picture(picture) for picture in part.pictures)}</div></article>"
     )
 
 
 def _paragraphs(sentences: Iterable[str]) -> str:
-    return f"<p>{' '.join(_text(one) for one in sentences if one)}</p>"
+    return f"<p>{' '.join(_text(sentence) for sentence in sentences if sentence)}</p>"
 
 
 def _picture(picture: Picture) -> str:
@@ -150,7 +154,7 @@ def _cells(headings: tuple[str, ...], row: tuple[str, ...]) -> str:
 
 
 def _table(table: Table, folded: bool = True, kind: str = "") -> str:
-    head = "".join(f"<th>{escape(one)}</th>" for one in table.headings)
+    head = "".join(f"<th>{escape(heading)}</th>" for heading in table.headings)
     body = "".join(f"<tr>{_cells(table.headings, row)}</tr>" for row in table.rows)
     content = (
         f'<div class="scroll"><table class="{kind}"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'

@@ -27,7 +27,7 @@ class KeyFigure:
 
 def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
     """What is known of: the error with and without the physics, the rest, and the other explanations."""
-    return tuple(one for part in (_better, _left, _sure) for one in part(diagnosis))
+    return tuple(key_figure for part in (_better, _left, _sure) for key_figure in part(diagnosis))
 
 
 def _each_is_needed(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
@@ -73,13 +73,13 @@ def _left(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
 def _sure(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
     """What the named effects are told from: another explanation of as many effects, or the set without one of them."""
     if diagnosis.alternatives:
-        rivals = listed([named(one.effects) for one in diagnosis.alternatives])
+        rivals = listed([named(alternative.effects) for alternative in diagnosis.alternatives])
         yield KeyFigure("How sure?", "Not the only explanation", f"The recording does not tell it from {rivals}.")
         return
     if diagnosis.effects and diagnosis.unknown:  # its score is not among those of the catalogue's sets
         yield from _each_is_needed(diagnosis)
         return
-    chosen = {one.id for one in diagnosis.effects}
+    chosen = {effect.id for effect in diagnosis.effects}
     scores = [(set(effects), float(score)) for effects, score in diagnosis.rivals]
     own = max((score for effects, score in scores if effects == chosen), default=float("nan"))
     others = [(effects, score) for effects, score in scores if effects != chosen and len(effects) >= len(chosen)]
@@ -88,7 +88,7 @@ def _sure(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
     if not others:
         yield from _each_is_needed(diagnosis)
         return
-    nearest, score = max(others, key=lambda one: one[1])
+    nearest, score = max(others, key=lambda rival: rival[1])
     if own - score < TIE:  # then the search calls it ambiguous; a rival that rests on a bound is no rival
         return
     yield KeyFigure(

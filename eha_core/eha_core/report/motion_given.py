@@ -40,7 +40,7 @@ def write_motion_given(found: Found, folder: Path) -> tuple[Path, ...]:
 
 def law_picture(found: Found) -> Picture:
     """The force over speed and position, and what the law leaves over both, of the recording with the largest force."""
-    motion = max(found.motions, key=lambda one: float(np.std(one.force)))
+    motion = max(found.motions, key=lambda motion: float(np.std(motion.force)))
     force, left = curve(found.law, motion)
     rows = np.flatnonzero(motion.used)[:: max(1, len(motion.time) // DRAWN)]
     groups = [

@@ -195,7 +195,7 @@ def _traces(mark: Mark, unit: str) -> Iterator[Drawing]:
             "xgap": 1,
             "ygap": 1,
             "colorbar": {"thickness": 10, "outlinewidth": 0, "len": 0.6},
-            "text": [[f"{one}<br>{other}" for other in mark.names] for one in mark.names],
+            "text": [[f"{name}<br>{other}" for other in mark.names] for name in mark.names],
             "hovertemplate": "%{text}<br>%{z:.2f}<extra></extra>",
         }
 

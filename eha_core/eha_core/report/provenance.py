@@ -46,7 +46,7 @@ def with_provenance(
 
 def _digest(path: Path) -> str:
     """SHA-256 of a file, or of a folder's files in their order; "-" where there is none."""
-    files = sorted(one for one in path.rglob("*") if one.is_file()) if path.is_dir() else [path]
+    files = sorted(file for file in path.rglob("*") if file.is_file()) if path.is_dir() else [path]
     digest = hashlib.sha256()
     try:
         for file in files:

@@ -84,7 +84,7 @@ def strongest_dependence(
         share = float(np.sum(counts * (means - residual.mean()) ** 2)) / total
         share = max(0.0, 1.0 - (1.0 - share) * (len(time) - 1) / max(len(time) - len(counts), 1))
         found.append(Dependence(name, at, share, centres[counts > 0], means[counts > 0]))
-    return max(found, key=lambda one: one.share, default=None)
+    return max(found, key=lambda dependence: dependence.share, default=None)
 
 
 def autocorrelation(time: Array, residual: Array, lags: int) -> tuple[Array, Array]:

@@ -70,18 +70,18 @@ def summarise(diagnosis: Diagnosis) -> Summary:
 
 def _effects(diagnosis: Diagnosis) -> Table:
     rows = tuple(
-        _row(f"{effect.id}.{name}", one.value, one.std, one.unit)
+        _row(f"{effect.id}.{name}", fitted.value, fitted.std, fitted.unit)
         for effect in diagnosis.effects
-        for name, one in told_parameters(effect).items()
+        for name, fitted in told_parameters(effect).items()
     )
     return Table(("missing physics", "value", "std err", "[0.025", "0.975]", "unit"), rows, "Missing physics")
 
 
 def _parameters(diagnosis: Diagnosis) -> Table:
     rows = tuple(
-        (*_row(one.name, one.fitted, one.std, one.unit), _number(one.nominal))
-        for one in diagnosis.parameters
-        if one.changed
+        (*_row(parameter.name, parameter.fitted, parameter.std, parameter.unit), _number(parameter.nominal))
+        for parameter in diagnosis.parameters
+        if parameter.changed
     )
     headings = ("changed parameter", "value", "std err", "[0.025", "0.975]", "unit", "nominal")
     return Table(headings, rows, "Changed parameters")
@@ -111,14 +111,14 @@ def _errors(diagnosis: Diagnosis) -> Table:
 
 
 def _notes(diagnosis: Diagnosis) -> Iterator[str]:
-    for one in diagnosis.alternatives:
-        yield f"Not told apart from {' + '.join(one.effects)} (evidence {one.evidence_gap:.1f} less)."
+    for alternative in diagnosis.alternatives:
+        yield f"Not told apart from {' + '.join(alternative.effects)} (evidence {alternative.evidence_gap:.1f} less)."
     if diagnosis.next_experiment:
         yield f"Next experiment: {sentence(diagnosis.next_experiment.statement)}"
     if diagnosis.damaged:
         yield f"Damaged: {diagnosis.damaged}."
-    yield from (sentence(plain(f"Not examined: {one}")) for one in diagnosis.not_examined)
-    yield from (sentence(plain(one)) for one in diagnosis.remarks)
+    yield from (sentence(plain(f"Not examined: {note}")) for note in diagnosis.not_examined)
+    yield from (sentence(plain(remark)) for remark in diagnosis.remarks)
 
 
 def _columns(table: Table, rule: str) -> list[str]:
@@ -134,6 +134,6 @@ def _columns(table: Table, rule: str) -> list[str]:
 
 
 def _html(table: Table) -> str:
-    head = "".join(f"<th>{escape(one)}</th>" for one in table.headings)
+    head = "".join(f"<th>{escape(heading)}</th>" for heading in table.headings)
     body = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
     return f"<table><tr>{head}</tr>{body}</table>"

@@ -101,7 +101,7 @@ def variable_title(name: str) -> str:
 def plain(text: str) -> str:
     """Text with channel names replaced by an engineer's words."""
     names = r"\b(pressure_[ab]|flow_[ab]|voltage_command|supply_pressure)\b"
-    return re.sub(names, lambda one: channel_title(one[0]), text)
+    return re.sub(names, lambda channel: channel_title(channel[0]), text)
 
 
 def words(name: str) -> str:

@@ -36,16 +36,16 @@ def step_title(added: str) -> str:
 
 def ladder_picture(diagnosis: Diagnosis) -> Picture | None:
     """What each model leaves, from the nominal one to the whole set; and the set without each of its effects."""
-    steps = [one for one in diagnosis.steps if np.isfinite(one.residual.overall)]
+    steps = [step for step in diagnosis.steps if np.isfinite(step.residual.overall)]
     if not steps:
         return None
-    top = max(one.residual.overall for one in steps)
-    rows = [(step_title(one.added), one.residual, ROLES.get(one.added, "after")) for one in steps]
+    top = max(step.residual.overall for step in steps)
+    rows = [(step_title(step.added), step.residual, ROLES.get(step.added, "after")) for step in steps]
     groups = [Group((_bars(rows, top, "Added one by one"),))]
-    ids = [one.added for one in steps if one.added in diagnosis.without]
+    ids = [step.added for step in steps if step.added in diagnosis.without]
     if ids:
         whole = ("all of them", steps[-1].residual, "after")
-        rest = [(f"without {effect_title(one)}", diagnosis.without[one], "other") for one in ids]
+        rest = [(f"without {effect_title(effect)}", diagnosis.without[effect], "other") for effect in ids]
         groups.append(Group((_bars([*rest, whole], top, "Each left out in turn"),)))
     caption = (
         "RMS of what each model leaves over the noise, all channels together. All but the nominal model are fitted. The"
@@ -57,12 +57,12 @@ def ladder_picture(diagnosis: Diagnosis) -> Picture | None:
 
 
 def _bars(rows: Sequence[tuple[str, Residual, str]], top: float, title: str) -> Panel:
-    values = np.array([one.overall for _, one, _ in rows])
+    values = np.array([residual.overall for _, residual, _ in rows])
     decades = max(LEAST_DECADES, int(np.ceil(np.log10(top))))
     end = 1.16 * decades
     lengths = np.maximum(np.log10(np.maximum(values, 1e-3)), STUB * end)
     # beside the dotted line, not on it
-    texts = tuple(f"{BESIDE if one < 2.0 else ''}{short(one)}" for one in values)
+    texts = tuple(f"{BESIDE if value < 2.0 else ''}{short(value)}" for value in values)
     bars = Bars(tuple(name for name, _, _ in rows), lengths, tuple(role for _, _, role in rows), texts)
     threshold = Upright(float(np.log10(LEFT_IN_A_CHANNEL)), "")
     ticks = tuple((float(exponent), f"{10**exponent:,}") for exponent in range(decades + 1))
@@ -78,7 +78,7 @@ def _bars(rows: Sequence[tuple[str, Residual, str]], top: float, title: str) -> 
 
 def effect_table(diagnosis: Diagnosis) -> Table:
     """Each effect in its order: its values, its site, and what is left with it and without it."""
-    left = {one.added: one.residual.overall for one in diagnosis.steps}
+    left = {step.added: step.residual.overall for step in diagnosis.steps}
     rows = []
     for effect in diagnosis.effects:
         row = [capital(effect_title(effect.id)), ", ".join(missing(effect).values), SITES[effect.site].words]
@@ -96,19 +96,19 @@ def step_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
     if not diagnosis.steps:
         return ()
     names = list(diagnosis.steps[0].residual.times_noise)
-    rows = [_step_row(step_title(one.added), one.residual) for one in diagnosis.steps]
-    rows += [_step_row(f"all without {effect_title(name)}", one) for name, one in diagnosis.without.items()]
+    rows = [_step_row(step_title(step.added), step.residual) for step in diagnosis.steps]
+    rows += [_step_row(f"all without {effect_title(name)}", residual) for name, residual in diagnosis.without.items()]
     headings = ("model", *(channel_title(name) for name in names), "all channels")
     return (Table(headings, tuple(rows), "What each model leaves, times the noise"),)
 
 
 def _step_row(title: str, residual: Residual) -> tuple[str, ...]:
-    return (title, *(short(one) for one in residual.times_noise.values()), short(residual.overall))
+    return (title, *(short(ratio) for ratio in residual.times_noise.values()), short(residual.overall))
 
 
 def worth(diagnosis: Diagnosis, effect: str) -> str:
     """What an effect takes away where it is added, and what is left without it, in a sentence; empty if not known."""
-    order = [one.added for one in diagnosis.steps]
+    order = [step.added for step in diagnosis.steps]
     if effect not in order:
         return ""
     place = order.index(effect)

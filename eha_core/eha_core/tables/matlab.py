@@ -116,8 +116,8 @@ def _walk_5(path: str, value: Any, gathered: _Gathered, levels: int) -> None:
     fields = getattr(getattr(value, "dtype", None), "names", None)
     if fields is None:
         if isinstance(value, np.ndarray) and value.dtype.kind == "O" and levels:
-            for k, one in enumerate(np.ravel(value)):
-                _walk_5(f"{path}{{{k}}}", one, gathered, levels - 1)
+            for k, cell in enumerate(np.ravel(value)):
+                _walk_5(f"{path}{{{k}}}", cell, gathered, levels - 1)
         elif isinstance(value, np.ndarray):
             gathered.add(path, value)
         return
@@ -169,19 +169,19 @@ def _walk_73(h5py: Any, path: str, item: Any, gathered: _Gathered, levels: int) 
     if not levels:
         return
     if isinstance(item, h5py.Group):
-        entries = {name: _value_73(h5py, one, gathered) for name, one in _own_items(h5py, item)}
-        if all(isinstance(one, list) for one in entries.values()) and entries:
-            elements = [dict(zip(entries, one, strict=True)) for one in zip(*entries.values(), strict=False)]
+        entries = {name: _value_73(h5py, member, gathered) for name, member in _own_items(h5py, item)}
+        if all(isinstance(entry, list) for entry in entries.values()) and entries:
+            elements = [dict(zip(entries, row, strict=True)) for row in zip(*entries.values(), strict=False)]
             for k, element in enumerate(elements):
-                values = {name: _value_73(h5py, one, gathered) for name, one in element.items()}
+                values = {name: _value_73(h5py, entry, gathered) for name, entry in element.items()}
                 _structure_73(h5py, f"{path}({k + 1})", path, values, gathered, levels)
         else:
             _structure_73(h5py, path, path, entries, gathered, levels)
         return
     value = _value_73(h5py, item, gathered)
     if isinstance(value, list):
-        for k, one in enumerate(value):
-            _walk_73(h5py, f"{path}{{{k}}}", one, gathered, levels - 1)
+        for k, cell in enumerate(value):
+            _walk_73(h5py, f"{path}{{{k}}}", cell, gathered, levels - 1)
     elif isinstance(value, np.ndarray):
         gathered.add(path, value)
 
@@ -198,8 +198,8 @@ def _structure_73(
         if isinstance(value, np.ndarray):
             gathered.add(f"{path}.{key}", value)
         elif isinstance(value, list):
-            for k, one in enumerate(value):
-                _walk_73(h5py, f"{path}.{key}{{{k}}}", one, gathered, levels - 1)
+            for k, cell in enumerate(value):
+                _walk_73(h5py, f"{path}.{key}{{{k}}}", cell, gathered, levels - 1)
         elif isinstance(value, h5py.Group):
             _walk_73(h5py, f"{path}.{key}", value, gathered, levels - 1)
 

@@ -23,7 +23,7 @@ def read_parquet_table(path: Path) -> Table:
     try:
         with parquet.ParquetFile(path) as file:
             schema = file.schema_arrow
-            wanted = [k for k, one in enumerate(schema) if _is_numeric(arrow, one.type)]
+            wanted = [k for k, field in enumerate(schema) if _is_numeric(arrow, field.type)]
             rows, groups = file.metadata.num_rows, file.metadata.num_row_groups
             if rows * max(len(wanted), 1) > MOST_CELLS or len(wanted) > MOST_COLUMNS or groups > rows:
                 raise RecordingError(

@@ -58,7 +58,7 @@ def _encoding(path: Path) -> str:
         cut = len(head) == HEAD and problem.start >= len(head) - 4
         text = head[: problem.start].decode(encoding) if cut else head.decode("cp1252", errors="replace")
         encoding = encoding if cut else "cp1252"
-    if any(ord(one) < 32 and one not in "\t\r\n\f" for one in text) or "\ufffd" in text:
+    if any(ord(character) < 32 and character not in "\t\r\n\f" for character in text) or "\ufffd" in text:
         raise RecordingError(f"{path}: not a text file; expected CSV with a header row")
     return encoding
 

@@ -69,11 +69,14 @@ def smallest(alternatives: Sequence[tuple[EquationResidual, ...]]) -> tuple[Equa
     What is not regressed (areas, pressures of the lines, stroke, the valve's motion) comes from the model. Fitted
     values are right where nothing is missing, and may be biased where something is.
     """
-    found = [one for one in alternatives if one]
+    found = [residuals for residuals in alternatives if residuals]
     if not found:
         return ()
-    force = min((one[0] for one in found), key=lambda one: one.chi_square)
-    return (force, *min((one[1:] for one in found), key=lambda pair: sum(one.chi_square for one in pair)))
+    force = min((residuals[0] for residuals in found), key=lambda residual: residual.chi_square)
+    return (
+        force,
+        *min((residuals[1:] for residuals in found), key=lambda pair: sum(residual.chi_square for residual in pair)),
+    )
 
 
 def equation_residuals(observation: Observation, shooting: Shooting, model: Fit) -> tuple[EquationResidual, ...]:
@@ -82,7 +85,7 @@ def equation_residuals(observation: Observation, shooting: Shooting, model: Fit)
     position = observation.channel("position")
     if position is None or pressure_a is None or pressure_b is None:
         return ()
-    spacing = max(float(np.median(np.diff(one.time))) for one in (position, pressure_a, pressure_b))
+    spacing = max(float(np.median(np.diff(channel.time))) for channel in (position, pressure_a, pressure_b))
     grid = make_grid(observation.duration, spacing, (position, pressure_a, pressure_b))
     rows, _ = shooting.simulate(model.values, model.states, full=True)
     row_times = (np.arange(len(rows)) + 1) * shooting.step_size * shooting.every

@@ -79,7 +79,11 @@ def best_wave(data: RegressionData, symbol: str, slowest: float, fastest: float,
 
     step = FREQUENCY_STEP / float(np.ptp(data.at))
     return _best(
-        data, symbol, wave, [(float(one),) for one in np.arange(slowest, fastest + step, step)], (0.3 * step,)
+        data,
+        symbol,
+        wave,
+        [(float(frequency),) for frequency in np.arange(slowest, fastest + step, step)],
+        (0.3 * step,),
     )
 
 
@@ -94,11 +98,11 @@ def _best(
     beside = powers(symbol)[:2]
 
     def criterion(numbers: Sequence[float]) -> float:
-        return fitted(data, [*beside, family(*(float(one) for one in numbers))]).criterion
+        return fitted(data, [*beside, family(*(float(value) for value in numbers))]).criterion
 
     start = min(starts, key=criterion)
     simplex = np.array(start) + np.vstack([np.zeros(len(start)), np.diag(steps)])
     exact = minimize(
         criterion, start, method="Nelder-Mead", options={"initial_simplex": simplex, "maxfev": EVALUATIONS}
     )
-    return family(*(float(one) for one in exact.x))
+    return family(*(float(value) for value in exact.x))

@@ -51,7 +51,7 @@ class Term:
         size, text = coefficients[0], self.text
         if len(self.parts) == 2:
             size, text = hypot(*coefficients), f"sin({self.text} {signed(atan2(coefficients[1], coefficients[0]))})"
-        factors = [one for one in (number(size), "" if text == "1" else text, times) if one]
+        factors = [factor for factor in (number(size), "" if text == "1" else text, times) if factor]
         return " ".join(factors)
 
 
@@ -102,7 +102,11 @@ def sparsest(data: RegressionData, terms: Sequence[Term]) -> Sum:
     ]
     best = _solved(data, [], [])
     for count in range(1, MOST_TERMS + 1):
-        nearest = min((one for one in sums if len(one.terms) == count), key=lambda one: one.criterion, default=best)
+        nearest = min(
+            (candidate for candidate in sums if len(candidate.terms) == count),
+            key=lambda candidate: candidate.criterion,
+            default=best,
+        )
         if nearest.criterion < best.criterion - WORTH and nearest.r_squared > best.r_squared + SLIGHT:
             best = nearest
     return best
@@ -130,7 +134,7 @@ def _solved(data: RegressionData, terms: Sequence[Term], columns: Sequence[Array
     share = float(left @ left) / data.total
     numbers = len(solved) + sum(term.searched for term in terms)
     criterion = data.independent * log(share + PRECISION) + numbers * log(data.independent)
-    sizes = iter(float(one) for one in solved)
+    sizes = iter(float(size) for size in solved)
     coefficients = tuple(tuple(next(sizes) for _ in term.parts) for term in terms)
     return Sum(tuple(terms), coefficients, 1.0 - share, criterion)
 

@@ -109,7 +109,7 @@ def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, 
     [V].
     """
     names = [ids for ids, _ in rivals[: MOST_RIVALS + 1]]
-    fits = [one for _, one in rivals[: MOST_RIVALS + 1]]
+    fits = [result for _, result in rivals[: MOST_RIVALS + 1]]
     record: tuple[str, ...] = ()
     best = _best_discrimination(fits, noises, level, voltage_limit)
     if best.separation < TELLING and not set(PRESSURES) <= set(noises):
@@ -151,17 +151,17 @@ def _best_discrimination(
         level = GENTLEST * voltage_limit
     if not discriminations:
         return Discrimination(Trial("sine", {"amplitude": 0.0, "frequency": 1.0}), short, 0.0)
-    leading = sorted(discriminations, key=lambda one: -one.separation)[:LASTING]
+    leading = sorted(discriminations, key=lambda discrimination: -discrimination.separation)[:LASTING]
     best = leading[0]
     if best.separation < TELLING:
-        lasting = [_lasting(one, rivals, noises) for one in leading]
-        best = max([best, *lasting], key=lambda one: one.separation)
+        lasting = [_lasting(discrimination, rivals, noises) for discrimination in leading]
+        best = max([best, *lasting], key=lambda discrimination: discrimination.separation)
     return best
 
 
 def _lasting(discrimination: Discrimination, rivals: Sequence[Fit], noises: Mapping[str, float]) -> Discrimination:
     """The same trial for as long as it takes, if the rig bears that."""
     per_second = discrimination.separation / discrimination.duration
-    duration = next((one for one in DURATIONS if one * per_second > TELLING), DURATIONS[-1])
+    duration = next((seconds for seconds in DURATIONS if seconds * per_second > TELLING), DURATIONS[-1])
     told = separation(discrimination.trial.voltage(duration), rivals, noises)
     return discrimination if told is None else Discrimination(discrimination.trial, duration, told)

@@ -46,11 +46,11 @@ def separation(voltage: Array, rivals: Sequence[Fit], noises: Mapping[str, float
         return None
     outcomes = [test.measured(rows) for rows in responses]
     first = rivals[0]
-    nominal = tuple(one for one in first.free if is_one_of(one.name, NOMINAL_NAMES))
+    nominal = tuple(parameter for parameter in first.free if is_one_of(parameter.name, NOMINAL_NAMES))
     shared = test.slopes(first, nominal, outcomes[0])
     near, every = [], []
     for rival, outcome in zip(rivals, outcomes, strict=True):
-        own = tuple(one for one in rival.free if not is_one_of(one.name, NOMINAL_NAMES))
+        own = tuple(parameter for parameter in rival.free if not is_one_of(parameter.name, NOMINAL_NAMES))
         slopes = _Slopes(nominal + own, np.hstack([shared, test.slopes(rival, own, outcome)]))
         every.append(slopes)
         near.append(outcome if rival is first else _imitating(outcomes[0], test, rival, slopes, outcome))
@@ -115,7 +115,7 @@ class _Slopes:
     @cached_property
     def priors(self) -> Array:
         """Inverse standard deviations of the coordinates."""
-        return np.array([1.0 / one.prior_deviation for one in self.free])
+        return np.array([1.0 / parameter.prior_deviation for parameter in self.free])
 
     def towards(self, difference: Array, q: Array, damping: float = 0.0) -> Array:
         """The damped move from q that takes an outcome to one that differs by so much, as far as the priors let it."""

@@ -53,7 +53,7 @@ def all_at_once(search: Search, nominal: Candidate) -> Candidate:
             break
     else:
         search.report(_fewest(search, Candidate(NOTHING.with_effects(effects), together)))
-    return min(search, key=lambda one: one.fit.objective)
+    return min(search, key=lambda candidate: candidate.fit.objective)
 
 
 def found_by_a_fit(applicable: Sequence[Effect]) -> list[Effect]:
@@ -78,8 +78,10 @@ def _small(effects: Sequence[Effect], scales: Scales) -> tuple[dict[str, float],
         rows = zip(effect.parameter_names(), effect.parameters, strict=True)
         off = {name: row.nominal for name, row in rows if row.switches}
         free += [
-            replace(one, reference=off[one.name]) if one.name in off and not one.above else one
-            for one in free_effect_parameters(effect, guess)
+            replace(parameter, reference=off[parameter.name])
+            if parameter.name in off and not parameter.above
+            else parameter
+            for parameter in free_effect_parameters(effect, guess)
         ]
         values |= {**guess, **{name: nothing + BEGIN * (guess[name] - nothing) for name, nothing in off.items()}}
     return values, tuple(free)
@@ -97,7 +99,7 @@ def _fewest(search: Search, together: Candidate) -> Candidate:
         worst = at.fit.objective + len(gone) * needed
         result = fit(search.problem, values, free, at.fit.states, iterations=ITERATIONS, give_up_above=worst)
         if result.objective < worst:
-            at = Candidate(NOTHING.with_effects(one for one in at.hypothesis.effects if one not in gone), result)
+            at = Candidate(NOTHING.with_effects(kept for kept in at.hypothesis.effects if kept not in gone), result)
         elif len(gone) > 1:
             most = len(gone) // 2
         else:
@@ -116,8 +118,8 @@ def not_needed(result: Fit, effects: Sequence[Effect], needed: float) -> list[Ef
     places = {effect: _sizes(result, effect) for effect in effects}
     gone: list[Effect] = []
     while len(gone) < (len(effects) + 1) // 2:
-        costs = {one: _cost(away, covariance, at) for one, at in places.items() if one not in gone}
-        least = min(costs, key=lambda one: costs[one])
+        costs = {effect: _cost(away, covariance, at) for effect, at in places.items() if effect not in gone}
+        least = min(costs, key=lambda effect: costs[effect])
         if costs[least] > needed:
             break
         at = places[least]
@@ -131,13 +133,15 @@ def not_needed(result: Fit, effects: Sequence[Effect], needed: float) -> list[Ef
 def _sizes(result: Fit, effect: Effect) -> list[int]:
     """Where the fit's coordinates have the sizes that turn an effect on."""
     names = {f"{effect.id}.{row.name}" for row in effect.parameters if row.switches and not row.above}
-    return [place for place, one in enumerate(result.free) if base_name(one.name) in names]
+    return [place for place, parameter in enumerate(result.free) if base_name(parameter.name) in names]
 
 
 def _away_from_nothing(result: Fit, effects: Sequence[Effect]) -> Array:
     """The fit's coordinates, of the effects' sizes counted from where they are nothing."""
     off = {name: value for effect in effects for name, value in neutral(effect).items()}
-    nothing = [one.coordinate(off.get(base_name(one.name), one.reference)) for one in result.free]
+    nothing = [
+        parameter.coordinate(off.get(base_name(parameter.name), parameter.reference)) for parameter in result.free
+    ]
     away: Array = result.q - np.array(nothing)
     return away
 

@@ -97,11 +97,11 @@ class Search:
         """
         samplings = self.problem.shooting.samplings
         changes = [float(np.clip(residual_noise(residual), 0.5, 2.0)) for residual in at.fit.residuals]
-        floors = [RESOLVED["Pa" if one.column > 1 else "m"] / one.noise for one in samplings]
+        floors = [RESOLVED["Pa" if sampling.column > 1 else "m"] / sampling.noise for sampling in samplings]
         changes = [max(change, floor) for change, floor in zip(changes, floors, strict=True)]
         if max(abs(change - 1.0) for change in changes) < SAME_NOISE:
             return
-        noise = [change * one.noise for change, one in zip(changes, samplings, strict=True)]
+        noise = [change * sampling.noise for change, sampling in zip(changes, samplings, strict=True)]
         before = self.problem.shooting
         self.problem = replace(self.problem, shooting=with_noise(before, noise))
         for hypothesis, result in self.found.items():
@@ -125,7 +125,7 @@ def in_noise_of(problem: Problem, before: Shooting, result: Fit) -> Fit:
     pairs = zip(problem.shooting.samplings, before.samplings, result.residuals, strict=True)
     residuals = tuple(residual * (then.noise / now.noise) for now, then, residual in pairs)
     kept = zip(problem.shooting.samplings, residuals, strict=True)
-    data = sum(float(np.sum(residual[used[one.window]] ** 2)) for one, residual in kept)
+    data = sum(float(np.sum(residual[used[sampling.window]] ** 2)) for sampling, residual in kept)
     return replace(result, residuals=residuals, data=data, objective=result.objective - result.data + data)
 
 
@@ -133,4 +133,4 @@ def without_effect(result: Fit, effect: Effect) -> tuple[dict[str, float], tuple
     """A fit's values with one effect off, and what is then free."""
     off = neutral(effect)
     values = {name: off.get(base_name(name), value) for name, value in result.values.items()}
-    return values, tuple(one for one in result.free if not is_one_of(one.name, off))
+    return values, tuple(parameter for parameter in result.free if not is_one_of(parameter.name, off))

@@ -42,7 +42,11 @@ def converge(problem: Problem, found: Found, progress: Progress = lambda _: None
         progress(f"fitting {' and '.join(hypothesis.ids)}")
         result = fit(exact, result.values, result.free, result.states, iterations=30)
         if result.data > NEAR_NOISE * result.count or is_improbable(result):
-            untouched = {one.name: one.reference for one in result.free if is_one_of(one.name, NOMINAL_NAMES)}
+            untouched = {
+                parameter.name: parameter.reference
+                for parameter in result.free
+                if is_one_of(parameter.name, NOMINAL_NAMES)
+            }
             again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
@@ -59,33 +63,33 @@ def converge(problem: Problem, found: Found, progress: Progress = lambda _: None
 
 def _other_instants(problem: Problem, exact: Problem, result: Fit) -> Fit:
     """An instant that a fit moves can rest beside the right one, by far or by a little: try its surroundings."""
-    for one in result.free:
-        if one.resolution == 0.0:
+    for parameter in result.free:
+        if parameter.resolution == 0.0:
             continue
         if result.data > NEAR_NOISE * result.count:
-            result = _far_instant(problem, exact, result, one)
+            result = _far_instant(problem, exact, result, parameter)
         for shift in INSTANT_SHIFTS:
-            moved = {**result.values, one.name: result.values[one.name] + shift}
+            moved = {**result.values, parameter.name: result.values[parameter.name] + shift}
             again = fit(problem, moved, result.free, result.states, iterations=6, give_up_above=result.objective)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
     return result
 
 
-def _far_instant(problem: Problem, exact: Problem, result: Fit, one: FreeParameter) -> Fit:
+def _far_instant(problem: Problem, exact: Problem, result: Fit, parameter: FreeParameter) -> Fit:
     """The instant looked for far and wide with all else as it stands: between a wrong one and the right one the windows
     alone are wrong."""
-    best, at = result.objective, result.values[one.name]
+    best, at = result.objective, result.values[parameter.name]
     there = at
     for reach in INSTANT_REACHES:
         for instant in (there - reach, there + reach):
-            moved = {**result.values, one.name: min(max(instant, one.lower), one.upper)}
+            moved = {**result.values, parameter.name: min(max(instant, parameter.lower), parameter.upper)}
             again = fit(problem, moved, (), result.states, iterations=3)
             if again.objective < best:
-                best, at = again.objective, moved[one.name]
+                best, at = again.objective, moved[parameter.name]
         there = at
     if best == result.objective:
         return result
-    moved = {**result.values, one.name: at}
+    moved = {**result.values, parameter.name: at}
     found = fit(exact, moved, result.free, result.states, iterations=12)
     return found if found.objective < result.objective else result

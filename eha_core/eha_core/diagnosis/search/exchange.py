@@ -36,7 +36,7 @@ def exchange(search: Search, best: Candidate) -> Candidate:
     """The best set after every member's place was competed for; the same where none is better."""
     for member in weakest_first(best):
         race(search, rivals_for(search, best, member))
-        reached = min(search, key=lambda one: one.fit.objective)
+        reached = min(search, key=lambda candidate: candidate.fit.objective)
         samples, left = search.problem.count(), best.fit.data - best.fit.count
         if best.fit.objective - reached.fit.objective > gain_to_go_on(samples, reached.times_noise, left):
             return look_back(search, reached, chance_gain(samples, reached.times_noise))
@@ -57,11 +57,13 @@ def rivals_for(search: Search, best: Candidate, member: Member) -> list[Proposal
     """
     proposals = at_the_fit(search, _without(search, best, member), len(search.applicable))
     # the windows begin as measured: where the member led them, a fit may rest
-    rivals = [replace(one, states=None) for one in proposals if not best.hypothesis.holds(one.hypothesis)]
+    rivals = [
+        replace(proposal, states=None) for proposal in proposals if not best.hypothesis.holds(proposal.hypothesis)
+    ]
     chosen, others = rivals[:FOR_ONE_PLACE], rivals[FOR_ONE_PLACE:]
     if search.short:
-        after_one = {one.hypothesis: search.try_proposal(one, 1).fit.objective for one in others}
-        chosen += sorted(others, key=lambda one: after_one[one.hypothesis])[:AHEAD_AFTER_ONE]
+        after_one = {proposal.hypothesis: search.try_proposal(proposal, 1).fit.objective for proposal in others}
+        chosen += sorted(others, key=lambda proposal: after_one[proposal.hypothesis])[:AHEAD_AFTER_ONE]
     return chosen
 
 
@@ -79,11 +81,11 @@ def rivals_with_one_more(search: Search, best: Candidate, needed: float) -> list
     """
     size, enough = len(best.hypothesis.members), best.fit.objective - needed
     near = [
-        one
-        for one in search
-        if len(one.hypothesis.members) == size
-        and one.hypothesis != best.hypothesis
-        and one.fit.objective < best.fit.objective + OUT_OF_REACH
+        candidate
+        for candidate in search
+        if len(candidate.hypothesis.members) == size
+        and candidate.hypothesis != best.hypothesis
+        and candidate.fit.objective < best.fit.objective + OUT_OF_REACH
     ]
     found = []
     for rival in near if size < MOST_EFFECTS else ():

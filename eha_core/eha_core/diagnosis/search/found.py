@@ -27,4 +27,4 @@ def keep_better(found: Found, hypothesis: Hypothesis, result: Fit) -> None:
 
 def best_first(found: Found) -> list[Hypothesis]:
     """The hypotheses in the order of their objectives, the lowest first."""
-    return sorted(found, key=lambda one: found[one].objective)
+    return sorted(found, key=lambda hypothesis: found[hypothesis].objective)

@@ -23,7 +23,7 @@ def grow(search: Search, best: Candidate) -> Candidate:
         if not search.short:
             try_for_a_while(search, best, score_tests)
         race(search, proposals(search, best, score_tests, chance_gain(search.problem.count(), best.times_noise)))
-        reached = min(search, key=lambda one: one.fit.objective)
+        reached = min(search, key=lambda candidate: candidate.fit.objective)
         if reached.hypothesis != best.hypothesis and reached.times_noise > UNFITTED:
             # the next effect would make up for what a fit that stopped short leaves
             reached = set_with_friction(search, reached)
@@ -53,7 +53,7 @@ def race(search: Search, proposals: Iterable[Proposal]) -> None:
     runners: dict[object, Candidate] = {}
     for iterations, kept in LEGS:
         if runners:
-            runners = {name: search.go_on(one, iterations) for name, one in runners.items()}
+            runners = {name: search.go_on(candidate, iterations) for name, candidate in runners.items()}
         else:
             for proposal in proposals:
                 search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")

@@ -33,7 +33,7 @@ def applicable_effects(observations: Sequence[Observation]) -> tuple[Effect, ...
     """The effects that these recordings could show: those of examined sites whose sensor was there."""
     sites = SITES_OF_DRIVE[observations[0].drive]
     found = [effect for effect in observations[0].composition.effects if effect.site in sites and effect.named]
-    if not any(channel.name.startswith("pressure") for one in observations for channel in one.measured):
+    if not any(channel.name.startswith("pressure") for observation in observations for channel in observation.measured):
         found = [effect for effect in found if "measured_pressure_a" not in effect.needs]
     return tuple(found)
 
@@ -46,7 +46,7 @@ def initial_guesses(effect: Effect, scales: Scales) -> tuple[InitialGuess, ...]:
         choices.append([min(max(origin + scale * at, row.lower), row.upper) for at in row.starts])
     names = effect.parameter_names()
     found = [InitialGuess(effect, dict(zip(names, values, strict=True))) for values in product(*choices)]
-    return tuple(one for one in found if all(_may_be(one, row) for row in effect.parameters))
+    return tuple(guess for guess in found if all(_may_be(guess, row) for row in effect.parameters))
 
 
 def _may_be(guess: InitialGuess, row: Parameter) -> bool:

@@ -67,7 +67,7 @@ def compete(
     progress("screening the catalogue")
     guesses = [guess for effect in candidates for guess in initial_guesses(effect, scales)]
     screened = screen_in_time(problem, calibrated, guesses)
-    score_tests = tuple(one for one in screened if one.windows is None)
+    score_tests = tuple(score_test for score_test in screened if score_test.windows is None)
     limited = time_limited_effects(problem, calibrated, guesses, screened, ENOUGH, progress)
     found: Found = {}
     best = min([calibrated.objective, *(result.objective for result in limited.values())])
@@ -96,13 +96,13 @@ def _ranked(problem: Problem, calibrated: Fit, found: Found, score_tests: tuple[
 
 def residual_variance(nominal: Fit, entries: Sequence[Entry]) -> float:
     """Variance of the residual in units of the assumed noise, under the best model and never below one."""
-    best = min([nominal, *(entry.fit for entry in entries)], key=lambda one: one.objective)
+    best = min([nominal, *(entry.fit for entry in entries)], key=lambda result: result.objective)
     return max(1.0, best.data / best.count)
 
 
 def rank(problem: Problem, nominal: Fit, found: Found) -> tuple[Entry, ...]:
     """Scores: the gain over the nominal model in units of the residual's variance, less the cost of its parameters."""
-    best = min([nominal, *found.values()], key=lambda one: one.objective)
+    best = min([nominal, *found.values()], key=lambda result: result.objective)
     variance = max(1.0, best.data / best.count)
     entries = []
     for hypothesis, result in found.items():

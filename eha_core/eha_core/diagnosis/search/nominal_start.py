@@ -27,26 +27,28 @@ NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 
 def with_dynamics_held(problem: Problem, calibrated: Fit) -> Fit | None:
     """The calibration with the valve's dynamics at their nominal values; None where it hardly moved them."""
-    late = {one.name: one.reference for one in calibrated.free if is_one_of(one.name, LATE)}
+    late = {parameter.name: parameter.reference for parameter in calibrated.free if is_one_of(parameter.name, LATE)}
     if all(abs(calibrated.values[name] / given - 1.0) < BIASED for name, given in late.items()):
         return None
-    rest = [one for one in calibrated.free if one.name not in late]
+    rest = [parameter for parameter in calibrated.free if parameter.name not in late]
     held = fit(problem, {**calibrated.values, **late}, rest, calibrated.states, iterations=5)
     return set_free(held, calibrated.free)
 
 
 def at_nominal_values(problem: Problem, calibrated: Fit) -> Fit:
     """The calibration with every nominal parameter back at its nominal value, only the windows' starts fitted again."""
-    given = {one.name: one.reference for one in calibrated.free if is_one_of(one.name, NOMINAL_NAMES)}
+    given = {
+        parameter.name: parameter.reference for parameter in calibrated.free if is_one_of(parameter.name, NOMINAL_NAMES)
+    }
     return set_free(fit(problem, {**calibrated.values, **given}, (), calibrated.states, iterations=5), calibrated.free)
 
 
 def is_improbable(result: Fit) -> bool:
     """Whether a fit took a nominal parameter further from its nominal value than that is likely to be off."""
     return any(
-        abs(float(at)) > IMPROBABLE * one.prior_deviation
-        for one, at in zip(result.free, result.q, strict=True)
-        if is_one_of(one.name, NOMINAL_NAMES)
+        abs(float(at)) > IMPROBABLE * parameter.prior_deviation
+        for parameter, at in zip(result.free, result.q, strict=True)
+        if is_one_of(parameter.name, NOMINAL_NAMES)
     )
 
 

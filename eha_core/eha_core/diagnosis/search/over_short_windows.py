@@ -34,10 +34,10 @@ def grown_over_short_windows(search: Search, nominal: Candidate) -> Candidate:
         scout = replace(search, problem=problem, found=found, shorter=search.shorter[:1], short=True)
         grown = settle(scout, grow(scout, Candidate(NOTHING, nothing)))
         if grown.hypothesis != NOTHING:
-            as_free = {one.name: one for one in free}
-            moved = tuple(as_free.get(one.name, one) for one in grown.fit.free)
+            as_free = {parameter.name: parameter for parameter in free}
+            moved = tuple(as_free.get(parameter.name, parameter) for parameter in grown.fit.free)
             search.keep(grown.hypothesis, to_long_windows(search.problem, search.shorter, grown.fit.values, moved))
-        best = min(search, key=lambda one: one.fit.objective)
+        best = min(search, key=lambda candidate: candidate.fit.objective)
         if best.times_noise < UNFITTED:
             break
     return best

@@ -62,11 +62,13 @@ def planned_refits(
     if dynamics_held is None:
         return tuple(chosen)
     # what the dynamics could imitate shows only while they are held
-    held = set_free(dynamics_held, tuple(one for one in base.free if not is_one_of(one.name, LATE)))
+    held = set_free(dynamics_held, tuple(parameter for parameter in base.free if not is_one_of(parameter.name, LATE)))
     again = one_each(screen(problem, held, initial_guesses), TRIED_WITH_DYNAMICS_HELD)
-    known = {one.score_test.guess.effect.id for one in chosen if one.from_nominal}
-    from_nominal = [PlannedRefit(dynamics_held, one, True) for one in again if one.guess.effect.id not in known]
-    return (*chosen, *(one for one in from_nominal if one.score_test.gain > HELD_SHARE * least))
+    known = {planned.score_test.guess.effect.id for planned in chosen if planned.from_nominal}
+    from_nominal = [
+        PlannedRefit(dynamics_held, score_test, True) for score_test in again if score_test.guess.effect.id not in known
+    ]
+    return (*chosen, *(planned for planned in from_nominal if planned.score_test.gain > HELD_SHARE * least))
 
 
 def refit_with(problem: Problem, planned: PlannedRefit, best: float) -> Fit:
@@ -74,7 +76,9 @@ def refit_with(problem: Problem, planned: PlannedRefit, best: float) -> Fit:
     base, score_test = planned.base, planned.score_test
     effect = score_test.guess.effect
     if planned.from_nominal:
-        untouched = {one.name: one.reference for one in base.free if is_one_of(one.name, NOMINAL_NAMES)}
+        untouched = {
+            parameter.name: parameter.reference for parameter in base.free if is_one_of(parameter.name, NOMINAL_NAMES)
+        }
         values = {**base.values, **untouched, **score_test.guess.values}
         free = with_effects(base.free, [effect], values)
         return fit_in_stages(problem, values, free, give_up_above=best + OUT_OF_REACH)

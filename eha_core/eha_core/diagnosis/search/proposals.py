@@ -50,8 +50,8 @@ def proposals(search: Search, base: Candidate, score_tests: Sequence[ScoreTest],
     ]
     # where only noise is left no other form can be better
     forms = in_another_form(search, base) if base.times_noise > NEAR_NOISE else ()
-    new_forms = [one for one in forms if one.hypothesis not in search.found]
-    return [*new_forms, *(one for one in added if one.predicted > least)]
+    new_forms = [proposal for proposal in forms if proposal.hypothesis not in search.found]
+    return [*new_forms, *(proposal for proposal in added if proposal.predicted > least)]
 
 
 def at_the_fit(search: Search, base: Candidate, most: int) -> list[Proposal]:
@@ -64,7 +64,7 @@ def _leading(score_tests: Sequence[ScoreTest], base: Candidate) -> Sequence[Scor
     """Those whose predicted gain is worth a refit beside the first's."""
     if base.times_noise > FAR_FROM_NOISE:
         return score_tests
-    return [one for one in score_tests if one.gain > LEAST_PREDICTED * score_tests[0].gain]
+    return [score_test for score_test in score_tests if score_test.gain > LEAST_PREDICTED * score_tests[0].gain]
 
 
 def guesses_beside(search: Search, base: Candidate) -> list[InitialGuess]:
@@ -74,7 +74,7 @@ def guesses_beside(search: Search, base: Candidate) -> list[InitialGuess]:
 
 
 def _at_the_fit(base: Candidate, score_tests: Sequence[ScoreTest]) -> Iterator[Proposal]:
-    always = [one for one in score_tests if one.windows is None]
+    always = [score_test for score_test in score_tests if score_test.windows is None]
     for score_test in _leading(one_each(always, AT_THE_FIT), base):
         yield _proposal(base, base.fit, score_test)
 
@@ -92,7 +92,7 @@ def _with_dynamics_held(search: Search, base: Candidate, begin: list[InitialGues
     if held is None:
         return
     # what the dynamics could imitate shows only while they are held
-    at = set_free(held, tuple(one for one in base.fit.free if not is_one_of(one.name, LATE)))
+    at = set_free(held, tuple(parameter for parameter in base.fit.free if not is_one_of(parameter.name, LATE)))
     for score_test in one_each(screen(search.problem, at, begin), TRIED_WITH_DYNAMICS_HELD):
         proposal = _proposal(base, held, score_test, in_stages=True)
         yield replace(proposal, predicted=proposal.predicted / HELD_SHARE)
@@ -110,11 +110,11 @@ def in_another_form(search: Search, base: Candidate) -> Iterator[Proposal]:
 
     A law that acts for a while got its form when its interval was found.
     """
-    for member in (one for one in base.hypothesis.members if not one.limited):
+    for member in (member for member in base.hypothesis.members if not member.limited):
         rest = base.hypothesis.without(member)
         values, free = without_effect(base.fit, member.effect)
         forms = [effect for effect in search.applicable if member.effect.kind and effect.kind == member.effect.kind]
-        for effect in (one for one in forms if one.id != member.id):
+        for effect in (form for form in forms if form.id != member.id):
             for guess in initial_guesses(effect, search.scales):
                 begun = {**values, **_as_large(guess, member, base.fit)}
                 yield Proposal(rest.with_effects([effect]), begun, with_effects(free, [effect], begun), base.fit.states)

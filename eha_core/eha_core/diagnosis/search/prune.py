@@ -43,7 +43,7 @@ def wald(result: Fit, effect: Effect) -> float:
     """What dropping an effect would cost in chi^2, as the curvature at the fit has it."""
     off = neutral(effect)
     switches = {f"{effect.id}.{row.name}" for row in effect.parameters if row.switches}
-    names = [one.name for one in result.free if is_one_of(one.name, switches)]
+    names = [parameter.name for parameter in result.free if is_one_of(parameter.name, switches)]
     if not names:
         return 0.0
     distance = np.array([result.values[name] - off[base_name(name)] for name in names])
@@ -73,7 +73,7 @@ def refit_gradually(search: Search, candidate: Candidate, member: Member) -> Can
         }
         shapes = {name: value for name, value in at.values.items() if is_one_of(name, member.effect.parameter_names())}
         step = fit(search.problem, {**values, **shapes, **held}, free, states, iterations=ON_THE_WAY)
-        values, states = {**values, **{one.name: step.values[one.name] for one in free}}, step.states
+        values, states = {**values, **{parameter.name: step.values[parameter.name] for parameter in free}}, step.states
     proposal = Proposal(candidate.hypothesis.without(member), values, free, states)
     return search.try_proposal(proposal, REFITTED)
 
@@ -101,7 +101,7 @@ def prune(search: Search, best: Candidate) -> Candidate:
     while len(best.hypothesis.members) > 1:
         simpler = {member: refit_without(search, best, member) for member in best.hypothesis.members}
         told = {member: wald(best.fit, member.effect) for member in simpler}
-        worth = {member: min(_lost(one, best), told[member]) for member, one in simpler.items()}
+        worth = {member: min(_lost(candidate, best), told[member]) for member, candidate in simpler.items()}
         explained = search.found[NOTHING].objective - best.fit.objective
         asked = {member: asked_of(member, worth, best, explained) for member in simpler}
         for member in simpler:
@@ -111,9 +111,9 @@ def prune(search: Search, best: Candidate) -> Candidate:
                 simpler[member] = search.go_on(simpler[member], FURTHER, give_up_above=enough)
             if max(asked[member], told[member]) < _lost(simpler[member], best) < OVER * explained:
                 simpler[member] = refit_gradually(search, best, member)
-        lost = {member: _lost(one, best) for member, one in simpler.items()}
+        lost = {member: _lost(candidate, best) for member, candidate in simpler.items()}
         least = min(lost, key=lambda member: lost[member] / asked[member])
-        search.progress(f"chi^2 lost without: {', '.join(f'{one.id} {loss:.3g}' for one, loss in lost.items())}")
+        search.progress(f"chi^2 lost without: {', '.join(f'{member.id} {loss:.3g}' for member, loss in lost.items())}")
         if lost[least] > asked[least]:
             break
         best = simpler[least]

@@ -41,7 +41,9 @@ class ScoreTest:
 
 def screen(problem: Problem, calibrated: Fit, guesses: Sequence[InitialGuess]) -> tuple[ScoreTest, ...]:
     """The score test of every guess that acts all the time, the largest first."""
-    return tuple(one for one in screen_in_time(problem, calibrated, guesses) if one.windows is None)
+    return tuple(
+        score_test for score_test in screen_in_time(problem, calibrated, guesses) if score_test.windows is None
+    )
 
 
 def screen_in_time(problem: Problem, calibrated: Fit, guesses: Sequence[InitialGuess]) -> tuple[ScoreTest, ...]:
@@ -58,7 +60,7 @@ def screen_in_time(problem: Problem, calibrated: Fit, guesses: Sequence[InitialG
     for first in range(0, len(guesses), room):
         some = guesses[first : first + room]
         found += _score_tests(problem, calibrated, linear, some, spans, (system, towards))
-    return tuple(sorted(found, key=lambda one: -one.gain))
+    return tuple(sorted(found, key=lambda score_test: -score_test.gain))
 
 
 def _score_tests(
@@ -76,7 +78,7 @@ def _score_tests(
     ran_away = ~np.all(np.isfinite(columns), axis=0)
     columns[:, ran_away], shifts[:, :, ran_away] = 0.0, 0.0
     found = _by_span(problem, calibrated, linear, columns, shifts, spans)
-    recordings = [range(*np.searchsorted(spans, (one.start, one.stop))) for one in shooting.recordings]
+    recordings = [range(*np.searchsorted(spans, (windows.start, windows.stop))) for windows in shooting.recordings]
 
     def score_tests(place: int) -> list[ScoreTest]:
         guess = guesses[place]
@@ -88,15 +90,19 @@ def _score_tests(
             return [_in_each_recording(guess, energy, along, imitated, recordings)]
         return _best_intervals(guess, spans, energy, along, imitated, recordings)
 
-    return [one for several in each(score_tests, range(len(guesses))) for one in several]
+    return [score_test for several in each(score_tests, range(len(guesses))) for score_test in several]
 
 
 def _spans(recordings: Sequence[range]) -> Integers:
     """The windows at which spans begin, and the end. A span is a window where there are few, and of one recording."""
     windows = recordings[-1].stop
     edges = [
-        np.linspace(one.start, one.stop, min(len(one), max(1, round(MOST_SPANS * len(one) / windows))) + 1)
-        for one in recordings
+        np.linspace(
+            recording.start,
+            recording.stop,
+            min(len(recording), max(1, round(MOST_SPANS * len(recording) / windows))) + 1,
+        )
+        for recording in recordings
     ]
     found: Integers = np.unique(np.round(np.concatenate(edges)).astype(np.int64))
     return found
@@ -189,7 +195,7 @@ def _best_intervals(
     count = len(energy)
     first, last = np.triu_indices(count)
     stop = last + 1
-    begins = np.repeat([one.start for one in recordings], [len(one) for one in recordings])
+    begins = np.repeat([recording.start for recording in recordings], [len(recording) for recording in recordings])
     total = np.concatenate([[0.0], np.cumsum(energy)])
     towards = np.concatenate([[0.0], np.cumsum(along)])
     square = np.zeros((count + 1, count + 1))
@@ -216,10 +222,10 @@ def _best_intervals(
 def one_each(score_tests: Sequence[ScoreTest], most: int) -> tuple[ScoreTest, ...]:
     """The best score test of each effect, `most` of them at most. A size cannot be negative where its bounds say so."""
     best: dict[str, ScoreTest] = {}
-    for one in score_tests:
-        if one.factor < 0.0 and not _reversible(one.guess):
+    for score_test in score_tests:
+        if score_test.factor < 0.0 and not _reversible(score_test.guess):
             continue
-        best.setdefault(one.guess.effect.id, one)
+        best.setdefault(score_test.guess.effect.id, score_test)
     return tuple(best.values())[:most]
 
 

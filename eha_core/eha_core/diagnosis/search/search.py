@@ -27,18 +27,21 @@ def beside_the_singles(search: Search) -> Candidate:
 
     Such an effect bends what is fitted without it, and the best single effect may be one that the rig does not have.
     """
-    singles = sorted((one for one in search if len(one.hypothesis.members) == 1), key=lambda one: one.fit.objective)
+    singles = sorted(
+        (candidate for candidate in search if len(candidate.hypothesis.members) == 1),
+        key=lambda candidate: candidate.fit.objective,
+    )
     for single in singles[:SINGLES]:
-        if not single.hypothesis.limited and any(one.resolution > 0.0 for one in single.fit.free):
+        if not single.hypothesis.limited and any(parameter.resolution > 0.0 for parameter in single.fit.free):
             # what sets in at an instant explains little beside the right one, and another for a while seems better
             converged = converge(search.problem, {single.hypothesis: single.fit}, search.progress)
             search.keep(single.hypothesis, converged[single.hypothesis])
-    best = min(search, key=lambda one: one.fit.objective)
+    best = min(search, key=lambda candidate: candidate.fit.objective)
     if best.times_noise < NEAR_NOISE:
         return best
     for single in map(search.again, singles[1:SINGLES]):  # beside the first it is looked for when the set grows
         try_for_a_while(search, single, screen_in_time(search.problem, single.fit, guesses_beside(search, single)))
-    return min(search, key=lambda one: one.fit.objective)
+    return min(search, key=lambda candidate: candidate.fit.objective)
 
 
 def search_sets(search: Search, nominal: Candidate) -> Candidate:
@@ -47,7 +50,7 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
     Begins at the best single effect. Where it ends with more than noise left, it may have begun wrongly, its dry
     friction may have another form, or a member another's place.
     """
-    best = min(search, key=lambda one: one.fit.objective)
+    best = min(search, key=lambda candidate: candidate.fit.objective)
     if best.hypothesis.limited and not NEAR_NOISE < best.times_noise < FAR_FROM_NOISE:
         return best  # it explains all, or led the single effects and hardly explains anything
     if best.times_noise > NEAR_NOISE:

@@ -72,9 +72,9 @@ def _near(search: Search, best: Candidate) -> Found:
     """The best set and those of its size that come near it, fitted until they can be compared."""
     size, behind = len(best.hypothesis.members), CLOSE * max(1.0, best.times_noise)
     near = {
-        one.hypothesis: one.fit
-        for one in search
-        if len(one.hypothesis.members) == size and one.fit.objective < best.fit.objective + behind
+        candidate.hypothesis: candidate.fit
+        for candidate in search
+        if len(candidate.hypothesis.members) == size and candidate.fit.objective < best.fit.objective + behind
     }
     return warm_start(search.problem, converge(search.problem, {**near, best.hypothesis: best.fit}, search.progress))
 
@@ -83,7 +83,7 @@ def _left_over(search: Search, best: Candidate) -> dict[str, float]:
     """What one more effect beside the best is predicted to gain, the most of each site."""
     gains: dict[str, float] = {}
     for proposal in at_the_fit(search, search.again(best), len(search.applicable)):
-        added = next(one for one in proposal.hypothesis.members if one not in best.hypothesis.members)
+        added = next(member for member in proposal.hypothesis.members if member not in best.hypothesis.members)
         gains[added.effect.site] = max(proposal.predicted, gains.get(added.effect.site, 0.0))
     return gains
 

@@ -45,10 +45,12 @@ def _against_its_rivals(search: Search, best: Candidate, held_against: set[Hypot
     larger = rivals_with_one_more(search, best, needed)
     while True:
         try_forms(search, best, in_another_form(search, best))
-        leading = for_its_cost(search, [one for one in search if len(one.hypothesis.members) == size])
+        leading = for_its_cost(search, [candidate for candidate in search if len(candidate.hypothesis.members) == size])
         if leading.hypothesis == best.hypothesis:
             break
         # where friction sticks, the fit of a simpler form may have stopped above its optimum, and goes on from here
         best = leading
     # an effect more has to gain what it could not by chance
-    return min((best, *larger), key=lambda one: one.fit.objective + (needed if one in larger else 0.0))
+    return min(
+        (best, *larger), key=lambda candidate: candidate.fit.objective + (needed if candidate in larger else 0.0)
+    )

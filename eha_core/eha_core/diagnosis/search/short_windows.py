@@ -42,7 +42,7 @@ def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:
 def set_in_each_form(search: Search, best: Candidate) -> Candidate:
     """The best so far when the forms of the set's dry friction were led from short windows to long ones beside the
     other members."""
-    member = next(one for one in best.hypothesis.members if one.effect.kind == STICKING)
+    member = next(member for member in best.hypothesis.members if member.effect.kind == STICKING)
     return _each_form(search, best.hypothesis.without(member), best.fit, *without_effect(best.fit, member.effect))
 
 
@@ -56,11 +56,11 @@ def _each_form(
             own = first_guess(effect, search.scales)
             found = over_the_shortest(search.shorter, {**begun, **own}, with_effects(free, [effect], own))
             led.append((found.objective, effect, found.values))
-        for _, effect, reached_by in sorted(led, key=lambda one: one[0])[:LED]:
+        for _, effect, reached_by in sorted(led, key=lambda form: form[0])[:LED]:
             its = with_effects(free, [effect], reached_by)
             found = to_long_windows(search.problem, search.shorter, reached_by, its)
             search.keep(rest.with_effects([effect]), found)
-        reached = min(search, key=lambda one: one.fit.objective)
+        reached = min(search, key=lambda candidate: candidate.fit.objective)
         if reached.times_noise < UNFITTED:
             break
     return reached
@@ -69,7 +69,7 @@ def _each_form(
 def _begins(at: Fit, values: Mapping[str, float], free: Sequence[FreeParameter]) -> list[Mapping[str, float]]:
     """From where sets are led: the nominal values, which nothing has biased; then those of a fit, where it lies
     improbably far from them."""
-    nominal = at_nominal(values, tuple(one for one in free if not is_of_an_effect(one)))
+    nominal = at_nominal(values, tuple(parameter for parameter in free if not is_of_an_effect(parameter)))
     return [nominal, values] if is_improbable(at) else [nominal]
 
 
@@ -113,13 +113,16 @@ def first_guess(effect: Effect, scales: Scales) -> dict[str, float]:
 def sticks(hypothesis: Hypothesis) -> bool:
     """Whether one of the effects can hold the piston at rest, and always acts: short windows would lose when one that
     does not begins and ceases to."""
-    return bool(_that_stick([one.effect for one in hypothesis.members if not one.limited]))
+    return bool(_that_stick([member.effect for member in hypothesis.members if not member.limited]))
 
 
 def _that_stick(effects: Sequence[Effect]) -> list[Effect]:
-    return [one for one in effects if one.kind == STICKING]
+    return [effect for effect in effects if effect.kind == STICKING]
 
 
 def at_nominal(values: Mapping[str, float], free: tuple[FreeParameter, ...]) -> dict[str, float]:
     """Values with those that are free at their nominal ones."""
-    return {**values, **{one.name: one.reference for one in free if base_name(one.name) in values}}
+    return {
+        **values,
+        **{parameter.name: parameter.reference for parameter in free if base_name(parameter.name) in values},
+    }

@@ -30,10 +30,14 @@ def from_a_simpler_form(search: Search, best: Candidate) -> Candidate:
     """The best set, or what grows from it in a form with fewer parameters where that explains as much for its cost."""
     simpler = [proposal for proposal in in_another_form(search, best) if len(proposal.free) < len(best.fit.free)]
     behind = max(CLOSE, OF_EXPLAINED * (search.found[NOTHING].objective - best.fit.objective))
-    close = [one for one in try_forms(search, best, simpler, behind) if one.fit.objective < best.fit.objective + behind]
+    close = [
+        candidate
+        for candidate in try_forms(search, best, simpler, behind)
+        if candidate.fit.objective < best.fit.objective + behind
+    ]
     if not close:
         return best
-    grow(search, min(close, key=lambda one: one.fit.objective))
+    grow(search, min(close, key=lambda candidate: candidate.fit.objective))
     # the richer form may still have the least chi^2, and what grew beside the plainer one costs less
     return for_its_cost(search, list(search))
 
@@ -51,6 +55,6 @@ def try_forms(
 
 def for_its_cost(search: Search, candidates: Sequence[Candidate]) -> Candidate:
     """The one of least chi^2 when every parameter that it makes use of has been paid for."""
-    least = min(max(1.0, one.times_noise) for one in candidates)
+    least = min(max(1.0, candidate.times_noise) for candidate in candidates)
     dear = parameter_cost(search.problem.count(), least)
-    return min(candidates, key=lambda one: one.fit.objective + dear * parameters_used(one.fit))
+    return min(candidates, key=lambda candidate: candidate.fit.objective + dear * parameters_used(candidate.fit))

@@ -60,7 +60,7 @@ def time_limited_effects(
     if windows is None:
         return {}
     rest = _rest(problem, windows)
-    untouched = {one.name: one.reference for one in calibrated.free}
+    untouched = {parameter.name: parameter.reference for parameter in calibrated.free}
     outside = calibrated
     if len(rest.windows) > 1:
         fitted = fit_in_stages(rest, {**calibrated.values, **untouched}, calibrated.free)
@@ -106,8 +106,12 @@ def time_limited_beside(
 def _outstanding(score_tests: Sequence[ScoreTest], least: float, times: float) -> tuple[int, int] | None:
     """The windows in a row in which an effect is predicted to gain most; None where that is less than `least`, or than
     so many times what any effect gains that always acts."""
-    always = max([0.0, *(one.gain for one in score_tests if one.windows is None)])
-    best = max((one for one in score_tests if one.windows is not None), key=lambda one: one.gain, default=None)
+    always = max([0.0, *(score_test.gain for score_test in score_tests if score_test.windows is None)])
+    best = max(
+        (score_test for score_test in score_tests if score_test.windows is not None),
+        key=lambda score_test: score_test.gain,
+        default=None,
+    )
     return None if best is None or best.gain < max(least, times * always) else best.windows
 
 
@@ -162,10 +166,10 @@ def _span_of(problem: Problem, windows: tuple[int, int]) -> tuple[float, float]:
 def _one_each(score_tests: Sequence[ScoreTest]) -> list[ScoreTest]:
     """The best of each effect; none of one that has an instant of its own at which it sets in."""
     best: dict[str, ScoreTest] = {}
-    for one in score_tests:
-        sets_in = any(row.relative_to == "time" for row in one.guess.effect.parameters)
-        if one.windows is not None and not sets_in:
-            best.setdefault(one.guess.effect.id, one)
+    for score_test in score_tests:
+        sets_in = any(row.relative_to == "time" for row in score_test.guess.effect.parameters)
+        if score_test.windows is not None and not sets_in:
+            best.setdefault(score_test.guess.effect.id, score_test)
     return list(best.values())[:TRIED]
 
 
@@ -203,7 +207,7 @@ def _located(problem: Problem, result: Fit, effect: Effect) -> _Instants:
             beside = best.values[name] + spacing * np.arange(-ABREAST, ABREAST + 1)
             at_once = partial(_moved, problem, best, name)
             tried = each(at_once, np.unique(np.clip(beside, *within)).tolist())
-            best = min([best, *tried], key=lambda one: one.objective)
+            best = min([best, *tried], key=lambda model: model.objective)
     return _Instants(tuple(best.values[name] for name in names), bounds, best.states)
 
 
@@ -213,7 +217,7 @@ def _moved(problem: Problem, result: Fit, name: str, at: float) -> Fit:
 
 def _sharpened(problem: Problem, result: Fit) -> Fit:
     """The fit gone on with, its instants' derivatives taken over less: they are close by now."""
-    free = tuple(replace(one, resolution=one.resolution * SHARPER) for one in result.free)
+    free = tuple(replace(parameter, resolution=parameter.resolution * SHARPER) for parameter in result.free)
     exact = replace(problem, slope_step=problem.shooting.step_size)
     again = fit(exact, result.values, free, result.states, iterations=8)
     return again if again.objective < result.objective else result

@@ -30,7 +30,7 @@ def warm_start(problem: Problem, found: Found) -> Found:
     warm_started = dict(found)
     for hypothesis in others[:WARM_STARTED]:
         result = found[hypothesis]
-        both = (one.name for one in result.free if one.name in best.values)
+        both = (parameter.name for parameter in result.free if parameter.name in best.values)
         shared = {name: best.values[name] for name in both if is_one_of(name, NOMINAL_NAMES)}
         shared |= _same_interval(hypothesis, leading, best.values)
         kindred = _of_the_same_kind(hypothesis.effects, leading.effects, best.values)
@@ -46,7 +46,7 @@ def _to_their_ends(problem: Problem, found: Found) -> Found:
     starts as they are and from those measured: a rival that stopped a little short would seem to be told apart."""
     exact = replace(problem, slope_step=problem.shooting.step_size)
     best = min(result.objective for result in found.values())
-    near = {one: at for one, at in found.items() if best < at.objective < best + CONVERGE_WITHIN}
+    near = {hypothesis: at for hypothesis, at in found.items() if best < at.objective < best + CONVERGE_WITHIN}
     ended = dict(found)
     for hypothesis, at in near.items():
         for states in (at.states, None):
@@ -58,7 +58,7 @@ def _same_interval(hypothesis: Hypothesis, other: Hypothesis, values: Mapping[st
     """The interval in which the other's effect acts, for this one's, where each has one that acts for a while."""
     if len(hypothesis.limited) != 1 or len(other.limited) != 1:
         return {}
-    names = (one.limited[0].effect.acting_names() for one in (hypothesis, other))
+    names = (either.limited[0].effect.acting_names() for either in (hypothesis, other))
     return {own: values[theirs] for own, theirs in zip(*names, strict=True)}
 
 
@@ -84,8 +84,8 @@ def refit_nominal(problem: Problem, calibrated: Fit, others: Sequence[Fit]) -> F
     """
     if not others:
         return calibrated
-    best = min(others, key=lambda one: one.objective)
-    names = {one.name for one in calibrated.free}
+    best = min(others, key=lambda result: result.objective)
+    names = {parameter.name for parameter in calibrated.free}
     values = {name: best.values[name] if name in names else value for name, value in calibrated.values.items()}
     again = fit(problem, values, calibrated.free, best.states)
     return again if again.objective < calibrated.objective else calibrated

@@ -131,13 +131,13 @@ def fit_axis(start: Axis, windows: list[Windows], with_load: bool) -> Axis:
     scale = np.array([start.mass, mean, max(mean, 10.0) if not with_load else 10.0, max(start.friction, 5.0)])
 
     def axis(values: Array) -> Axis:
-        mass, one, other, friction = (scale * values).tolist()
+        mass, forward, other, friction = (scale * values).tolist()
         friction = max(friction, 0.0)
-        return Axis(mass, one, one, friction, other) if with_load else Axis(mass, one, other, friction)
+        return Axis(mass, forward, forward, friction, other) if with_load else Axis(mass, forward, other, friction)
 
     def residual(values: Array) -> Array:
         made = axis(values)
-        return 1e3 * np.concatenate([from_fitted_starts(made, one).ravel() for one in windows])
+        return 1e3 * np.concatenate([from_fitted_starts(made, each).ravel() for each in windows])
 
     values = np.array(first) / scale
     for step in SLOPE_STEPS:

@@ -66,7 +66,7 @@ def ask(data: Path, out: Path) -> list[Question]:
             "what does a viscous-only model leave out?",
             "viscous friction by direction and dry friction, no load",
             " + ".join(names) or str(diagnosis.get("verdict", "none")),
-            DIRECTIONAL in names and any(one in names for one in DRY) and {*names} <= {DIRECTIONAL, *DRY},
+            DIRECTIONAL in names and any(form in names for form in DRY) and {*names} <= {DIRECTIONAL, *DRY},
         ),
         _both_recordings(data),
         _ahead(data, out, diagnosis),
@@ -83,10 +83,10 @@ def read(data: Path, name: str, *wanted: str) -> list[Array]:
     path = data / f"{name}.mat"
     if not path.is_file():
         raise EhaError(f"{path}: is not there; --real takes the folder that holds emps/ with the published files")
-    found = loadmat(path, variable_names=["vir" if one == "force" else one for one in wanted])
+    found = loadmat(path, variable_names=["vir" if key == "force" else key for key in wanted])
     return [
-        MOTOR_GAIN * found["vir"].ravel().astype(float) if one == "force" else found[one].ravel().astype(float)
-        for one in wanted
+        MOTOR_GAIN * found["vir"].ravel().astype(float) if key == "force" else found[key].ravel().astype(float)
+        for key in wanted
     ]
 
 
@@ -103,7 +103,7 @@ def axis_of(diagnosis: Mapping[str, Any]) -> Axis:
     """The axis that a diagnosis found; of dry friction that clings before it slides, as it slides."""
     fitted = {row["name"]: float(row["fitted"]) for row in diagnosis.get("parameters") or ()}
     effects = _effects_of(diagnosis)
-    dry = next((effects[one] for one in DRY if one in effects), {})
+    dry = next((effects[form] for form in DRY if form in effects), {})
     force = dry.get("force", 0.0)
     mean = fitted.get("damping_coefficient", VISCOUS_ONLY["damping_coefficient"])
     ratio = effects.get(DIRECTIONAL, {}).get("ratio", 0.0)
@@ -121,8 +121,8 @@ def axis_of(diagnosis: Mapping[str, Any]) -> Axis:
 def _effects_of(diagnosis: Mapping[str, Any]) -> dict[str, dict[str, float]]:
     """The named effects' parameters [SI]."""
     return {
-        one["id"]: {name: float(value["value"]) for name, value in one["parameters"].items()}
-        for one in diagnosis.get("effects") or ()
+        effect["id"]: {name: float(value["value"]) for name, value in effect["parameters"].items()}
+        for effect in diagnosis.get("effects") or ()
     }
 
 
@@ -135,7 +135,7 @@ def _both_recordings(data: Path) -> Question:
     windows = [_windows(data, name, WINDOW) for name in (FOUND_ON, TEST)]
     found = fit_axis(PUBLISHED, windows, with_load=False)
     rival = fit_axis(PUBLISHED, windows, with_load=True)
-    errors, others = ([rms(from_fitted_starts(one, each)) for each in windows] for one in (found, rival))
+    errors, others = ([rms(from_fitted_starts(axis, each)) for each in windows] for axis in (found, rival))
     return Question(
         RIG,
         f"one set of values for both recordings, windows of {WINDOW:g} s from fitted starts",
@@ -156,7 +156,7 @@ def _ahead(data: Path, out: Path, diagnosis: Mapping[str, Any]) -> Question:
         name: seal(out, name, simulate(axis, test.force, test.position[:, 0], speed, test.period))
         for name, axis in axes.items()
     }
-    found, fitted, published = (1e3 * rms(one.open() - test.position) for one in sealed.values())
+    found, fitted, published = (1e3 * rms(prediction.open() - test.position) for prediction in sealed.values())
     return Question(
         RIG,
         f"position on the test recording, {AHEAD:g} s ahead from measured starts",

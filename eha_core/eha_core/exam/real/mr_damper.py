@@ -73,7 +73,7 @@ def _parts(laws: dict[str, Law]) -> list[Question]:
 def _growth(laws: dict[str, Law]) -> Question:
     found = [law.values[HYSTERETIC]["force"] for law in laws.values() if HYSTERETIC in law.ids]
     apart = all(b.value - a.value > 1.96 * np.hypot(a.std, b.std) for a, b in zip(found[:-1], found[1:], strict=True))
-    told = ", ".join(f"{one.value:.0f} ± {1.96 * one.std:.0f}" for one in found)
+    told = ", ".join(f"{force.value:.0f} ± {1.96 * force.std:.0f}" for force in found)
     return Question(
         RIG, "dry friction over the current [N]", "grows with the current", told, apart and len(found) == len(laws)
     )
@@ -109,7 +109,7 @@ def _frequencies(data: Path, out: Path) -> list[Question]:
             questions.append(
                 Question(
                     RIG,
-                    f"force at {ampere:g} A and {TESTS[unseen]} from {' and '.join(TESTS[one] for one in others)}",
+                    f"force at {ampere:g} A and {TESTS[unseen]} from {' and '.join(TESTS[test] for test in others)}",
                     f"measured; within {100 * LARGEST_ERROR:.0f} % of its deviation",
                     f"{100 * error:.1f} %",
                     error <= LARGEST_ERROR,

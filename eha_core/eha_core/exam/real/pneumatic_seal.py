@@ -91,7 +91,7 @@ def _motion(data: Path, name: str, pressure: int, with_force: bool = True) -> Mo
 
 
 def _left_out(data: Path, out: Path, name: str, pressure: int, form: tuple[str, ...]) -> Question:
-    law = fit_law([_motion(data, name, one) for one in PRESSURES if one != pressure], form)
+    law = fit_law([_motion(data, name, other) for other in PRESSURES if other != pressure], form)
     motion = _motion(data, name, pressure, with_force=False)
     time = 1e-3 * read(data, name, pressure, (0,))
     sealed = seal(out, f"{name}_{pressure}bar", np.interp(time - time[0], motion.time, predict(law, motion)))

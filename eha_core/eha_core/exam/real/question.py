@@ -27,8 +27,10 @@ class Question:
 def as_markdown(questions: Sequence[Question]) -> str:
     """The table, with how many are met at its end."""
     lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"]
-    for one in questions:
-        answer = f"{one.answer} (sealed {one.seal})" if one.seal else one.answer
-        lines.append(f"| {one.rig} | {one.asked} | {one.known} | {answer} | {'yes' if one.met else 'no'} |")
-    met = sum(one.met for one in questions)
+    for question in questions:
+        answer = f"{question.answer} (sealed {question.seal})" if question.seal else question.answer
+        lines.append(
+            f"| {question.rig} | {question.asked} | {question.known} | {answer} | {'yes' if question.met else 'no'} |"
+        )
+    met = sum(question.met for question in questions)
     return "\n".join([*lines, "", f"{met} of {len(questions)} questions are met.", ""])

@@ -17,7 +17,7 @@ from eha_core.report.laws.unknown import unknown_law
 __all__ = ["Law", "laws"]
 
 _SITES: dict[str, Callable[[Models, NamedEffect], Law | None]] = {
-    one.__name__.rpartition(".")[2]: one.law for one in (chamber, force, orifice, schedule, sensor, supply)
+    site.__name__.rpartition(".")[2]: site.law for site in (chamber, force, orifice, schedule, sensor, supply)
 }
 
 

@@ -27,7 +27,7 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     a, b = models.state("pressure_a"), models.state("pressure_b")
     if not len(a):
         return None
-    values = {name: one.value for name, one in effect.parameters.items()}
+    values = {name: fitted.value for name, fitted in effect.parameters.items()}
     title = capital(effect_title(effect.id))
     without = [column[0] for column in quantities(models, None, {}, a[:1], b[:1])]
     changed = [float(column[0]) for column in quantities(models, effect, values, a[:1] + 1e5, b[:1])]
@@ -56,15 +56,17 @@ def quantities(
     p = models.fitted
     rows = []
     places = 0.0 * a if places is None else places
-    for one, other, place in zip(a.tolist(), b.tolist(), places.tolist(), strict=True):
-        flow = p["internal_leakage"] * (one - other)
+    for pressure_a, pressure_b, place in zip(a.tolist(), b.tolist(), places.tolist(), strict=True):
+        flow = p["internal_leakage"] * (pressure_a - pressure_b)
         head = [
             p["piston_area_b"], p["bulk_modulus"], 0.0, p["bulk_modulus"], 0.0, flow, p["internal_leakage"],
             p["external_leakage"], p["external_leakage"],
         ]  # fmt: skip
         if effect is not None:
             call = contribution(effect)[0]
-            head = list(call(*head, place, one, other, p["atmospheric_pressure"], *in_order(effect, values)))
+            head = list(
+                call(*head, place, pressure_a, pressure_b, p["atmospheric_pressure"], *in_order(effect, values))
+            )
         rows.append(head)
     return list(np.array(rows, dtype=np.float64).T)
 
@@ -81,7 +83,7 @@ def _across(models: Models, effect: NamedEffect, title: str, x: Array, middle: f
     if models.grid is not None and models.spool is not None:
         _, _, a, b = models.modelled
         points_x = models.grid.average(a - b)
-        lost = [one / models.grid.area for one in lost_flows(models, models.grid)]
+        lost = [volume / models.grid.area for volume in lost_flows(models, models.grid)]
         points_y = np.interp(points_x, x, y) + 0.5 * (lost[0] - lost[1])
     return Law(title, DIFFERENCE, Axis("Flow from A to B", "m^3/s"), x, y, low, high, nominal, points_x, points_y)
 
@@ -95,7 +97,7 @@ def _along(models: Models, effect: NamedEffect, title: str, x: Array) -> Law:
     if models.grid is not None and models.spool is not None:
         place, _, a, b = models.modelled
         flow = models.grid.average(np.interp(place, x, y) * (a - b))
-        lost = [one / models.grid.area for one in lost_flows(models, models.grid)]
+        lost = [volume / models.grid.area for volume in lost_flows(models, models.grid)]
         place, a, b = models.on_grid(models.diagnosis.pictures.measured)
         driving = models.grid.average(a - b)
         strong = np.abs(driving) > np.median(np.abs(driving))  # where little drives the flow, little is known of it

@@ -62,7 +62,7 @@ def _beside(models: Models) -> Beside:
 
 def _hangs_on_velocity(effect: NamedEffect, velocity: Array, position: Array, beside: Beside) -> bool:
     """Whether the effect changes more over the speeds that were reached than over the positions."""
-    values = {name: one.value for name, one in effect.parameters.items()}
+    values = {name: fitted.value for name, fitted in effect.parameters.items()}
     v, x = span_of(velocity), span_of(position)
     over_velocity = np.ptp(opposing(effect, values, 0.0 * v, v, beside))
     return bool(over_velocity >= np.ptp(opposing(effect, values, x, 0.0 * x, beside)))
@@ -94,7 +94,7 @@ def _points(models: Models, effect: NamedEffect, over_velocity: bool) -> tuple[A
     if grid is None:
         return NOTHING, NOTHING
     x, v, a, b = models.modelled
-    values = {name: one.value for name, one in effect.parameters.items()}
+    values = {name: fitted.value for name, fitted in effect.parameters.items()}
     own = grid.average(_along(effect, values, x, v, _beside(models)))
     beyond = missing_force(grid, models.fitted, *models.on_grid(models.diagnosis.pictures.measured))
     beyond = beyond - missing_force(grid, models.fitted, x, a, b)

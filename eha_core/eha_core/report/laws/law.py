@@ -60,7 +60,7 @@ class Law:
 
 def span_of(values: Array, through_zero: bool = True) -> Array:
     """Places to draw a curve at, over the visited range; with zero from both sides, where laws may jump."""
-    low, high = (float(one) for one in np.quantile(values, SHOWN))
+    low, high = (float(quantile) for quantile in np.quantile(values, SHOWN))
     places: Array = np.linspace(low, high, CURVE, dtype=np.float64)
     if not through_zero or not low < 0.0 < high:
         return places
@@ -76,14 +76,14 @@ def band(effect: NamedEffect, evaluate: Evaluate, more: Array | float = 0.0) -> 
     """
     declared = import_module(f"eha_core.effects.{effect.id}").EFFECT.parameters
     bounds = {row.name: (row.lower, row.upper) for row in declared}
-    values = {name: one.value for name, one in effect.parameters.items()}
+    values = {name: fitted.value for name, fitted in effect.parameters.items()}
     curve = evaluate(values)
     square = np.zeros_like(curve) + np.asarray(more) ** 2
-    for name, one in effect.parameters.items():
-        inside = min(abs(one.value - bound) for bound in bounds[name])
-        if not (np.isfinite(one.std) and one.std > 0.0) or inside < ON_BOUND * one.std:
+    for name, fitted in effect.parameters.items():
+        inside = min(abs(fitted.value - bound) for bound in bounds[name])
+        if not (np.isfinite(fitted.std) and fitted.std > 0.0) or inside < ON_BOUND * fitted.std:
             continue
-        ends = np.clip(one.value + SURE * one.std * np.array([-1.0, 1.0]), *bounds[name]).tolist()
+        ends = np.clip(fitted.value + SURE * fitted.std * np.array([-1.0, 1.0]), *bounds[name]).tolist()
         moved = [evaluate({**values, name: end}) - curve for end in ends]
         square = square + np.nanmax(np.abs(moved), axis=0) ** 2
     reach = np.sqrt(square)

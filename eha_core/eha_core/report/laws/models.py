@@ -39,7 +39,7 @@ class Models:
         self.fitted: Mapping[str, float] = {**nominal_values(), **diagnosis.fitted_values}
         self.nominal: Mapping[str, float] = {
             **self.fitted,
-            **{one.name: one.nominal for one in diagnosis.parameters},
+            **{parameter.name: parameter.nominal for parameter in diagnosis.parameters},
         }
 
     @cached_property
@@ -50,7 +50,7 @@ class Models:
             return None
         begin, end = self.diagnosis.drawn
         channels = [Measured(name, 0, pictures.time[name] - begin, pictures.measured[name], 0.0) for name in LIQUID]
-        step = max(float(np.median(np.diff(one.time))) for one in channels)
+        step = max(float(np.median(np.diff(channel.time))) for channel in channels)
         return make_grid(end - begin, step, channels, POINT_WIDTH)
 
     def on_grid(self, source: Mapping[str, Array]) -> tuple[Array, ...]:
@@ -85,7 +85,7 @@ class Models:
 
     def deviation(self, name: str) -> float:
         """Standard deviation of a fitted parameter of the nominal model; 0 where it was not fitted."""
-        found = next((one.std for one in self.diagnosis.parameters if one.name == name), 0.0)
+        found = next((parameter.std for parameter in self.diagnosis.parameters if parameter.name == name), 0.0)
         return found if np.isfinite(found) else 0.0
 
     def state(self, name: str) -> Array:

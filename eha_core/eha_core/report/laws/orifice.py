@@ -39,7 +39,7 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
 def opening(effect: NamedEffect, values: Mapping[str, float], spool: Array) -> Array:
     """The opening with the effect, a change of gain counted as one of the opening [A]."""
     call, parameters = contribution(effect)[0], in_order(effect, values)
-    rows = [call(one, 1.0, 0.0, one, *parameters) for one in spool.tolist()]
+    rows = [call(place, 1.0, 0.0, place, *parameters) for place in spool.tolist()]
     return np.array([opened * gain for opened, gain, _ in rows], dtype=np.float64)
 
 

@@ -20,8 +20,11 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     """The coefficient that changes most, over time."""
     begin, end = models.diagnosis.drawn
     x: Array = np.linspace(0.0, end - begin, CURVE, dtype=np.float64)
-    values = {name: one.value for name, one in effect.parameters.items()}
-    changes = [np.ptp(one) / max(float(np.max(one)), 1e-300) for one in _over_time(models, effect, values, x)]
+    values = {name: fitted.value for name, fitted in effect.parameters.items()}
+    changes = [
+        np.ptp(coefficient) / max(float(np.max(coefficient)), 1e-300)
+        for coefficient in _over_time(models, effect, values, x)
+    ]
     place = int(np.argmax(changes))
 
     def evaluate(values: Mapping[str, float]) -> Array:
@@ -34,6 +37,6 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
 
 def _over_time(models: Models, effect: NamedEffect, values: Mapping[str, float], time: Array) -> tuple[Array, Array]:
     call, parameters, p = contribution(effect)[0], in_order(effect, values), models.fitted
-    rows = [call(p[NAMES[0]], p[NAMES[1]], one, *parameters) for one in time.tolist()]
+    rows = [call(p[NAMES[0]], p[NAMES[1]], instant, *parameters) for instant in time.tolist()]
     found = np.array(rows, dtype=np.float64).T
     return found[0], found[1]

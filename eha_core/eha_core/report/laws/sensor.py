@@ -22,7 +22,7 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     if contribution(effect)[1]:
         return None
     pictures = models.diagnosis.pictures
-    values = {name: one.value for name, one in effect.parameters.items()}
+    values = {name: fitted.value for name, fitted in effect.parameters.items()}
     candidates = [name for name in SENSED if name in pictures.after]
     at = {name: pictures.after[name] for name in candidates}
     sizes = {name: float(np.max(np.abs(error(effect, values, name, span_of(at[name]))))) / UNIT[name] for name in at}
@@ -48,8 +48,8 @@ def error(effect: NamedEffect, values: Mapping[str, float], name: str, true: Arr
     call, parameters = contribution(effect)[0], in_order(effect, values)
     place = SENSED.index(name)
     shown = []
-    for one in true.tolist():
+    for value in true.tolist():
         state = [0.0, 0.0, 0.0, 0.0]
-        state[place] = one
+        state[place] = value
         shown.append(call(*state, np.zeros(1), 0, 1e-4, *parameters)[place])
     return np.asarray(np.array(shown, dtype=np.float64) - true)

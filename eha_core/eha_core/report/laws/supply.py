@@ -26,8 +26,8 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     p = models.fitted
     most = float(p["piston_area"] * np.quantile(np.abs(velocity), 0.998))
     x: Array = np.linspace(0.0, most, CURVE // 8, dtype=np.float64)
-    values = {name: one.value for name, one in effect.parameters.items()}
-    place = int(np.argmax([np.ptp(one) for one in _steady(models, effect, values, x)]))
+    values = {name: fitted.value for name, fitted in effect.parameters.items()}
+    place = int(np.argmax([np.ptp(pressure) for pressure in _steady(models, effect, values, x)]))
 
     def evaluate(values: Mapping[str, float]) -> Array:
         return _steady(models, effect, values, x)[place]
@@ -43,10 +43,10 @@ def _steady(models: Models, effect: NamedEffect, values: Mapping[str, float], fl
     call, slots = contribution(effect)
     parameters, p = in_order(effect, values), models.fitted
     rows = []
-    for one in flow.tolist():
+    for drawn in flow.tolist():
         memory, before = np.zeros(max(slots, 1)), np.inf
         for _ in range(SETTLED):
-            supply, back = call(p["supply_pressure"], p["return_pressure"], one, one, memory, 0, STEP, *parameters)
+            supply, back = call(p["supply_pressure"], p["return_pressure"], drawn, drawn, memory, 0, STEP, *parameters)
             if abs(supply - back - before) < 1.0:
                 break
             before = supply - back

@@ -19,11 +19,11 @@ UNCHANGED_SEEN = 50.0
 
 def stage(diagnosis: Diagnosis) -> Stage:
     """How far wrong values alone explain the recording."""
-    changed = [one for one in diagnosis.parameters if one.changed]
+    changed = [parameter for parameter in diagnosis.parameters if parameter.changed]
     if len(changed) > MOST_NAMED:
         headline = f"{len(changed)} parameters of the nominal model have to change"
     elif changed:
-        names = listed([words(one.name) for one in changed])
+        names = listed([words(parameter.name) for parameter in changed])
         verb = "differs" if len(changed) == 1 else "differ"
         headline = f"{names[:1].upper()}{names[1:]} {verb} from the nominal model"
     else:
@@ -33,10 +33,12 @@ def stage(diagnosis: Diagnosis) -> Stage:
         " bounds, so that a wrong value is not taken for a missing effect.",
         sentence(told_errors(diagnosis, "rmse_before", "rmse_calibrated", "calibration alone")),
     ]
-    held = [one for one in diagnosis.parameters if one.note]
+    held = [parameter for parameter in diagnosis.parameters if parameter.note]
     if held:
         stay = "it stays near its nominal value" if len(held) == 1 else "they stay near their nominal values"
-        sentences.append(f"This recording says little about {listed([words(one.name) for one in held])}; {stay}.")
+        sentences.append(
+            f"This recording says little about {listed([words(parameter.name) for parameter in held])}; {stay}."
+        )
     if diagnosis.biased and changed:
         sentences.append("What is missing may have biased these values: do not take them for the rig's.")
     picture = _picture(diagnosis.parameters)
@@ -46,21 +48,23 @@ def stage(diagnosis: Diagnosis) -> Stage:
 
 
 def _picture(parameters: tuple[FittedParameter, ...]) -> Picture | None:
-    shown = [one for one in parameters if one.nominal != 0.0]
+    shown = [parameter for parameter in parameters if parameter.nominal != 0.0]
     if not shown:
         return None
-    shown.sort(key=lambda one: (not one.changed, bool(one.note)))
-    size = np.array([abs(one.nominal) for one in shown])
-    departure = 100.0 * (np.array([one.fitted - one.nominal for one in shown])) / size
-    reach = 100.0 * SURE * np.nan_to_num(np.array([one.std for one in shown]), posinf=0.0) / size
+    shown.sort(key=lambda parameter: (not parameter.changed, bool(parameter.note)))
+    size = np.array([abs(parameter.nominal) for parameter in shown])
+    departure = 100.0 * (np.array([parameter.fitted - parameter.nominal for parameter in shown])) / size
+    reach = 100.0 * SURE * np.nan_to_num(np.array([parameter.std for parameter in shown]), posinf=0.0) / size
     far = np.abs(departure) + np.minimum(reach, 100.0)
-    changed = np.array([one.changed for one in shown])
+    changed = np.array([parameter.changed for parameter in shown])
     limit = 1.15 * max([2.0, *far[changed], *np.minimum(far[~changed], UNCHANGED_SEEN)])
-    roles = tuple("after" if one.changed else "other" for one in shown)
+    roles = tuple("after" if parameter.changed else "other" for parameter in shown)
     texts = tuple(
-        f"{with_deviation(one.fitted, one.std, one.unit)}, nominal {quantity(one.nominal, one.unit)}" for one in shown
+        f"{with_deviation(parameter.fitted, parameter.std, parameter.unit)}, nominal"
+        f" {quantity(parameter.nominal, parameter.unit)}"
+        for parameter in shown
     )
-    marks = (Intervals(tuple(words(one.name) for one in shown), departure, reach, roles, texts),)
+    marks = (Intervals(tuple(words(parameter.name) for parameter in shown), departure, reach, roles, texts),)
     panel = Panel(marks, "departure from the nominal value [%]", height=60 + 24 * len(shown), x_range=(-limit, limit))
     caption = (
         "Fitted parameters of the final model as departures from nominal, with 95 % intervals; changed ones in colour."
@@ -72,11 +76,11 @@ def _picture(parameters: tuple[FittedParameter, ...]) -> Picture | None:
 def _table(diagnosis: Diagnosis) -> Table:
     rows = tuple(
         (
-            words(one.name),
-            quantity(one.nominal, one.unit),
-            with_deviation(one.fitted, one.std, one.unit),
-            "changed" if one.changed else one.note or "as nominal",
+            words(parameter.name),
+            quantity(parameter.nominal, parameter.unit),
+            with_deviation(parameter.fitted, parameter.std, parameter.unit),
+            "changed" if parameter.changed else parameter.note or "as nominal",
         )
-        for one in diagnosis.parameters
+        for parameter in diagnosis.parameters
     )
     return Table(("parameter", "nominal", "fitted (± standard deviation)", ""), rows, "All fitted parameters")

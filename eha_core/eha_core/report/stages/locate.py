@@ -47,20 +47,25 @@ def stage(diagnosis: Diagnosis) -> Stage:
         sentences.append(_others(diagnosis))
         when = diagnosis.location[0].when
         if 1 < len(when) <= 6:
-            sentences.append(f"It departs from {listed([span(one) for one in when])}.")
+            sentences.append(f"It departs from {listed([span(interval) for interval in when])}.")
     pictures = (
         _picture("3-locate", "Each equation, evaluated with the measured channels", diagnosis, _equations(diagnosis)),
         _picture("3-locate-channels", "Each channel less the recalibrated model", diagnosis, _channels(diagnosis)),
     )
     return Stage(
-        "locate", "Locate", headline, tuple(sentences), tuple(one for one in pictures if one.groups), _tables(diagnosis)
+        "locate",
+        "Locate",
+        headline,
+        tuple(sentences),
+        tuple(picture for picture in pictures if picture.groups),
+        _tables(diagnosis),
     )
 
 
 def _others(diagnosis: Diagnosis) -> str:
     """What effects of other sites could take away: the sites overlap, so the shares do not add up to one."""
-    weighty = [one for one in diagnosis.location[1:] if one.share > MENTIONED_SHARE]
-    others = [f"{SITES[one.site].words} ({percent(one.share)})" for one in weighty]
+    weighty = [location for location in diagnosis.location[1:] if location.share > MENTIONED_SHARE]
+    others = [f"{SITES[location.site].words} ({percent(location.share)})" for location in weighty]
     if not others:
         return ""
     return f"Sites overlap in what they could explain: an effect {listed(others)} would take some away, too."
@@ -120,7 +125,10 @@ def _against(diagnosis: Diagnosis, time: Array, residual: Array, title: str) -> 
 
 
 def _tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    rows = tuple((one.site, percent(one.share), one.where, _times(one.when)) for one in diagnosis.location)
+    rows = tuple(
+        (location.site, percent(location.share), location.where, _times(location.when))
+        for location in diagnosis.location
+    )
     return (Table(("site", "could explain", "where", "when"), rows, "Locations"),) if rows else ()
 
 

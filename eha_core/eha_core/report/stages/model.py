@@ -47,7 +47,9 @@ def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
     """The named physics effect by effect in words, equations, numbers and laws, or the recovered law as a curve."""
     if not diagnosis.effects:
         return _without_names(diagnosis)
-    pictures = tuple(one for one in (_collapse(diagnosis), _intervals(diagnosis), correlations(diagnosis)) if one)
+    pictures = tuple(
+        picture for picture in (_collapse(diagnosis), _intervals(diagnosis), correlations(diagnosis)) if picture
+    )
     named = effects_listed(diagnosis) if len(diagnosis.effects) <= IN_A_SENTENCE else names_listed(diagnosis)
     headline, told, formula = _recovered(diagnosis.unknown, diagnosis.biased) if diagnosis.unknown else (named, (), "")
     return Stage(
@@ -121,8 +123,8 @@ def _told_together(diagnosis: Diagnosis) -> tuple[str, ...]:
     if not pairs:
         return ()
     shown = [
-        f"{_parameter_title(one)} with {_parameter_title(other)} ({size:.2f})"
-        for size, one, other in sorted(pairs, reverse=True)[:MOST_PAIRS]
+        f"{_parameter_title(name)} with {_parameter_title(other)} ({size:.2f})"
+        for size, name, other in sorted(pairs, reverse=True)[:MOST_PAIRS]
     ]
     return (f"Strongly correlated, so less sure each than together: {listed(shown)}.",)
 
@@ -145,7 +147,7 @@ def _collapse(diagnosis: Diagnosis) -> Picture | None:
             found.append((taken * dependence.share, name, dependence, old, new))
     if not found:
         return None
-    _, name, dependence, old, new = max(found, key=lambda one: one[0])
+    _, name, dependence, old, new = max(found, key=lambda candidate: candidate[0])
     scale = scale_for(VARIABLE_UNITS[dependence.variable], float(np.abs(dependence.at).max()))
     x, old, new = spread(dependence.at / scale.factor, old, new)
     marks = (NOISE, Dots(x, old, "calibrated", LABELS["calibrated"]), Dots(x, new, "after", LABELS["after"]))
@@ -156,15 +158,15 @@ def _collapse(diagnosis: Diagnosis) -> Picture | None:
 
 def _intervals(diagnosis: Diagnosis) -> Picture | None:
     rows = [
-        (f"{effect_title(effect.id)}: {words(name)}", one)
+        (f"{effect_title(effect.id)}: {words(name)}", fitted)
         for effect in diagnosis.effects
-        for name, one in effect.parameters.items()
-        if one.value != 0.0 and np.isfinite(one.std)
+        for name, fitted in effect.parameters.items()
+        if fitted.value != 0.0 and np.isfinite(fitted.std)
     ]
     if not rows:
         return None
-    reach = np.array([100.0 * SURE * one.std / abs(one.value) for _, one in rows])
-    texts = tuple(with_deviation(one.value, one.std, one.unit) for _, one in rows)
+    reach = np.array([100.0 * SURE * fitted.std / abs(fitted.value) for _, fitted in rows])
+    texts = tuple(with_deviation(fitted.value, fitted.std, fitted.unit) for _, fitted in rows)
     names = tuple(name for name, _ in rows)
     intervals = Intervals(names, np.zeros(len(rows)), reach, ("after",) * len(rows), texts)
     limit = float(np.clip(1.15 * reach.max(), 1.0, 150.0))
@@ -176,10 +178,12 @@ def _table(diagnosis: Diagnosis) -> Table:
     rows = []
     for effect in diagnosis.effects:
         told = told_parameters(effect)
-        for name, one in effect.parameters.items():
-            deviation = with_deviation(one.value, one.std, one.unit)
+        for name, fitted in effect.parameters.items():
+            deviation = with_deviation(fitted.value, fitted.std, fitted.unit)
             note = "" if name in told else "not told from zero"
-            si = f"{one.value:.5g} {one.unit.replace('-', '')}".strip()
-            rows.append((f"{effect.id}.{name}", deviation, interval(one.value, one.std, one.unit, SURE), si, note))
+            si = f"{fitted.value:.5g} {fitted.unit.replace('-', '')}".strip()
+            rows.append(
+                (f"{effect.id}.{name}", deviation, interval(fitted.value, fitted.std, fitted.unit, SURE), si, note)
+            )
     headings = ("parameter", "value (± standard deviation)", "95 % interval", "SI", "")
     return Table(headings, tuple(rows), "Parameters of the added physics")

@@ -22,7 +22,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
     elif not adds_physics(diagnosis):
         sentences.append(_why_none(diagnosis))
     if diagnosis.alternatives:
-        rivals = listed([named(one.effects) for one in diagnosis.alternatives])
+        rivals = listed([named(alternative.effects) for alternative in diagnosis.alternatives])
         sentences.append(f"This recording does not tell it from {rivals}: see the next experiment.")
     return Stage("name", "Name", _headline(diagnosis), tuple(sentences), pictures)
 
@@ -37,7 +37,7 @@ def _why_none(diagnosis: Diagnosis) -> str:
 def _headline(diagnosis: Diagnosis) -> str:
     count = len(diagnosis.effects)
     winner = (
-        named(tuple(one.id for one in diagnosis.effects))
+        named(tuple(effect.id for effect in diagnosis.effects))
         if count <= IN_FULL
         else f"{counted(count)} effects together: {names_listed(diagnosis)}"
     )

@@ -29,13 +29,13 @@ def stage(diagnosis: Diagnosis) -> Stage:
     if not reference:
         return Stage("next", "Next experiment", "No test is proposed", (sentence(experiment.statement),))
     statement = experiment.statement
-    for one in experiment.separates:
-        statement = statement.replace(one, effect_title(one))
+    for effect in experiment.separates:
+        statement = statement.replace(effect, effect_title(effect))
     recorded = listed([channel_title(name) for name in channels_to_record(diagnosis, experiment)])
     return Stage(
         "next",
         "Next experiment",
-        f"One more test would tell {' from '.join(effect_title(one) for one in experiment.separates[:2])}",
+        f"One more test would tell {' from '.join(effect_title(effect) for effect in experiment.separates[:2])}",
         (
             sentence(statement),
             f"It lasts {experiment.duration:g} s; record {recorded}.",

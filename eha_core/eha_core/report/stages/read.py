@@ -23,8 +23,8 @@ def stage(diagnosis: Diagnosis) -> Stage:
     ]
     if diagnosis.damaged:
         sentences.append(f"The file is damaged, and the diagnosis rests on what could be read: {diagnosis.damaged}.")
-    sentences += [sentence(plain(f"Not examined: {one}")) for one in diagnosis.not_examined]
-    sentences += [sentence(plain(one)) for one in diagnosis.remarks]
+    sentences += [sentence(plain(f"Not examined: {note}")) for note in diagnosis.not_examined]
+    sentences += [sentence(plain(remark)) for remark in diagnosis.remarks]
     return Stage(
         "read",
         "Read and align",

@@ -37,10 +37,10 @@ def stage(diagnosis: Diagnosis) -> Stage:
 def error_table(diagnosis: Diagnosis) -> Table:
     """RMSE of each channel and model on held-out data, and the noise, in a unit that suits the noise."""
     rows = []
-    for name, one in (diagnosis.held_out or diagnosis.training).items():
-        scale = scale_for(CHANNEL_KINDS[name].unit, one.noise)
-        cells = [f"{short(value / scale.factor)}{scale.suffix}" for value in (*errors_told(diagnosis, one), one.noise)]
-        rows.append((channel_title(name), *cells, short(one.rmse_after / one.noise)))
+    for name, fit in (diagnosis.held_out or diagnosis.training).items():
+        scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
+        cells = [f"{short(value / scale.factor)}{scale.suffix}" for value in (*errors_told(diagnosis, fit), fit.noise)]
+        rows.append((channel_title(name), *cells, short(fit.rmse_after / fit.noise)))
     title = "RMSE on held-out data" if diagnosis.held_out else "RMSE"
     models = models_told(diagnosis)
     return Table(("channel", *models, "noise", f"{models[-1]} / noise"), tuple(rows), title)
@@ -53,9 +53,9 @@ def prediction_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
         return ()
     ahead = list(next(iter(predictions.values())).ahead)
     rows = []
-    for name, one in predictions.items():
+    for name, prediction in predictions.items():
         unit = CHANNEL_KINDS[name].unit
-        errors = [*(one.ahead[seconds] for seconds in ahead), one.free_running]
+        errors = [*(prediction.ahead[seconds] for seconds in ahead), prediction.free_running]
         rows.append((channel_title(name), *(quantity(error, unit) for error in errors)))
     headings = ("channel", *(f"{quantity(seconds, 's')} ahead" for seconds in ahead), "free run, the whole record")
     return (Table(headings, tuple(rows), "Prediction from measured states: RMSE of the augmented model"),)
@@ -153,7 +153,7 @@ def _over_input(diagnosis: Diagnosis) -> tuple[Picture, ...]:
         time, noise = pictures.time[name], (diagnosis.held_out or diagnosis.training)[name].noise
         held = volts[np.clip(np.searchsorted(at, time, side="right") - 1, 0, None)] / across.factor
         residuals = [(role, pictures.measured[name] - modelled) for role, modelled in _models(diagnosis, name)[1:]]
-        up = scale_for(CHANNEL_KINDS[name].unit, max(float(np.abs(one).max()) for _, one in residuals))
+        up = scale_for(CHANNEL_KINDS[name].unit, max(float(np.abs(residual).max()) for _, residual in residuals))
         marks: list[Mark] = [Band(-2.0 * noise / up.factor, 2.0 * noise / up.factor, "noise (2 standard deviations)")]
         for role, residual in residuals:
             x, y = spread(held, residual / up.factor)
