@@ -50,7 +50,9 @@ _ALSO = {
     "bar(abs)": "bara", "bar abs": "bara", "bar rel": "barg", "lpm": "l/min", "l/m": "l/min", "ltr/min": "l/min",
     "m3/s": "m^3/s", "cm3/s": "cm^3/s", "ccm/s": "cm^3/s", "usgpm": "gpm", "mps": "m/s", "mmps": "mm/s",
 }  # fmt: skip
-_LOWER = {name.lower(): name for name in UNITS if name not in ("MPa", "mPa")}
+_LOWER = {name.lower(): name for name in UNITS}
+_AMBIGUOUS = ("mPa", "MPA", "MV", "MA")
+"""Milli or mega: in capitals nothing tells, and nobody means a millipascal."""
 
 
 def unit_named(text: str) -> Unit | None:
@@ -58,10 +60,9 @@ def unit_named(text: str) -> Unit | None:
     name = text.strip().replace("µ", "u").replace("μ", "u").replace("³", "^3").replace("²", "^2")
     if name in UNITS:
         return UNITS[name]
-    # Case tells milli from mega; only where no other unit is meant by it is it passed over.
+    if name in _AMBIGUOUS:
+        return None
     lower = name.lower()
-    if lower in ("mpa", "mv", "ma") and name not in ("MPA", "MV", "MA"):
-        return UNITS[{"mpa": "MPa", "mv": "mV", "ma": "mA"}[lower]] if name != "mPa" else None
     known = _ALSO.get(lower) or _LOWER.get(lower)
     return UNITS[known] if known else None
 
