@@ -219,12 +219,6 @@ def test_whiteness_counts_in_deviations_of_white_noise():
     assert verdict.whiteness([sparse], lags=21)[0] > 10.0 * at_20
 
 
-def test_unexplained_is_what_exceeds_noise():
-    assert verdict.unexplained(fit(3.0 * COUNT)) == pytest.approx(2.0)
-    assert verdict.unexplained(fit(0.5 * COUNT)) == 0.0
-    assert verdict.unexplained(replace(fit(3.0), count=0)) == pytest.approx(2.0)
-
-
 @pytest.mark.parametrize(("share", "found"), [(0.49, "missing_physics"), (0.5, "unknown_physics")])
 def test_a_curve_beside_a_named_effect_must_be_a_law_of_what_that_leaves(share, found):
     named = entry(500.0, "constant_load", of=fit(2.0 * COUNT, objective=1e6))

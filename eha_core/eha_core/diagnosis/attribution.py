@@ -5,8 +5,6 @@ Where and when the nominal equations fail is `locate`'s; which site it is follow
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration
@@ -15,7 +13,6 @@ from eha_core.diagnosis.locate import stated, whereabouts
 from eha_core.diagnosis.result import Location
 from eha_core.diagnosis.search.model_comparison import ModelComparison
 from eha_core.identification.fit import Fit
-from eha_core.weak_form.equation_residuals import EquationResidual
 
 
 def attribute(
@@ -23,7 +20,6 @@ def attribute(
     nominal: Fit,
     scales: Scales,
     comparison: ModelComparison,
-    equations: Sequence[EquationResidual],
     recording: int = 1,
 ) -> tuple[Location, ...]:
     """The sites by the share of the unexplained chi^2 that their best hypothesis takes away, the largest first.
@@ -32,7 +28,7 @@ def attribute(
     """
     shooting = calibration.shooting
     unexplained = max(nominal.objective - nominal.count, 1.0)
-    gains = _site_gains(comparison, equations)
+    gains = _site_gains(comparison)
     where, when = whereabouts(shooting, nominal, scales, recording)
     found: list[Location] = []
     for site, gain in sorted(gains.items(), key=lambda item: -item[1])[:4]:
@@ -43,7 +39,7 @@ def attribute(
     return tuple(found)
 
 
-def _site_gains(comparison: ModelComparison, equations: Sequence[EquationResidual]) -> dict[str, float]:
+def _site_gains(comparison: ModelComparison) -> dict[str, float]:
     """The refitted gain of each site's best hypothesis, or else the predicted one, which never counts as much."""
     gains: dict[str, float] = {}
     nominal = comparison.nominal.fit

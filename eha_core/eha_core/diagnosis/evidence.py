@@ -1,4 +1,4 @@
-"""Everything that the stages found in one recording: what the conclusion rests on."""
+"""Everything that the stages found in the recordings of one rig: what the conclusion rests on."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from threadpoolctl import threadpool_limits
@@ -14,6 +14,7 @@ from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.criteria import NEAR_NOISE, chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.diagnosis.search.found import Progress
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
 from eha_core.diagnosis.search.model_comparison import compete
 from eha_core.diagnosis.search.sets import with_sets
@@ -28,8 +29,6 @@ from eha_core.identification.together import check_alike, fit_alone, recording_a
 from eha_core.nominal import NominalModel
 from eha_core.recording import Recording
 from eha_core.weak_form.equation_residuals import equation_residuals, smallest
-
-Progress = Callable[[str], None]
 
 BEYOND = 20
 """Iterations of a model without the bounds that it rests on, before all else is asked again without them."""
@@ -94,8 +93,8 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
     scales = characteristic_scales(observations, shooting, fitted)
     lead = telling_most(shooting, fitted)
     alternatives = tuple(
-        equation_residuals(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, model, lead))
-        for model in (fitted, calibration.nominal)
+        equation_residuals(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, result, lead))
+        for result in (fitted, calibration.nominal)
     )
     applicable = applicable_effects(observations)
     comparison = compete(calibration.problem, fitted, applicable, scales, progress)
@@ -103,7 +102,7 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
     recovery = recover(calibration.problem, comparison, scales, progress)
     decision = decide(calibration, model.values, comparison, recovery)
     equations = smallest(alternatives)
-    location = attribute(calibration, comparison.nominal.fit, scales, comparison, equations, lead)
+    location = attribute(calibration, comparison.nominal.fit, scales, comparison, lead)
     return Evidence(
         observations, lead, model.values, calibration, scales, equations, alternatives, comparison, recovery, decision,
         location,

@@ -157,8 +157,3 @@ def whiteness(residuals: Sequence[Array], lags: int = 20) -> list[float]:
         correlations = [float(centred[:-lag] @ centred[lag:]) / power for lag in range(1, min(lags, len(centred) - 1))]
         found.append(max((abs(value) for value in correlations), default=0.0) * float(np.sqrt(len(centred))))
     return found
-
-
-def unexplained(result: Fit) -> float:
-    """Chi^2 a sample that a model leaves, beside noise."""
-    return max(0.0, result.data / max(result.count, 1) - 1.0)

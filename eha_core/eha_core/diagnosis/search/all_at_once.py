@@ -53,7 +53,7 @@ def all_at_once(search: Search, nominal: Candidate) -> Candidate:
             break
     else:
         search.report(_fewest(search, Candidate(NOTHING.with_effects(effects), together)))
-    return min(search, key=lambda candidate: candidate.fit.objective)
+    return search.best
 
 
 def found_by_a_fit(applicable: Sequence[Effect]) -> list[Effect]:

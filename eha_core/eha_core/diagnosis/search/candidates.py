@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.hypothesis import Hypothesis, neutral
+from eha_core.diagnosis.search.found import Found, Progress, keep_better
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages, with_noise
 from eha_core.identification.free_parameters import FreeParameter
@@ -18,8 +19,6 @@ from eha_core.identification.observation import RESOLVED
 from eha_core.identification.per_recording import base_name, is_one_of
 from eha_core.identification.problem import Problem
 from eha_core.identification.shooting import Shooting
-
-Progress = Callable[[str], None]
 
 SAME_NOISE = 0.02
 """Share by which a channel's noise may seem to change before everything is weighed anew."""
@@ -64,16 +63,19 @@ class Search:
     applicable: Sequence[Effect]
     scales: Scales
     progress: Progress = lambda _: None
-    found: dict[Hypothesis, Fit] = field(default_factory=dict)
+    found: Found = field(default_factory=dict)
     shorter: Sequence[Shooting] = ()
     short: bool = False
 
     def keep(self, hypothesis: Hypothesis, result: Fit) -> Candidate:
         """Keep a fit if it is the best of its hypothesis; the hypothesis with its best fit."""
-        known = self.found.get(hypothesis)
-        if known is None or result.objective < known.objective:
-            self.found[hypothesis] = result
+        keep_better(self.found, hypothesis, result)
         return Candidate(hypothesis, self.found[hypothesis])
+
+    @property
+    def best(self) -> Candidate:
+        """The hypothesis that came nearest so far; as it is then, for a later fit of it makes another candidate."""
+        return min(self, key=lambda candidate: candidate.fit.objective)
 
     def try_proposal(self, proposal: Proposal, iterations: int, give_up_above: float = float("inf")) -> Candidate:
         """Fit a hypothesis from a proposal, and keep what is better than before."""

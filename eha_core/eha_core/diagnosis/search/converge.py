@@ -11,10 +11,9 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.search.found import CONVERGE_WITHIN, Found, Progress, best_first
-from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES, is_improbable, with_dynamics_held
+from eha_core.diagnosis.search.nominal_start import is_improbable, nominal_values_of, with_dynamics_held
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import FreeParameter
-from eha_core.identification.per_recording import is_one_of
 from eha_core.identification.problem import Problem
 
 CONVERGED_LEADERS = 3
@@ -42,12 +41,7 @@ def converge(problem: Problem, found: Found, progress: Progress = lambda _: None
         progress(f"fitting {' and '.join(hypothesis.ids)}")
         result = fit(exact, result.values, result.free, result.states, iterations=30)
         if result.data > NEAR_NOISE * result.count or is_improbable(result):
-            untouched = {
-                parameter.name: parameter.reference
-                for parameter in result.free
-                if is_one_of(parameter.name, NOMINAL_NAMES)
-            }
-            again = fit(problem, {**result.values, **untouched}, result.free, None, iterations=15)
+            again = fit(problem, {**result.values, **nominal_values_of(result.free)}, result.free, None, iterations=15)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
         dynamics_held = with_dynamics_held(problem, result)

@@ -36,7 +36,7 @@ def exchange(search: Search, best: Candidate) -> Candidate:
     """The best set after every member's place was competed for; the same where none is better."""
     for member in weakest_first(best):
         race(search, rivals_for(search, best, member))
-        reached = min(search, key=lambda candidate: candidate.fit.objective)
+        reached = search.best
         samples, left = search.problem.count(), best.fit.data - best.fit.count
         if best.fit.objective - reached.fit.objective > gain_to_go_on(samples, reached.times_noise, left):
             return look_back(search, reached, chance_gain(samples, reached.times_noise))

@@ -15,6 +15,8 @@ CONVERGE_WITHIN = 300.0
 not converged yet, or within half of what the best left over."""
 
 Progress = Callable[[str], None]
+"""Is told what is being tried."""
+
 Found = dict[Hypothesis, Fit]
 """The best fit so far of each hypothesis."""
 

@@ -23,7 +23,7 @@ def grow(search: Search, best: Candidate) -> Candidate:
         if not search.short:
             try_for_a_while(search, best, score_tests)
         race(search, proposals(search, best, score_tests, chance_gain(search.problem.count(), best.times_noise)))
-        reached = min(search, key=lambda candidate: candidate.fit.objective)
+        reached = search.best
         if reached.hypothesis != best.hypothesis and reached.times_noise > UNFITTED:
             # the next effect would make up for what a fit that stopped short leaves
             reached = set_with_friction(search, reached)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from eha_core.identification.fit import Fit, fit
@@ -25,6 +26,11 @@ Assumed; nominal values that are off by 30 % are off by 1.2 of them at most."""
 NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 
 
+def nominal_values_of(free: Iterable[FreeParameter]) -> dict[str, float]:
+    """The nominal values of those that are nominal parameters."""
+    return {parameter.name: parameter.reference for parameter in free if is_one_of(parameter.name, NOMINAL_NAMES)}
+
+
 def with_dynamics_held(problem: Problem, calibrated: Fit) -> Fit | None:
     """The calibration with the valve's dynamics at their nominal values; None where it hardly moved them."""
     late = {parameter.name: parameter.reference for parameter in calibrated.free if is_one_of(parameter.name, LATE)}
@@ -37,10 +43,8 @@ def with_dynamics_held(problem: Problem, calibrated: Fit) -> Fit | None:
 
 def at_nominal_values(problem: Problem, calibrated: Fit) -> Fit:
     """The calibration with every nominal parameter back at its nominal value, only the windows' starts fitted again."""
-    given = {
-        parameter.name: parameter.reference for parameter in calibrated.free if is_one_of(parameter.name, NOMINAL_NAMES)
-    }
-    return set_free(fit(problem, {**calibrated.values, **given}, (), calibrated.states, iterations=5), calibrated.free)
+    values = {**calibrated.values, **nominal_values_of(calibrated.free)}
+    return set_free(fit(problem, values, (), calibrated.states, iterations=5), calibrated.free)
 
 
 def is_improbable(result: Fit) -> bool:

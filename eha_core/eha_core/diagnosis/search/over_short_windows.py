@@ -37,7 +37,7 @@ def grown_over_short_windows(search: Search, nominal: Candidate) -> Candidate:
             as_free = {parameter.name: parameter for parameter in free}
             moved = tuple(as_free.get(parameter.name, parameter) for parameter in grown.fit.free)
             search.keep(grown.hypothesis, to_long_windows(search.problem, search.shorter, grown.fit.values, moved))
-        best = min(search, key=lambda candidate: candidate.fit.objective)
+        best = search.best
         if best.times_noise < UNFITTED:
             break
     return best

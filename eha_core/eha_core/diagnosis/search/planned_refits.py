@@ -11,9 +11,9 @@ from eha_core.diagnosis.search.found import OUT_OF_REACH
 from eha_core.diagnosis.search.initial_guesses import InitialGuess
 from eha_core.diagnosis.search.nominal_start import (
     HELD_SHARE,
-    NOMINAL_NAMES,
     TRIED_WITH_DYNAMICS_HELD,
     at_nominal_values,
+    nominal_values_of,
     set_free,
     with_dynamics_held,
 )
@@ -76,10 +76,7 @@ def refit_with(problem: Problem, planned: PlannedRefit, best: float) -> Fit:
     base, score_test = planned.base, planned.score_test
     effect = score_test.guess.effect
     if planned.from_nominal:
-        untouched = {
-            parameter.name: parameter.reference for parameter in base.free if is_one_of(parameter.name, NOMINAL_NAMES)
-        }
-        values = {**base.values, **untouched, **score_test.guess.values}
+        values = {**base.values, **nominal_values_of(base.free), **score_test.guess.values}
         free = with_effects(base.free, [effect], values)
         return fit_in_stages(problem, values, free, give_up_above=best + OUT_OF_REACH)
     values = {**base.values, **scaled(score_test)}

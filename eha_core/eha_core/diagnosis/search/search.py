@@ -36,12 +36,12 @@ def beside_the_singles(search: Search) -> Candidate:
             # what sets in at an instant explains little beside the right one, and another for a while seems better
             converged = converge(search.problem, {single.hypothesis: single.fit}, search.progress)
             search.keep(single.hypothesis, converged[single.hypothesis])
-    best = min(search, key=lambda candidate: candidate.fit.objective)
+    best = search.best
     if best.times_noise < NEAR_NOISE:
         return best
     for single in map(search.again, singles[1:SINGLES]):  # beside the first it is looked for when the set grows
         try_for_a_while(search, single, screen_in_time(search.problem, single.fit, guesses_beside(search, single)))
-    return min(search, key=lambda candidate: candidate.fit.objective)
+    return search.best
 
 
 def search_sets(search: Search, nominal: Candidate) -> Candidate:
@@ -50,7 +50,7 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
     Begins at the best single effect. Where it ends with more than noise left, it may have begun wrongly, its dry
     friction may have another form, or a member another's place.
     """
-    best = min(search, key=lambda candidate: candidate.fit.objective)
+    best = search.best
     if best.hypothesis.limited and not NEAR_NOISE < best.times_noise < FAR_FROM_NOISE:
         return best  # it explains all, or led the single effects and hardly explains anything
     if best.times_noise > NEAR_NOISE:

@@ -60,7 +60,7 @@ def _each_form(
             its = with_effects(free, [effect], reached_by)
             found = to_long_windows(search.problem, search.shorter, reached_by, its)
             search.keep(rest.with_effects([effect]), found)
-        reached = min(search, key=lambda candidate: candidate.fit.objective)
+        reached = search.best
         if reached.times_noise < UNFITTED:
             break
     return reached

@@ -121,7 +121,7 @@ def _fitted(
 ) -> Found:  # fmt: skip
     """What is predicted to gain most in windows in a row, added to `base` and fitted with the span in which it acts.
     `outside`: the base as the rest of the record has it; `reached`: its objective over the whole."""
-    chosen = _one_each(screen_in_time(problem, outside, initial_guesses))
+    chosen = _best_of_each(screen_in_time(problem, outside, initial_guesses))
     if not chosen:
         return {}
     begun = [_of_fixed_span(problem, outside, score_test) for score_test in chosen]
@@ -163,7 +163,7 @@ def _span_of(problem: Problem, windows: tuple[int, int]) -> tuple[float, float]:
     return float(local[windows[0], 0]), float(local[windows[1] - 1, 1])
 
 
-def _one_each(score_tests: Sequence[ScoreTest]) -> list[ScoreTest]:
+def _best_of_each(score_tests: Sequence[ScoreTest]) -> list[ScoreTest]:
     """The best of each effect; none of one that has an instant of its own at which it sets in."""
     best: dict[str, ScoreTest] = {}
     for score_test in score_tests:
