@@ -115,10 +115,12 @@ def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Prog
     """Write what was asked for, and say on the terminal what was found."""
     from eha_core.diagnosis.document import as_json
     from eha_core.report.account import account
-    from eha_core.report.files import write_document, write_report
 
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:
+        # plotting loads slowly, and --json alone draws nothing
+        from eha_core.report.files import write_document, write_report
+
         progress("writing the report")
         folder = arguments.out or Path("out") / "diagnosis" / arguments.recordings[0].stem
         written = write_document(diagnosis, folder) if arguments.no_report else write_report(diagnosis, folder)
@@ -154,7 +156,6 @@ def _run_motion_given(
     from eha_core.diagnosis.document import as_json
     from eha_core.motion_given import diagnose_motion
     from eha_core.report.account import account
-    from eha_core.report.motion_given import write_motion_given
     from eha_core.report.provenance import with_provenance
 
     tests = _read(arguments.test, arguments)
@@ -164,6 +165,8 @@ def _run_motion_given(
     found = replace(found, diagnosis=with_provenance(found.diagnosis, recordings, "none: the motion is given"))
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:
+        from eha_core.report.motion_given import write_motion_given  # draws, as above
+
         written = write_motion_given(found, arguments.out or Path("out") / "diagnosis" / arguments.recordings[0].stem)
     progress.end()
     if arguments.json == "-":

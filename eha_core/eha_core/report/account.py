@@ -9,6 +9,7 @@ from textwrap import wrap
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, Location, NamedEffect
 from eha_core.quantities import quantity, scale_for, short, within
 from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.claims import judged
 from eha_core.report.each_recording import each_recording
 from eha_core.report.finding import told_parameters
 from eha_core.report.stage import errors_told, models_told
@@ -85,7 +86,7 @@ def _located(location: Location) -> str:
 
 def _improvement(diagnosis: Diagnosis) -> list[str]:
     """RMSE of each channel on held-out data, in a unit that suits its noise."""
-    fits = diagnosis.held_out or diagnosis.training
+    fits = judged(diagnosis)
     if not fits:
         return []
     heading = f"{'RMSE on held-out data' if diagnosis.held_out else 'RMSE':30}"

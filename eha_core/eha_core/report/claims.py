@@ -28,8 +28,12 @@ def judged(diagnosis: Diagnosis) -> Mapping[str, ChannelFit]:
 
 def largest_ratio(diagnosis: Diagnosis) -> float:
     """The largest error of the final model, in units of its channel's noise."""
-    ratios = [fit.rmse_after / fit.noise for fit in judged(diagnosis).values() if np.isfinite(fit.rmse_after)]
-    return max(ratios, default=float("nan"))
+    return max(_ratios(diagnosis), default=float("nan"))
+
+
+def _ratios(diagnosis: Diagnosis) -> list[float]:
+    """The error of the final model in each channel where it is known, in units of the channel's noise."""
+    return [fit.rmse_after / fit.noise for fit in judged(diagnosis).values() if np.isfinite(fit.rmse_after)]
 
 
 def coloured(diagnosis: Diagnosis) -> list[str]:
@@ -54,7 +58,7 @@ def left_over(diagnosis: Diagnosis) -> str:
 
 def left_in_words(diagnosis: Diagnosis) -> str:
     """How large what the final model leaves is and whether it is white; empty where nothing was judged."""
-    ratios = [fit.rmse_after / fit.noise for fit in judged(diagnosis).values() if np.isfinite(fit.rmse_after)]
+    ratios = _ratios(diagnosis)
     if not ratios or not diagnosis.whiteness:
         return ""
     least, most = (f"{end:.2f}" for end in (min(ratios), max(ratios)))
@@ -80,8 +84,25 @@ def equations_hold(diagnosis: Diagnosis) -> bool:
 def told_channel(diagnosis: Diagnosis) -> str:
     """The channel whose error stands for all: the position, or the first that there is; none if it is not known."""
     fits = judged(diagnosis)
-    name = "position" if "position" in fits else next(iter(fits), "")
+    name = _leading_channel(fits)
     return name if name and np.isfinite(fits[name].rmse_after) else ""
+
+
+def _leading_channel(fits: Mapping[str, ChannelFit]) -> str:
+    """The position, or the first channel that there is."""
+    return "position" if "position" in fits else next(iter(fits), "")
+
+
+def calibration_alone(diagnosis: Diagnosis) -> str:
+    """What calibration does to the error of the position, or of the first channel there is; empty if not known."""
+    fits = judged(diagnosis)
+    name = _leading_channel(fits)
+    if not name or not np.isfinite(fits[name].rmse_calibrated):
+        return ""
+    fit, unit = fits[name], CHANNEL_KINDS[name].unit
+    before, after, noise = (quantity(value, unit) for value in (fit.rmse_before, fit.rmse_calibrated, fit.noise))
+    title = channel_title(name)
+    return f"Calibration alone takes the error of the {title} from {before} to {after} RMS; the noise is {noise}."
 
 
 def improvement(diagnosis: Diagnosis) -> str:

@@ -33,33 +33,33 @@ MILLION = 1e6
 NULL = "nothing added (recalibrated model)"
 
 
-def named(effects: tuple[str, ...]) -> str:
+def named(ids: tuple[str, ...]) -> str:
     """A hypothesis by its effects."""
-    return " + ".join(map(effect_title, effects)) or "nothing added"
+    return " + ".join(map(effect_title, ids)) or "nothing added"
 
 
-def rung(effects: set[str], chosen: set[str]) -> str:
+def rung(ids: set[str], chosen: set[str]) -> str:
     """A hypothesis by its effects; a large set by how it differs from the one that was named."""
-    if len(effects) == 1 < len(chosen):
-        return f"{named(tuple(effects))} alone"
-    if len(effects) <= IN_FULL:
-        return named(tuple(sorted(effects)))
-    if effects == chosen:
+    if len(ids) == 1 < len(chosen):
+        return f"{named(tuple(ids))} alone"
+    if len(ids) <= IN_FULL:
+        return named(tuple(sorted(ids)))
+    if ids == chosen:
         return f"the {counted(len(chosen))} named effects"
-    if chosen & effects and len(chosen - effects) == len(effects - chosen) == 1:
-        (lost,), (other,) = chosen - effects, effects - chosen
+    if chosen & ids and len(chosen - ids) == len(ids - chosen) == 1:
+        (lost,), (other,) = chosen - ids, ids - chosen
         return f"{effect_title(other)} in place of {effect_title(lost)}"
-    lacks = [f"without {effect_title(effect)}" for effect in sorted(chosen - effects)]
-    more = [f"with {effect_title(effect)}" for effect in sorted(effects - chosen)]
-    return f"the named effects {listed([*lacks, *more])}" if chosen & effects else named(tuple(sorted(effects)))
+    lacks = [f"without {title}" for title in map(effect_title, sorted(chosen - ids))]
+    more = [f"with {title}" for title in map(effect_title, sorted(ids - chosen))]
+    return f"the named effects {listed([*lacks, *more])}" if chosen & ids else named(tuple(sorted(ids)))
 
 
 def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-name", title: str = "") -> Picture:
     """How far each hypothesis is behind the best, on a logarithmic axis; the model that adds nothing is among them."""
     best = float(diagnosis.rivals[0][1])
     chosen = {effect.id for effect in diagnosis.effects}
-    ranked = [(rung(set(effects), chosen), set(effects), score) for effects, score in diagnosis.rivals[:most]]
-    if all(effects for _, effects, _ in ranked):
+    ranked = [(rung(set(ids), chosen), set(ids), score) for ids, score in diagnosis.rivals[:most]]
+    if all(ids for _, ids, _ in ranked):
         ranked.append((NULL, set(), 0.0))
     ranked.sort(key=lambda rival: -rival[2])
     top = max(best, 0.0)
@@ -67,12 +67,11 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
     tied = [set(alternative.effects) for alternative in diagnosis.alternatives]
     unnamed = diagnosis.verdict == "unknown_physics" and not chosen
     roles = tuple(
-        "after" if effects == chosen and not unnamed else "calibrated" if effects in tied else "other"
-        for _, effects, _ in ranked
+        "after" if ids == chosen and not unnamed else "calibrated" if ids in tied else "other" for _, ids, _ in ranked
     )
     texts = tuple(behind_in_words(gap) for gap in behind)
     short = min(score for _, _, score in ranked) < -STOPPED_SHORT
-    rungs = Bars(tuple(name for name, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
+    rungs = Bars(tuple(label for label, _, _ in ranked), np.log10(np.maximum(behind, 1.0) * STUB), roles, texts)
     decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
     ticks = tuple((exponent + np.log10(STUB), _decade(exponent)) for exponent in decades)
     panel = Panel(
@@ -103,9 +102,9 @@ def behind_in_words(value: float) -> str:
 
 def _screened(diagnosis: Diagnosis) -> str:
     """Which effects were never refitted, and why."""
-    refitted = {effect for effects, _ in diagnosis.rivals for effect in effects}
+    refitted = {effect_id for ids, _ in diagnosis.rivals for effect_id in ids}
     left = [effect for effect in effects() if effect.named and effect.id not in refitted]
-    seen = {f"measured_{name}" for name in diagnosis.channels}
+    seen = {f"measured_{channel}" for channel in diagnosis.channels}
     blind = [effect.id for effect in left if effect.needs and not set(effect.needs) <= seen]
     weak = [effect.id for effect in left if effect.id not in blind]
     weakly = listed(list(map(effect_title, weak)))

@@ -52,8 +52,8 @@ def missing(effect: NamedEffect) -> Missing:
         fitted = told[name]
         values.append(f"{words(name)} {within(fitted.value, fitted.std, fitted.unit, SURE)}")
     cause, colon, _ = effect.statement.partition(":")
-    active = getattr(effect, "active", None)
-    return Missing(effect_title(effect.id), tuple(values), cause if colon else "", span(active) if active else "")
+    when = span(effect.active) if effect.active else ""
+    return Missing(effect_title(effect.id), tuple(values), cause if colon else "", when)
 
 
 def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
@@ -96,9 +96,8 @@ def names_listed(diagnosis: Diagnosis) -> str:
 
 
 def is_complete(diagnosis: Diagnosis) -> bool:
-    """Whether the named effects leave nothing but noise, as far as the diagnosis says so."""
-    explained = getattr(diagnosis, "explained", None)
-    return explained is None or bool(explained.complete)
+    """Whether the named effects leave nothing but noise."""
+    return diagnosis.explained.complete
 
 
 def effects_listed(diagnosis: Diagnosis) -> str:
@@ -127,11 +126,12 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
     likely = "; ".join(f"{cause} ({title})" for title, cause in causes)
     rivals = listed([" + ".join(map(effect_title, alternative.effects)) for alternative in diagnosis.alternatives])
     changed = [parameter for parameter in diagnosis.parameters if parameter.changed]
-    values = listed([f"{words(parameter.name)} {_departure(parameter)}" for parameter in changed[: MOST_VALUES + 1]])
+    told = changed[: MOST_VALUES + 1]
+    values = listed([f"{words(parameter.name)} {_departure(parameter)}" for parameter in told])
     found = (
         f"Likely cause{'s' if len(causes) > 1 else ''}: {likely}." if likely else "",
         f"This recording does not tell it from {rivals}." if rivals else "",
-        f"Parameters that differ from the nominal model: {values}{' and others' if len(changed) > 3 else ''}."
+        f"Parameters that differ from the nominal model: {values}{' and others' if len(changed) > len(told) else ''}."
         if changed and not diagnosis.biased
         else "",
         explanation(diagnosis),
@@ -152,8 +152,8 @@ def _departure(parameter: FittedParameter) -> str:
 
 def explanation(diagnosis: Diagnosis) -> str:
     """How much of the mismatch the named effects explain, and where the rest sits, where the diagnosis says so."""
-    explained = getattr(diagnosis, "explained", None)
-    if explained is None or not explained.times_noise or not diagnosis.effects:
+    explained = diagnosis.explained
+    if not explained.times_noise or not diagnosis.effects:
         return ""
     nearly = explained.share >= NEARLY_ALL
     share = f"more than {100.0 * NEARLY_ALL:g} %" if nearly else f"{100.0 * explained.share:.4g} %"

@@ -12,6 +12,7 @@ from textwrap import wrap
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import scale_for, short
 from eha_core.recording import CHANNEL_KINDS
+from eha_core.report.claims import judged
 from eha_core.report.finding import told_parameters
 from eha_core.report.stage import SURE, Table, errors_told, models_told
 from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, plain, sentence
@@ -100,7 +101,7 @@ def _number(value: float) -> str:
 
 def _errors(diagnosis: Diagnosis) -> Table:
     rows = []
-    for name, fit in (diagnosis.held_out or diagnosis.training).items():
+    for name, fit in judged(diagnosis).items():
         scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
         values = (*errors_told(diagnosis, fit), fit.noise)
         cells = [short(value / scale.factor) for value in values]

@@ -4,11 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from math import isfinite
-
-from eha_core.diagnosis.result import Diagnosis
-from eha_core.quantities import quantity
-from eha_core.recording import CHANNEL_KINDS
 
 VERDICT_TITLES = {
     "consistent": "Nothing is missing",
@@ -128,16 +123,3 @@ def span(seconds: tuple[float, float]) -> str:
 def sentence(text: str) -> str:
     """Text with a capital letter and a full stop."""
     return f"{capital(text)}{'' if text.endswith(('.', '!', '?')) else '.'}" if text else ""
-
-
-def told_errors(diagnosis: Diagnosis, first: str, second: str, means: str) -> str:
-    """What a step does to the error of the position on held-out data, in words."""
-    fits = diagnosis.held_out or diagnosis.training
-    name = "position" if "position" in fits else next(iter(fits), "")
-    if not name or not isfinite(getattr(fits[name], second)):
-        return ""
-    unit, fit = CHANNEL_KINDS[name].unit, fits[name]
-    return (
-        f"{means} takes the error of the {channel_title(name)} from {quantity(getattr(fit, first), unit)} to"
-        f" {quantity(getattr(fit, second), unit)} RMS; the noise is {quantity(fit.noise, unit)}"
-    )

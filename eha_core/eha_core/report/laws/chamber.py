@@ -9,7 +9,7 @@ import numpy as np
 from eha_core.diagnosis.result import NamedEffect
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import NOTHING, Axis, Law, band, span_of
-from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.laws.models import Models, contribution, in_order, values_of
 from eha_core.report.stage import SURE
 from eha_core.report.wording import capital, effect_title
 from eha_core.weak_form.grid import Grid
@@ -27,7 +27,7 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     a, b = models.state("pressure_a"), models.state("pressure_b")
     if not len(a):
         return None
-    values = {name: fitted.value for name, fitted in effect.parameters.items()}
+    values = values_of(effect)
     title = capital(effect_title(effect.id))
     without = [column[0] for column in quantities(models, None, {}, a[:1], b[:1])]
     changed = [float(column[0]) for column in quantities(models, effect, values, a[:1] + 1e5, b[:1])]
@@ -83,7 +83,7 @@ def _across(models: Models, effect: NamedEffect, title: str, x: Array, middle: f
     if models.grid is not None and models.spool is not None:
         _, _, a, b = models.modelled
         points_x = models.grid.average(a - b)
-        lost = [volume / models.grid.area for volume in lost_flows(models, models.grid)]
+        lost = lost_flows(models, models.grid)
         points_y = np.interp(points_x, x, y) + 0.5 * (lost[0] - lost[1])
     return Law(title, DIFFERENCE, Axis("Flow from A to B", "m^3/s"), x, y, low, high, nominal, points_x, points_y)
 
@@ -97,7 +97,7 @@ def _along(models: Models, effect: NamedEffect, title: str, x: Array) -> Law:
     if models.grid is not None and models.spool is not None:
         place, _, a, b = models.modelled
         flow = models.grid.average(np.interp(place, x, y) * (a - b))
-        lost = [volume / models.grid.area for volume in lost_flows(models, models.grid)]
+        lost = lost_flows(models, models.grid)
         place, a, b = models.on_grid(models.diagnosis.pictures.measured)
         driving = models.grid.average(a - b)
         strong = np.abs(driving) > np.median(np.abs(driving))  # where little drives the flow, little is known of it
@@ -116,7 +116,7 @@ def _outside(models: Models, effect: NamedEffect, title: str, x: Array, middle: 
     points_x, points_y = NOTHING, NOTHING
     if models.grid is not None and models.spool is not None:
         points_x = models.grid.average(models.modelled[2])
-        points_y = np.interp(points_x, x, y) + lost_flows(models, models.grid)[0] / models.grid.area
+        points_y = np.interp(points_x, x, y) + lost_flows(models, models.grid)[0]
     nominal = models.nominal["external_leakage"] * x
     return Law(title, PRESSURE, Axis("Flow out of chamber A", "m^3/s"), x, y, low, high, nominal, points_x, points_y)
 
@@ -131,17 +131,19 @@ def _bulk(models: Models, effect: NamedEffect, title: str, x: Array) -> Law:
 
 
 def lost_flows(models: Models, grid: Grid) -> tuple[Array, Array]:
-    """What more leaves each chamber than the final model says, integrated under each test function [m^3]."""
+    """What more leaves each chamber than the final model says, the mean under each test function [m^3/s]."""
     measured = models.on_grid(models.diagnosis.pictures.measured)
     x, _, a, b = models.modelled
     assert models.spool is not None
     return tuple(  # type: ignore[return-value]
-        _lost(grid, models, side, *measured) - _lost(grid, models, side, x, a, b) for side in (1.0, -1.0)
+        (_lost_volume(grid, models, side, *measured) - _lost_volume(grid, models, side, x, a, b)) / grid.area
+        for side in (1.0, -1.0)
     )
 
 
-def _lost(grid: Grid, models: Models, side: float, x: Array, a: Array, b: Array) -> Array:
-    """What flows into a chamber (A: side 1, B: -1) by the nominal valve, less what its motion and oil take in."""
+def _lost_volume(grid: Grid, models: Models, side: float, x: Array, a: Array, b: Array) -> Array:
+    """What flows into a chamber (A: side 1, B: -1) by the nominal valve, less what its motion and oil take in,
+    integrated under each test function [m^3]."""
     p, spool = models.fitted, models.spool
     assert spool is not None
     own, area = (a, p["piston_area"]) if side > 0.0 else (b, p["piston_area_b"])

@@ -10,7 +10,7 @@ import numpy as np
 from eha_core.diagnosis.result import NamedEffect
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import NOTHING, Axis, Law, band, span_of
-from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.laws.models import Models, contribution, in_order, values_of
 from eha_core.report.stage import SURE
 from eha_core.report.wording import capital, effect_title
 from eha_core.weak_form.grid import Grid
@@ -62,7 +62,7 @@ def _beside(models: Models) -> Beside:
 
 def _hangs_on_velocity(effect: NamedEffect, velocity: Array, position: Array, beside: Beside) -> bool:
     """Whether the effect changes more over the speeds that were reached than over the positions."""
-    values = {name: fitted.value for name, fitted in effect.parameters.items()}
+    values = values_of(effect)
     v, x = span_of(velocity), span_of(position)
     over_velocity = np.ptp(opposing(effect, values, 0.0 * v, v, beside))
     return bool(over_velocity >= np.ptp(opposing(effect, values, x, 0.0 * x, beside)))
@@ -94,8 +94,7 @@ def _points(models: Models, effect: NamedEffect, over_velocity: bool) -> tuple[A
     if grid is None:
         return NOTHING, NOTHING
     x, v, a, b = models.modelled
-    values = {name: fitted.value for name, fitted in effect.parameters.items()}
-    own = grid.average(_along(effect, values, x, v, _beside(models)))
+    own = grid.average(_along(effect, values_of(effect), x, v, _beside(models)))
     beyond = missing_force(grid, models.fitted, *models.on_grid(models.diagnosis.pictures.measured))
     beyond = beyond - missing_force(grid, models.fitted, x, a, b)
     name, state = ("damping_coefficient", v) if over_velocity else ("spring_stiffness", x)

@@ -10,6 +10,7 @@ import numpy as np
 
 from eha_core.diagnosis.result import NamedEffect
 from eha_core.identification.numbers import Array
+from eha_core.report.laws.models import values_of
 from eha_core.report.stage import SURE
 
 CURVE = 241
@@ -76,7 +77,7 @@ def band(effect: NamedEffect, evaluate: Evaluate, more: Array | float = 0.0) -> 
     """
     declared = import_module(f"eha_core.effects.{effect.id}").EFFECT.parameters
     bounds = {row.name: (row.lower, row.upper) for row in declared}
-    values = {name: fitted.value for name, fitted in effect.parameters.items()}
+    values = values_of(effect)
     curve = evaluate(values)
     square = np.zeros_like(curve) + np.asarray(more) ** 2
     for name, fitted in effect.parameters.items():

@@ -102,6 +102,11 @@ def contribution(effect: NamedEffect) -> tuple[Any, int]:
     return module.contribution, len(module.EFFECT.memory)
 
 
+def values_of(effect: NamedEffect) -> dict[str, float]:
+    """An effect's parameters as fitted, without their deviations."""
+    return {name: fitted.value for name, fitted in effect.parameters.items()}
+
+
 def in_order(effect: NamedEffect, values: Mapping[str, float]) -> list[float]:
     """An effect's parameters in the order of its declaration."""
     module = import_module(f"eha_core.effects.{effect.id}")

@@ -57,7 +57,7 @@ def _points(models: Models, x: Array, y: Array) -> tuple[Array, Array]:
         drop = grid.average(filling)
         enough = drop > LEAST_DROP * p["supply_pressure"]
         root = np.sqrt(np.where(enough, drop, np.nan))
-        openings.append(-side * flow / grid.area / (p["valve_gain"] * root))
+        openings.append(-side * flow / (p["valve_gain"] * root))
     across = grid.average(spool)
     points = grid.average(np.interp(spool, x, y)) + 0.5 * (openings[0] + openings[1])
     kept = np.isfinite(points)

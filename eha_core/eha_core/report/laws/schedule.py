@@ -9,7 +9,7 @@ import numpy as np
 from eha_core.diagnosis.result import NamedEffect
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import CURVE, Axis, Law, band
-from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.laws.models import Models, contribution, in_order, values_of
 from eha_core.report.wording import capital, effect_title
 
 NAMES = ("internal_leakage", "damping_coefficient")
@@ -20,7 +20,7 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     """The coefficient that changes most, over time."""
     begin, end = models.diagnosis.drawn
     x: Array = np.linspace(0.0, end - begin, CURVE, dtype=np.float64)
-    values = {name: fitted.value for name, fitted in effect.parameters.items()}
+    values = values_of(effect)
     changes = [
         np.ptp(coefficient) / max(float(np.max(coefficient)), 1e-300)
         for coefficient in _over_time(models, effect, values, x)

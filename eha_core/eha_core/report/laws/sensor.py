@@ -9,7 +9,7 @@ import numpy as np
 from eha_core.diagnosis.result import NamedEffect
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import Axis, Law, band, span_of
-from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.laws.models import Models, contribution, in_order, values_of
 from eha_core.report.series import spread
 from eha_core.report.wording import capital, channel_title, effect_title
 
@@ -22,7 +22,7 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     if contribution(effect)[1]:
         return None
     pictures = models.diagnosis.pictures
-    values = {name: fitted.value for name, fitted in effect.parameters.items()}
+    values = values_of(effect)
     candidates = [name for name in SENSED if name in pictures.after]
     at = {name: pictures.after[name] for name in candidates}
     sizes = {name: float(np.max(np.abs(error(effect, values, name, span_of(at[name]))))) / UNIT[name] for name in at}

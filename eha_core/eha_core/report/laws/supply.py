@@ -9,7 +9,7 @@ import numpy as np
 from eha_core.diagnosis.result import NamedEffect
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import CURVE, Axis, Law, band
-from eha_core.report.laws.models import Models, contribution, in_order
+from eha_core.report.laws.models import Models, contribution, in_order, values_of
 from eha_core.report.wording import capital, effect_title
 
 STEP = 1e-3  # s
@@ -26,7 +26,7 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     p = models.fitted
     most = float(p["piston_area"] * np.quantile(np.abs(velocity), 0.998))
     x: Array = np.linspace(0.0, most, CURVE // 8, dtype=np.float64)
-    values = {name: fitted.value for name, fitted in effect.parameters.items()}
+    values = values_of(effect)
     place = int(np.argmax([np.ptp(pressure) for pressure in _steady(models, effect, values, x)]))
 
     def evaluate(values: Mapping[str, float]) -> Array:

@@ -6,9 +6,10 @@ import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter
 from eha_core.quantities import quantity, with_deviation
+from eha_core.report.claims import calibration_alone
 from eha_core.report.picture import Group, Intervals, Panel, Picture
 from eha_core.report.stage import SURE, Stage, Table
-from eha_core.report.wording import listed, sentence, told_errors, words
+from eha_core.report.wording import listed, words
 
 MOST_NAMED = 4
 """Changed parameters that the headline names; more are counted."""
@@ -31,7 +32,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
     sentences = [
         "Before any physics is called missing, the parameters of the nominal equations are set free within their"
         " bounds, so that a wrong value is not taken for a missing effect.",
-        sentence(told_errors(diagnosis, "rmse_before", "rmse_calibrated", "calibration alone")),
+        calibration_alone(diagnosis),
     ]
     held = [parameter for parameter in diagnosis.parameters if parameter.note]
     if held:

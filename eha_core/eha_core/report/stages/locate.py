@@ -11,7 +11,7 @@ from eha_core.effects import SITES
 from eha_core.identification.numbers import Array
 from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.claims import equations_hold
+from eha_core.report.claims import equations_hold, judged
 from eha_core.report.picture import Band, Dots, Group, Line, Mark, Panel, Picture
 from eha_core.report.series import spread, strongest_dependence, thinned
 from eha_core.report.stage import Stage, Table, violated
@@ -77,7 +77,7 @@ def _equations(diagnosis: Diagnosis) -> Iterator[tuple[str, Array, Array]]:
 
 
 def _channels(diagnosis: Diagnosis) -> Iterator[tuple[str, Array, Array]]:
-    pictures, fits = diagnosis.pictures, diagnosis.held_out or diagnosis.training
+    pictures, fits = diagnosis.pictures, judged(diagnosis)
     for name, modelled in pictures.calibrated.items():
         noise = quantity(fits[name].noise, CHANNEL_KINDS[name].unit)
         yield (

@@ -10,6 +10,7 @@ import numpy as np
 from eha_core.diagnosis.result import Diagnosis, NamedEffect, UnknownLaw
 from eha_core.effects import SITES
 from eha_core.quantities import interval, scale_for, with_deviation
+from eha_core.report.claims import judged
 from eha_core.report.finding import IN_A_SENTENCE, effects_listed, missing, names_listed, told_parameters
 from eha_core.report.first_screen import law_panel
 from eha_core.report.laws import Law
@@ -136,7 +137,7 @@ def _parameter_title(name: str) -> str:
 
 def _collapse(diagnosis: Diagnosis) -> Picture | None:
     """The channel whose mismatch hung most on a variable, over that variable, without and with the physics."""
-    pictures, fits = diagnosis.pictures, diagnosis.held_out or diagnosis.training
+    pictures, fits = diagnosis.pictures, judged(diagnosis)
     found = []
     for name, after in pictures.after.items():
         time, measured, noise = pictures.time[name], pictures.measured[name], fits[name].noise

@@ -7,7 +7,7 @@ from pathlib import Path
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.claims import noise_floor
+from eha_core.report.claims import judged, noise_floor
 from eha_core.report.picture import Group, Line, Mark, Panel, Picture, Spans
 from eha_core.report.series import thinned
 from eha_core.report.stage import Stage, Table
@@ -57,7 +57,7 @@ def _picture(diagnosis: Diagnosis) -> Picture:
 
 
 def _table(diagnosis: Diagnosis) -> Table:
-    fits = diagnosis.held_out or diagnosis.training
+    fits = judged(diagnosis)
     rows = []
     for name in _channels(diagnosis):
         values = diagnosis.pictures.measured[name]

@@ -8,7 +8,7 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.identification.numbers import Array
 from eha_core.quantities import Scale, quantity, scale_for, short
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.claims import improvement, left_over
+from eha_core.report.claims import improvement, judged, left_over
 from eha_core.report.each_recording import recording_tables
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture
 from eha_core.report.series import autocorrelation, pieces, spread
@@ -37,7 +37,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
 def error_table(diagnosis: Diagnosis) -> Table:
     """RMSE of each channel and model on held-out data, and the noise, in a unit that suits the noise."""
     rows = []
-    for name, fit in (diagnosis.held_out or diagnosis.training).items():
+    for name, fit in judged(diagnosis).items():
         scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
         cells = [f"{short(value / scale.factor)}{scale.suffix}" for value in (*errors_told(diagnosis, fit), fit.noise)]
         rows.append((channel_title(name), *cells, short(fit.rmse_after / fit.noise)))
@@ -48,12 +48,11 @@ def error_table(diagnosis: Diagnosis) -> Table:
 
 def prediction_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
     """RMSE of the final model where no state was fitted to the data: run ahead from measured states, and freely."""
-    predictions = getattr(diagnosis, "prediction", {})
-    if not predictions:
+    if not diagnosis.prediction:
         return ()
-    ahead = list(next(iter(predictions.values())).ahead)
+    ahead = list(next(iter(diagnosis.prediction.values())).ahead)
     rows = []
-    for name, prediction in predictions.items():
+    for name, prediction in diagnosis.prediction.items():
         unit = CHANNEL_KINDS[name].unit
         errors = [*(prediction.ahead[seconds] for seconds in ahead), prediction.free_running]
         rows.append((channel_title(name), *(quantity(error, unit) for error in errors)))
@@ -87,7 +86,7 @@ def _scale(diagnosis: Diagnosis, name: str) -> Scale:
 def _whole(diagnosis: Diagnosis, name: str) -> Group:
     spans, scale = judged_spans(diagnosis), _scale(diagnosis, name)
     time, measured = diagnosis.pictures.time[name], diagnosis.pictures.measured[name]
-    noise = (diagnosis.held_out or diagnosis.training)[name].noise
+    noise = judged(diagnosis)[name].noise
     largest = max(float(np.abs(measured - modelled).max()) for _, modelled in _models(diagnosis, name))
     fine = scale_for(CHANNEL_KINDS[name].unit, largest)
     values: list[Mark] = [_line(time, measured, "measured", spans, scale.factor)]
@@ -150,7 +149,7 @@ def _over_input(diagnosis: Diagnosis) -> tuple[Picture, ...]:
     at, volts = pictures.time["voltage_command"], pictures.measured["voltage_command"]
     across = scale_for("V", float(np.abs(volts).max()))
     for name in pictures.after:
-        time, noise = pictures.time[name], (diagnosis.held_out or diagnosis.training)[name].noise
+        time, noise = pictures.time[name], judged(diagnosis)[name].noise
         held = volts[np.clip(np.searchsorted(at, time, side="right") - 1, 0, None)] / across.factor
         residuals = [(role, pictures.measured[name] - modelled) for role, modelled in _models(diagnosis, name)[1:]]
         up = scale_for(CHANNEL_KINDS[name].unit, max(float(np.abs(residual).max()) for _, residual in residuals))
