@@ -54,6 +54,21 @@ def test_a_data_frame_is_diagnosed_in_five_lines(found: eha.Results) -> None:
     assert found.fitted_values["coulomb_friction.force"] == force.value
 
 
+def test_a_recording_that_cannot_be_right_is_no_missing_physics() -> None:
+    """A position that counts the other way is told before any fit, as on the command line, and can be overruled."""
+    made = eha.simulate(COMMAND, 2.0, noise=1.0)
+    frame = pd.DataFrame(made.to_dict()).assign(position=lambda columns: -columns["position"])
+    recording = eha.Recording.from_dataframe(frame.drop(columns="velocity"), pressures="gauge", name="rig")
+    with pytest.raises(EhaError, match=r"^rig: position .*; as_recorded=True goes on all the same$"):
+        eha.diagnose(recording)
+
+    def stop(stage: str) -> None:
+        raise InterruptedError(stage)
+
+    with pytest.raises(InterruptedError, match="reading"):
+        eha.diagnose(recording, as_recorded=True, progress=stop)
+
+
 def test_the_summary_has_the_interval_and_the_errors(found: eha.Results) -> None:
     text = str(found.summary())
     force = found.effects[0].parameters["force"]

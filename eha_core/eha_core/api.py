@@ -93,6 +93,7 @@ def diagnose(
     jobs: int = 2,
     progress: Callable[[str], None] = lambda _: None,
     tests: Sequence[Recording | str | Path] = (),
+    as_recorded: bool = False,
 ) -> Results:
     """Say where a model departs from a recording, which physics it leaves out, and how much better it does with it.
 
@@ -107,14 +108,17 @@ def diagnose(
         jobs: threads that simulate side by side.
         progress: is told each stage as it begins.
         tests: recordings that nothing is fitted to, only predicted.
+        as_recorded: go on where a recording cannot be right (a sign, a scale or a unit is wrong); the first remark
+            warns of it.
 
     Raises:
-        RecordingError: the recording cannot be diagnosed; the message says why.
+        RecordingError: the recording cannot be right or cannot be diagnosed; the message says why.
         ParameterError: the model does not fit.
     """
     from eha_core.diagnosis import diagnose_together
     from eha_core.long_record.admission import admitted
     from eha_core.long_record.judging import judged
+    from eha_core.plausibility import admit
     from eha_core.report.provenance import with_provenance
     from eha_core.report.results import Results
 
@@ -127,6 +131,10 @@ def diagnose(
     if takes_motion_as_given(recordings, nominal):
         return _diagnose_motion(recordings, progress, tested)
     model = known_model(nominal, recordings[0])
+    recordings, tested = (
+        [admit(piece, model.values, as_recorded, model.composition, "as_recorded=True") for piece in pieces]
+        for pieces in (recordings, tested)
+    )
     found = judged(diagnose_together(recordings, model, progress, jobs, tested), records, model, progress)
     origin = "values given by name" if isinstance(nominal, (Mapping, NominalModel)) else nominal
     return Results(with_provenance(found, records, origin, "eha_core.diagnose"))

@@ -50,9 +50,15 @@ def check(
 
 
 def admit(
-    recording: Recording, nominal: Mapping[str, float], as_recorded: bool = False, composition: Composition = PAPER
+    recording: Recording,
+    nominal: Mapping[str, float],
+    as_recorded: bool = False,
+    composition: Composition = PAPER,
+    switch: str = "--as-recorded",
 ) -> Recording:
     """The recording, if it can be right; with `as_recorded` also one that cannot, with a warning as its first remark.
+
+    switch: how the caller's user turns that on, as an error says.
 
     Raises:
         RecordingError: a mistake was made in the recording, or its channels speak against the plant's source; the
@@ -62,7 +68,7 @@ def admit(
     if finding is None:
         return recording
     if not as_recorded:
-        raise RecordingError(f"{recording.path}: {finding}; --as-recorded goes on all the same")
+        raise RecordingError(f"{recording.path}: {finding}; {switch} goes on all the same")
     warning = f"warning: taken as recorded, although {finding}"
     return replace(recording, remarks=(warning, *recording.remarks))
 
