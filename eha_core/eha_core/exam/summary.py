@@ -67,12 +67,14 @@ def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
     """The score of a tool from its marks."""
     groups: list[tuple[str, list[Mark]]] = [("all", list(marks))]
     for tier in MEANINGS:
-        inside = [m for m in marks if m.tier == tier]
+        inside = [mark for mark in marks if mark.tier == tier]
         groups.append((tier, inside))
         if tier in ("single", "small"):
-            groups += [(f"{tier}, noise {noise:g}x", [m for m in inside if m.noise == noise]) for noise in (1, 3, 10)]
+            groups += [
+                (f"{tier}, noise {noise:g}x", [mark for mark in inside if mark.noise == noise]) for noise in (1, 3, 10)
+            ]
     rows = tuple(_row(name, group) for name, group in groups if group)
-    lost = tuple(m for m in marks if m.outcome in ("wrong", "failed"))
+    lost = tuple(mark for mark in marks if mark.outcome in ("wrong", "failed"))
     return Summary(
         tool,
         rows,
@@ -85,30 +87,30 @@ def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
 
 
 def _by_noise(marks: Sequence[Mark]) -> Iterator[tuple[str, float, Proportion]]:
-    noises = sorted({m.noise for m in marks})
+    noises = sorted({mark.noise for mark in marks})
     for tier in MEANINGS:
         for noise in noises:
-            inside = [m for m in marks if (m.tier, m.noise) == (tier, noise)]
+            inside = [mark for mark in marks if (mark.tier, mark.noise) == (tier, noise)]
             if inside:
-                yield tier, noise, _count(inside, lambda m: m.outcome == "right")
+                yield tier, noise, _count(inside, lambda mark: mark.outcome == "right")
 
 
 def _count(marks: Sequence[Mark], chosen: Choice) -> Proportion:
-    return Proportion(sum(1 for m in marks if chosen(m)), len(marks))
+    return Proportion(sum(1 for mark in marks if chosen(mark)), len(marks))
 
 
 def _of_sets(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
     """The aims for several effects at once: statement, share asked, share reached."""
-    pairs = [m for m in marks if m.tier == "pair" and m.decidable]
-    three, rigs = ([m for m in marks if m.tier == tier] for tier in ("three", "rig"))
-    together = [m for m in marks if m.tier == "recordings"]
+    pairs = [mark for mark in marks if mark.tier == "pair" and mark.decidable]
+    three, rigs = ([mark for mark in marks if mark.tier == tier] for tier in ("three", "rig"))
+    together = [mark for mark in marks if mark.tier == "recordings"]
     return [
-        ("pairs exact", 0.95, _count(pairs, lambda m: m.outcome == "right")),
-        ("three effects exact", 0.92, _count(three, lambda m: m.exact)),
-        ("rigs exact", 0.80, _count(rigs, lambda m: m.exact)),
-        ("two recordings with loads of their own exact", 0.80, _count(together, lambda m: m.exact)),
+        ("pairs exact", 0.95, _count(pairs, lambda mark: mark.outcome == "right")),
+        ("three effects exact", 0.92, _count(three, lambda mark: mark.exact)),
+        ("rigs exact", 0.80, _count(rigs, lambda mark: mark.exact)),
+        ("two recordings with loads of their own exact", 0.80, _count(together, lambda mark: mark.exact)),
         ("decidable effects of rigs found", 0.95, _found(rigs)),
-        ("`complete` told truly", 1.0, _count([m for m in marks if m.truthful is not None], _truthful)),
+        ("`complete` told truly", 1.0, _count([mark for mark in marks if mark.truthful is not None], _truthful)),
     ]
 
 
@@ -118,100 +120,104 @@ def _truthful(mark: Mark) -> bool:
 
 def _found(marks: Sequence[Mark]) -> Proportion:
     """Of the effects that can be seen beside the others, those that are named."""
-    found = [effect in m.named for m in marks for effect in m.seen]
+    found = [effect in mark.named for mark in marks for effect in mark.seen]
     return Proportion(sum(found), len(found))
 
 
 def _false_names(marks: Sequence[Mark]) -> Proportion:
     """Of the names given, those of nothing concealed."""
-    return Proportion(sum(len(m.false) for m in marks), sum(len(m.named) for m in marks))
+    return Proportion(sum(len(mark.false) for mark in marks), sum(len(mark.named) for mark in marks))
 
 
 def confusion(marks: Sequence[Mark]) -> list[tuple[str, str, int]]:
     """What was named in place of what: (concealed and not named, named and not concealed, how often)."""
     counts: Counter[tuple[str, str]] = Counter()
-    for m in marks:
-        missed = sorted(set(m.seen or m.concealed) - set(m.named)) or ["nothing"]
-        false = sorted(m.false) or ["nothing"]
+    for mark in marks:
+        missed = sorted(set(mark.seen or mark.concealed) - set(mark.named)) or ["nothing"]
+        false = sorted(mark.false) or ["nothing"]
         counts.update((concealed, other) for concealed in missed for other in false if concealed != other)
     return [(concealed, other, count) for (concealed, other), count in counts.most_common()]
 
 
 def _rightly(marks: Sequence[Mark]) -> list[tuple[str, int]]:
     """How often each effect was named that was there."""
-    return Counter(name for m in marks for name in sorted(set(m.named) & set(m.concealed))).most_common()
+    return Counter(name for mark in marks for name in sorted(set(mark.named) & set(mark.concealed))).most_common()
 
 
 def _row(name: str, marks: Sequence[Mark]) -> Row:
-    located = [m for m in marks if m.site_right is not None]
+    located = [mark for mark in marks if mark.site_right is not None]
     return Row(
         group=name,
         cases=len(marks),
-        right=_count(marks, lambda m: m.outcome == "right"),
-        abstained=_count(marks, lambda m: m.outcome == "abstained"),
-        wrong=_count(marks, lambda m: m.outcome == "wrong"),
-        failed=_count(marks, lambda m: m.outcome == "failed"),
-        site_right=_count(located, lambda m: bool(m.site_right)),
-        median_seconds=median(m.seconds for m in marks),
-        longest_seconds=max(m.seconds for m in marks),
+        right=_count(marks, lambda mark: mark.outcome == "right"),
+        abstained=_count(marks, lambda mark: mark.outcome == "abstained"),
+        wrong=_count(marks, lambda mark: mark.outcome == "wrong"),
+        failed=_count(marks, lambda mark: mark.outcome == "failed"),
+        site_right=_count(located, lambda mark: bool(mark.site_right)),
+        median_seconds=median(mark.seconds for mark in marks),
+        longest_seconds=max(mark.seconds for mark in marks),
     )
 
 
 def _targets(marks: Sequence[Mark]) -> list[Target]:
-    single = [m for m in marks if m.tier == "single" and m.decidable]
-    small = [m for m in marks if m.tier == "small"]
-    null = [m for m in marks if m.tier in ("null", "null_parameters")]
-    ambiguous = [m for m in marks if m.in_stated_set is not None]
-    twins = [m for m in marks if m.tier == "twins" and m.decidable]
-    outside = [m for m in marks if m.tier == "outside" and m.decidable]
-    held = [inside for m in marks for inside in m.intervals]
-    nominal = [inside for m in marks for inside in m.nominal_intervals]
-    curves = [m for m in outside if m.curve_r_squared is not None]
-    fits = [m for m in marks if m.outcome == "right" and m.held_out_ratio is not None]
-    right: Choice = lambda m: m.outcome == "right"  # noqa: E731 - one rule, used in several rows
+    single = [mark for mark in marks if mark.tier == "single" and mark.decidable]
+    small = [mark for mark in marks if mark.tier == "small"]
+    null = [mark for mark in marks if mark.tier in ("null", "null_parameters")]
+    ambiguous = [mark for mark in marks if mark.in_stated_set is not None]
+    twins = [mark for mark in marks if mark.tier == "twins" and mark.decidable]
+    outside = [mark for mark in marks if mark.tier == "outside" and mark.decidable]
+    held = [inside for mark in marks for inside in mark.intervals]
+    nominal = [inside for mark in marks for inside in mark.nominal_intervals]
+    curves = [mark for mark in outside if mark.curve_r_squared is not None]
+    fits = [mark for mark in marks if mark.outcome == "right" and mark.held_out_ratio is not None]
+    right: Choice = lambda mark: mark.outcome == "right"  # noqa: E731 - one rule, used in several rows
     rows = [
         *(
             (
                 f"single effect named, noise {noise:g}x",
                 goal,
-                _count([m for m in single if m.noise == noise], right),
+                _count([mark for mark in single if mark.noise == noise], right),
             )
             for noise, goal in ((1.0, 0.98), (3.0, 0.98), (10.0, 0.95))
         ),
-        ("right site of single effects", 0.99, _count(single, lambda m: bool(m.site_right))),
+        ("right site of single effects", 0.99, _count(single, lambda mark: bool(mark.site_right))),
         *_of_sets(marks),
-        ("named from command and position", 0.90, _count([m for m in marks if m.tier == "position_only"], right)),
-        ("truth in the set stated as ambiguous", 0.99, _count(ambiguous, lambda m: bool(m.in_stated_set))),
+        (
+            "named from command and position",
+            0.90,
+            _count([mark for mark in marks if mark.tier == "position_only"], right),
+        ),
+        ("truth in the set stated as ambiguous", 0.99, _count(ambiguous, lambda mark: bool(mark.in_stated_set))),
         (
             "ambiguous cases that the prescribed test resolves",
             0.90,
-            _count([m for m in ambiguous if m.in_stated_set], lambda m: bool(m.resolved)),
+            _count([mark for mark in ambiguous if mark.in_stated_set], lambda mark: bool(mark.resolved)),
         ),
         ("twins said to be ambiguous", 0.99, _count(twins, right)),
-        ("right site outside the catalogue", 0.95, _count(outside, lambda m: bool(m.site_right))),
+        ("right site outside the catalogue", 0.95, _count(outside, lambda mark: bool(mark.site_right))),
         (
             "recovered curves with R^2 of 0.95",
             0.95,
-            _count(curves, lambda m: m.curve_r_squared is not None and m.curve_r_squared >= 0.95),
+            _count(curves, lambda mark: mark.curve_r_squared is not None and mark.curve_r_squared >= 0.95),
         ),
         (
             "held-out error within 1.1 times the noise",
             0.95,
-            _count(fits, lambda m: m.held_out_ratio is not None and m.held_out_ratio <= 1.1),
+            _count(fits, lambda mark: mark.held_out_ratio is not None and mark.held_out_ratio <= 1.1),
         ),
     ]
     targets = [_at_least(statement, goal, reached) for statement, goal, reached in rows]
-    sets = [m for m in marks if m.tier in SETS]
+    sets = [mark for mark in marks if mark.tier in SETS]
     targets += [
         _at_most("names in sets that are false", 0.02, _false_names(sets)),
-        _at_most("small effects named wrongly", 0.01, _count(small, lambda m: m.outcome == "wrong")),
-        _at_most("false discoveries with nothing missing", 0.01, _count(null, lambda m: m.discovery)),
+        _at_most("small effects named wrongly", 0.01, _count(small, lambda mark: mark.outcome == "wrong")),
+        _at_most("false discoveries with nothing missing", 0.01, _count(null, lambda mark: mark.discovery)),
         _covering("effects' parameters", held),
         _covering("nominal parameters", nominal),
     ]
     if marks:
-        longest = max(m.seconds for m in marks)
-        for what, limit, reached in (("median", 10.0, median(m.seconds for m in marks)), ("longest", 60.0, longest)):
+        seconds = [mark.seconds for mark in marks]
+        for what, limit, reached in (("median", 10.0, median(seconds)), ("longest", 60.0, max(seconds))):
             targets.append(_target(f"seconds a recording, {what}", f"{limit:g}", f"{reached:.1f}", reached <= limit))
     return targets
 

@@ -22,10 +22,12 @@ def as_json(
     shown: Sequence[Shown] = (),
 ) -> str:
     """Everything, by tool: rows, targets and the mark of each case."""
-    tools = {s.tool: {**asdict(s), "marks": [asdict(m) for m in marks[s.tool]]} for s in summaries}
-    return json.dumps(
-        {"schema": "eha.exam/1", "about": dict(about), "tools": tools, "others": [asdict(s) for s in shown]}, indent=1
-    )
+    tools = {
+        summary.tool: {**asdict(summary), "marks": [asdict(mark) for mark in marks[summary.tool]]}
+        for summary in summaries
+    }
+    others = [asdict(result) for result in shown]
+    return json.dumps({"schema": "eha.exam/1", "about": dict(about), "tools": tools, "others": others}, indent=1)
 
 
 def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown: Sequence[Shown] = ()) -> str:
@@ -34,7 +36,7 @@ def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown
     lines += _markdown_table(("group", "tool", *HEAD), outcome_rows(summaries))
     for summary in summaries:
         lines += ["", f"## {summary.tool}: targets", ""]
-        rows = [[t.statement, t.aim, t.reached, t.judged] for t in summary.targets]
+        rows = [[target.statement, target.aim, target.reached, target.judged] for target in summary.targets]
         lines += _markdown_table(("target", "aim", "reached", "met"), rows)
         lines += ["", f"## {summary.tool}: what was named in place of what", ""]
         lines += _markdown_table(("concealed", "named", "times"), _confusion(summary))
@@ -84,8 +86,14 @@ def _confusion(summary: Summary) -> list[list[str]]:
 
 def _lost(summary: Summary) -> list[list[str]]:
     return [
-        [m.name, f"{m.noise:g}x", " + ".join(m.concealed) or "nothing", m.verdict, " + ".join(m.named) or "-"]
-        for m in summary.lost
+        [
+            mark.name,
+            f"{mark.noise:g}x",
+            " + ".join(mark.concealed) or "nothing",
+            mark.verdict,
+            " + ".join(mark.named) or "-",
+        ]
+        for mark in summary.lost
     ]
 
 
