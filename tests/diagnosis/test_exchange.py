@@ -17,6 +17,7 @@ from eha_core.diagnosis.search.initial_guesses import applicable_effects
 from eha_core.effects import effects
 from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe
+from eha_core.identification.parallel import side_by_side
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
@@ -83,3 +84,17 @@ def test_a_rival_that_leads_with_one_effect_more_is_taken_that_far(search):
     assert found.fit.objective < ahead.fit.objective - 100.0
     far_ahead = Candidate(at.hypothesis, replace(at.fit, objective=rival.fit.objective - 190.0))
     assert rivals_with_one_more(search, far_ahead, 100.0) == [], "the lag is predicted to gain 240, and 290 are needed"
+
+
+def test_side_by_side_proposals_are_fitted_to_the_same_digits(search):
+    best = fitted(search, IMITATED)
+    offset = next(member for member in best.hypothesis.members if member.id == "position_sensor_offset")
+    proposals = rivals_for(search, best, offset)
+    said: list[str] = []
+    alone, together = replace(search, found={}), replace(search, found={}, progress=said.append)
+    one_by_one = [alone.try_proposal(proposal, 2).fit for proposal in proposals]
+    with side_by_side(2):
+        at_once = [candidate.fit for candidate in together.try_proposals(proposals, 2)]
+    assert [one.values for one in at_once] == [one.values for one in one_by_one]
+    assert all(np.array_equal(one.states, other.states) for one, other in zip(at_once, one_by_one, strict=True))
+    assert said == [f"trying {' + '.join(proposal.hypothesis.ids)}" for proposal in proposals]

@@ -7,6 +7,7 @@ first. Read backwards, that is the order in which the members earn their place.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from eha_core.diagnosis.result import NOMINAL, RECALIBRATED, Correlation, Residu
 from eha_core.diagnosis.search.candidates import Candidate, without_effect
 from eha_core.diagnosis.search.prune import REFITTED
 from eha_core.identification.fit import Fit, fit
+from eha_core.identification.parallel import each
 
 
 def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, Residual]]:
@@ -51,7 +53,9 @@ def _taken_apart(
     without: dict[Member, Candidate] = {}
     rest = whole
     while len(rest.hypothesis.members) > 1:
-        smaller = {member: _refit_without(evidence, rest, member, known) for member in rest.hypothesis.members}
+        members = rest.hypothesis.members
+        refitted = each(partial(_refit_without, evidence, rest, known), members)
+        smaller = dict(zip(members, refitted, strict=True))
         without = without or smaller
         goes = min(smaller, key=lambda member: smaller[member].fit.objective)
         found.append((goes, rest))
@@ -60,7 +64,7 @@ def _taken_apart(
     return found[::-1], without
 
 
-def _refit_without(evidence: Evidence, at: Candidate, member: Member, known: Mapping[Hypothesis, Fit]) -> Candidate:
+def _refit_without(evidence: Evidence, at: Candidate, known: Mapping[Hypothesis, Fit], member: Member) -> Candidate:
     """The set without one member, fitted from where the whole set stands, or as the search has fitted it if that is
     better."""
     values, free = without_effect(at.fit, member.effect)
@@ -80,8 +84,8 @@ def _scales(evidence: Evidence) -> list[float]:
 def _residual(evidence: Evidence, result: Fit, scales: Sequence[float]) -> Residual:
     left = [scale * residual for scale, residual in zip(scales, result.residuals, strict=True)]
     names = evidence.calibration.shooting.names
-    each = {name: float(np.sqrt(np.mean(residual**2))) for name, residual in zip(names, left, strict=True)}
-    return Residual(each, float(np.sqrt(np.mean(np.concatenate(left) ** 2))))
+    channels = {name: float(np.sqrt(np.mean(residual**2))) for name, residual in zip(names, left, strict=True)}
+    return Residual(channels, float(np.sqrt(np.mean(np.concatenate(left) ** 2))))
 
 
 def correlation(final: Fit) -> Correlation:

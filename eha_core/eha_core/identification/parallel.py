@@ -1,4 +1,4 @@
-"""Simulations that do not depend on each other, side by side on threads: the compiled step lets them."""
+"""Simulations and fits that do not depend on each other, side by side on threads: the compiled step lets them."""
 
 from __future__ import annotations
 
@@ -16,19 +16,27 @@ _workers: ContextVar[tuple[Executor, int] | None] = ContextVar("workers", defaul
 
 @contextmanager
 def side_by_side(jobs: int) -> Iterator[None]:
-    """Within it, simulations that do not depend on each other run on `jobs` threads: the compiled step lets them."""
-    with ThreadPoolExecutor(jobs) as pool:
-        token = _workers.set((pool, jobs))
-        try:
-            yield
-        finally:
-            _workers.reset(token)
+    """Within it, what `each` is given runs on `jobs` threads; what such a task gives to `each` in turn, on its own."""
+    pool = ThreadPoolExecutor(jobs)
+    token = _workers.set((pool, jobs))
+    try:
+        yield
+    finally:
+        _workers.reset(token)
+        pool.shutdown(cancel_futures=True)  # an interrupt need not wait for what has not begun
 
 
-def each(task: Callable[[Task], Done], over: Iterable[Task]) -> list[Done]:
-    """The task done for each, on the threads there are."""
-    workers = _workers.get()
-    return list(map(task, over) if workers is None else workers[0].map(task, over))
+def each(
+    task: Callable[[Task], Done], over: Iterable[Task], announce: Callable[[Task], None] = lambda _: None
+) -> list[Done]:
+    """The task done for each, on the threads there are; each is announced before it is waited for."""
+    workers, items = _workers.get(), list(over)
+    results = map(task, items) if workers is None else workers[0].map(task, items)
+    done = []
+    for item in items:
+        announce(item)
+        done.append(next(results))
+    return done
 
 
 def threads() -> int:

@@ -16,6 +16,7 @@ from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.noise import residual_noise
 from eha_core.identification.numbers import Array
 from eha_core.identification.observation import RESOLVED
+from eha_core.identification.parallel import each
 from eha_core.identification.per_recording import base_name, is_one_of
 from eha_core.identification.problem import Problem
 from eha_core.identification.shooting import Shooting
@@ -50,6 +51,11 @@ class Candidate:
         """Chi^2 a sample: 1 where only noise is left."""
         return self.fit.data / self.fit.count
 
+    @property
+    def further(self) -> Proposal:
+        """The same hypothesis, to be fitted on from where it stands."""
+        return Proposal(self.hypothesis, self.fit.values, self.fit.free, self.fit.states)
+
 
 @dataclass
 class Search:
@@ -79,18 +85,30 @@ class Search:
 
     def try_proposal(self, proposal: Proposal, iterations: int, give_up_above: float = float("inf")) -> Candidate:
         """Fit a hypothesis from a proposal, and keep what is better than before."""
-        run = fit_in_stages if proposal.in_stages and not self.short else fit
-        result = run(
-            self.problem, proposal.values, proposal.free, proposal.states,
-            iterations=iterations, give_up_above=give_up_above,
-        )  # fmt: skip
-        return self.keep(proposal.hypothesis, result)
+        (candidate,) = self.try_proposals([proposal], iterations, give_up_above)
+        return candidate
+
+    def try_proposals(
+        self, proposals: Sequence[Proposal], iterations: int, give_up_above: float = float("inf")
+    ) -> list[Candidate]:
+        """Fit hypotheses from proposals, side by side, and keep what is better than before."""
+
+        def fitted(proposal: Proposal) -> Fit:
+            run = fit_in_stages if proposal.in_stages and not self.short else fit
+            return run(
+                self.problem, proposal.values, proposal.free, proposal.states,
+                iterations=iterations, give_up_above=give_up_above,
+            )  # fmt: skip
+
+        results = each(fitted, proposals, self._announce)
+        return [self.keep(proposal.hypothesis, result) for proposal, result in zip(proposals, results, strict=True)]
+
+    def _announce(self, proposal: Proposal) -> None:
+        self.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
 
     def go_on(self, candidate: Candidate, iterations: int, give_up_above: float = float("inf")) -> Candidate:
         """Fit a hypothesis further from where it stands."""
-        at = candidate.fit
-        result = fit(self.problem, at.values, at.free, at.states, iterations=iterations, give_up_above=give_up_above)
-        return self.keep(candidate.hypothesis, result)
+        return self.try_proposal(candidate.further, iterations, give_up_above)
 
     def measure_noise(self, at: Candidate) -> None:
         """Take each channel's noise from what a candidate leaves over, and every fit so far with it.

@@ -62,7 +62,9 @@ def rivals_for(search: Search, best: Candidate, member: Member) -> list[Proposal
     ]
     chosen, others = rivals[:FOR_ONE_PLACE], rivals[FOR_ONE_PLACE:]
     if search.short:
-        after_one = {proposal.hypothesis: search.try_proposal(proposal, 1).fit.objective for proposal in others}
+        after_one = {
+            candidate.hypothesis: candidate.fit.objective for candidate in search.try_proposals(others, 1)
+        }
         chosen += sorted(others, key=lambda proposal: after_one[proposal.hypothesis])[:AHEAD_AFTER_ONE]
     return chosen
 
@@ -87,10 +89,10 @@ def rivals_with_one_more(search: Search, best: Candidate, needed: float) -> list
         and candidate.hypothesis != best.hypothesis
         and candidate.fit.objective < best.fit.objective + OUT_OF_REACH
     ]
-    found = []
-    for rival in near if size < MOST_EFFECTS else ():
-        for proposal in at_the_fit(search, rival, 1):
-            if rival.fit.objective - proposal.predicted < enough:
-                search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
-                found.append(search.try_proposal(proposal, ITERATIONS, give_up_above=enough))
-    return found
+    leading = [
+        proposal
+        for rival in (near if size < MOST_EFFECTS else ())
+        for proposal in at_the_fit(search, rival, 1)
+        if rival.fit.objective - proposal.predicted < enough
+    ]
+    return search.try_proposals(leading, ITERATIONS, give_up_above=enough)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, MOST_EFFECTS, UNFITTED, chance_gain, gain_to_go_on
 from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search
@@ -48,15 +48,9 @@ def try_for_a_while(search: Search, best: Candidate, score_tests: Sequence[Score
         search.keep(hypothesis, result)
 
 
-def race(search: Search, proposals: Iterable[Proposal]) -> None:
+def race(search: Search, proposals: Sequence[Proposal]) -> None:
     """Fit every proposal a little, and the better ones further."""
-    runners: dict[object, Candidate] = {}
     for iterations, kept in LEGS:
-        if runners:
-            runners = {name: search.go_on(candidate, iterations) for name, candidate in runners.items()}
-        else:
-            for proposal in proposals:
-                search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
-                runners[proposal.hypothesis] = search.try_proposal(proposal, iterations)
-        ahead = sorted(runners.items(), key=lambda pair: pair[1].fit.objective)[:kept]
-        runners = dict(ahead)
+        ran = {candidate.hypothesis: candidate for candidate in search.try_proposals(proposals, iterations)}
+        ahead = sorted(ran.values(), key=lambda candidate: candidate.fit.objective)[:kept]
+        proposals = [candidate.further for candidate in ahead]

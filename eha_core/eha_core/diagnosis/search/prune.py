@@ -55,9 +55,12 @@ def wald(result: Fit, effect: Effect) -> float:
 
 def refit_without(search: Search, candidate: Candidate, member: Member, iterations: int = REFITTED) -> Candidate:
     """The set without one member, fitted from where the whole set stands."""
+    return search.try_proposal(_without(candidate, member), iterations)
+
+
+def _without(candidate: Candidate, member: Member) -> Proposal:
     values, free = without_effect(candidate.fit, member.effect)
-    proposal = Proposal(candidate.hypothesis.without(member), values, free, candidate.fit.states)
-    return search.try_proposal(proposal, iterations)
+    return Proposal(candidate.hypothesis.without(member), values, free, candidate.fit.states)
 
 
 def refit_gradually(search: Search, candidate: Candidate, member: Member) -> Candidate:
@@ -99,7 +102,9 @@ def prune(search: Search, best: Candidate) -> Candidate:
     will: where many parameters change together, such as all pressures' scale, that takes many iterations.
     """
     while len(best.hypothesis.members) > 1:
-        simpler = {member: refit_without(search, best, member) for member in best.hypothesis.members}
+        members = best.hypothesis.members
+        refitted = search.try_proposals([_without(best, member) for member in members], REFITTED)
+        simpler = dict(zip(members, refitted, strict=True))
         told = {member: wald(best.fit, member.effect) for member in simpler}
         worth = {member: min(_lost(candidate, best), told[member]) for member, candidate in simpler.items()}
         explained = search.found[NOTHING].objective - best.fit.objective

@@ -36,10 +36,9 @@ def _against_its_rivals(search: Search, best: Candidate, held_against: set[Hypot
         if rest in held_against:
             continue
         held_against.add(rest)
-        for proposal in rivals_for(search, best, member):
-            if search.short or proposal.hypothesis not in search.found:
-                search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
-                search.try_proposal(proposal, ITERATIONS, give_up_above=best.fit.objective + OUT_OF_REACH)
+        rivals = rivals_for(search, best, member)
+        new = [proposal for proposal in rivals if search.short or proposal.hypothesis not in search.found]
+        search.try_proposals(new, ITERATIONS, give_up_above=best.fit.objective + OUT_OF_REACH)
     size = len(best.hypothesis.members)
     needed = chance_gain(search.problem.count(), best.times_noise)
     larger = rivals_with_one_more(search, best, needed)

@@ -7,6 +7,7 @@ itself from short windows to long ones, and so is a set that has one; what they 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import UNFITTED
@@ -18,6 +19,7 @@ from eha_core.diagnosis.search.nominal_start import is_improbable
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import FreeParameter
+from eha_core.identification.parallel import each
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.short_windows import (
     from_short_windows,
@@ -49,21 +51,32 @@ def set_in_each_form(search: Search, best: Candidate) -> Candidate:
 def _each_form(
     search: Search, rest: Hypothesis, at: Fit, values: Mapping[str, float], free: tuple[FreeParameter, ...]
 ) -> Candidate:
+    def announce(effect: Effect) -> None:
+        search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} over short windows")
+
+    effects = _that_stick(search.applicable)
     for begun in _begins(at, values, free):
-        led = []
-        for effect in _that_stick(search.applicable):
-            search.progress(f"fitting {' + '.join(rest.with_effects([effect]).ids)} over short windows")
-            own = first_guess(effect, search.scales)
-            found = over_the_shortest(search.shorter, {**begun, **own}, with_effects(free, [effect], own))
-            led.append((found.objective, effect, found.values))
-        for _, effect, reached_by in sorted(led, key=lambda form: form[0])[:LED]:
-            its = with_effects(free, [effect], reached_by)
-            found = to_long_windows(search.problem, search.shorter, reached_by, its)
+        forms = list(zip(effects, each(partial(_over_short, search, begun, free), effects, announce), strict=True))
+        leading = sorted(forms, key=lambda form: form[1].objective)[:LED]
+        for (effect, _), found in zip(leading, each(partial(_over_long, search, free), leading), strict=True):
             search.keep(rest.with_effects([effect]), found)
         reached = search.best
         if reached.times_noise < UNFITTED:
             break
     return reached
+
+
+def _over_short(
+    search: Search, values: Mapping[str, float], free: tuple[FreeParameter, ...], effect: Effect
+) -> Fit:
+    own = first_guess(effect, search.scales)
+    return over_the_shortest(search.shorter, {**values, **own}, with_effects(free, [effect], own))
+
+
+def _over_long(search: Search, free: tuple[FreeParameter, ...], form: tuple[Effect, Fit]) -> Fit:
+    effect, led = form
+    its = with_effects(free, [effect], led.values)
+    return to_long_windows(search.problem, search.shorter, led.values, its)
 
 
 def _begins(at: Fit, values: Mapping[str, float], free: Sequence[FreeParameter]) -> list[Mapping[str, float]]:

@@ -46,11 +46,7 @@ def try_forms(
     search: Search, best: Candidate, proposals: Iterable[Proposal], behind: float = CLOSE
 ) -> list[Candidate]:
     """The proposals fitted, each given up where it must stay further behind the best set."""
-    found = []
-    for proposal in proposals:
-        search.progress(f"trying {' + '.join(proposal.hypothesis.ids)}")
-        found.append(search.try_proposal(proposal, ITERATIONS, give_up_above=best.fit.objective + behind))
-    return found
+    return search.try_proposals(list(proposals), ITERATIONS, give_up_above=best.fit.objective + behind)
 
 
 def for_its_cost(search: Search, candidates: Sequence[Candidate]) -> Candidate:

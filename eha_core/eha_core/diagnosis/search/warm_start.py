@@ -10,6 +10,7 @@ from eha_core.diagnosis.search.found import CONVERGE_WITHIN, OUT_OF_REACH, Found
 from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
+from eha_core.identification.parallel import each
 from eha_core.identification.per_recording import is_one_of
 from eha_core.identification.problem import Problem
 
@@ -27,7 +28,7 @@ def warm_start(problem: Problem, found: Found) -> Found:
         return found
     leading, *others = best_first(found)
     best = found[leading]
-    warm_started = dict(found)
+    begun: list[tuple[Hypothesis, dict[str, float]]] = []
     for hypothesis in others[:WARM_STARTED]:
         result = found[hypothesis]
         both = (parameter.name for parameter in result.free if parameter.name in best.values)
@@ -35,9 +36,16 @@ def warm_start(problem: Problem, found: Found) -> Found:
         shared |= _same_interval(hypothesis, leading, best.values)
         kindred = _of_the_same_kind(hypothesis.effects, leading.effects, best.values)
         for own in (kindred, {}) if kindred else ({},):
-            values, worse = {**result.values, **shared, **own}, best.objective + OUT_OF_REACH
-            again = fit(problem, values, result.free, best.states, iterations=15, give_up_above=worse)
-            keep_better(warm_started, hypothesis, again)
+            begun.append((hypothesis, {**result.values, **shared, **own}))
+
+    def fitted(start: tuple[Hypothesis, dict[str, float]]) -> Fit:
+        hypothesis, values = start
+        worse = best.objective + OUT_OF_REACH
+        return fit(problem, values, found[hypothesis].free, best.states, iterations=15, give_up_above=worse)
+
+    warm_started = dict(found)
+    for (hypothesis, _), again in zip(begun, each(fitted, begun), strict=True):
+        keep_better(warm_started, hypothesis, again)
     return _to_their_ends(problem, warm_started)
 
 
@@ -46,11 +54,17 @@ def _to_their_ends(problem: Problem, found: Found) -> Found:
     starts as they are and from those measured: a rival that stopped a little short would seem to be told apart."""
     exact = replace(problem, slope_step=problem.shooting.step_size)
     best = min(result.objective for result in found.values())
-    near = {hypothesis: at for hypothesis, at in found.items() if best < at.objective < best + CONVERGE_WITHIN}
+    near = [hypothesis for hypothesis, at in found.items() if best < at.objective < best + CONVERGE_WITHIN]
+
+    def fitted(start: tuple[Hypothesis, bool]) -> Fit:
+        hypothesis, measured = start
+        at = found[hypothesis]
+        return fit(exact, at.values, at.free, None if measured else at.states, iterations=30)
+
+    starts = [(hypothesis, measured) for hypothesis in near for measured in (False, True)]
     ended = dict(found)
-    for hypothesis, at in near.items():
-        for states in (at.states, None):
-            keep_better(ended, hypothesis, fit(exact, at.values, at.free, states, iterations=30))
+    for (hypothesis, _), again in zip(starts, each(fitted, starts), strict=True):
+        keep_better(ended, hypothesis, again)
     return ended
 
 
