@@ -131,6 +131,18 @@ def test_a_tool_is_held_to_one_core() -> None:
     assert run_tool([sys.executable, "-c", source, "{answer}"]).diagnosis == "1"
 
 
+@pytest.mark.parametrize("sent", ["SIGTERM", "SIGINT", "SIGHUP"])
+def test_a_tool_that_was_stopped_from_outside_has_not_answered(sent: str) -> None:
+    source = f"import os, signal; signal.signal(signal.{sent}, signal.SIG_DFL); os.kill(os.getpid(), signal.{sent})"
+    with pytest.raises(EhaError, match="was stopped from outside; start the exam again"):
+        run_tool([sys.executable, "-c", source])
+
+
+def test_a_tool_that_breaks_down_has_failed() -> None:
+    answer = run_tool([sys.executable, "-c", "import os, signal; os.kill(os.getpid(), signal.SIGKILL)"])
+    assert (answer.diagnosis, answer.status) == (None, -9)
+
+
 def test_cases_whose_outcome_is_known_are_left_out(exam: Exam) -> None:
     whole = Exam(exam.folder, 5, exam.seed).members
     assert Exam(exam.folder, 3, exam.seed, opened=2).members == whole[2:]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
+import signal
 import subprocess
 import sys
 import tempfile
@@ -44,6 +45,9 @@ SECOND = "second"
 
 LONGEST = 600.0
 """s; a tool that takes longer for one recording has failed on it."""
+
+STOPPED = (signal.SIGHUP, signal.SIGINT, signal.SIGTERM)
+"""A tool that ends of these has not answered."""
 
 ONE_CORE = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """Holds a tool's numerical libraries to one core: `--jobs` says how many tools work at once, and times are compared."""
@@ -220,6 +224,8 @@ def _run(words: Sequence[str], folder: str) -> tuple[int, str]:
         return -1, f"took longer than {LONGEST:g} s"
     except OSError as error:
         raise EhaError(f"{words[0]}: cannot be started ({error.strerror}); check the tool's command") from None
+    if -ended.returncode in STOPPED:
+        raise EhaError(f"{words[0]}: was stopped from outside; start the exam again, what is done stays done")
     return ended.returncode, ended.stderr[-2000:]
 
 
