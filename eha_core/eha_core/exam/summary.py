@@ -159,19 +159,16 @@ def _row(name: str, marks: Sequence[Mark]) -> Row:
     )
 
 
-def _targets(marks: Sequence[Mark]) -> list[Target]:
+def _shares(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
+    """The aims that ask for a share of at least so much: statement, share asked, share reached."""
     single = [mark for mark in marks if mark.tier == "single" and mark.decidable]
-    small = [mark for mark in marks if mark.tier == "small"]
-    null = [mark for mark in marks if mark.tier in ("null", "null_parameters")]
     ambiguous = [mark for mark in marks if mark.in_stated_set is not None]
     twins = [mark for mark in marks if mark.tier == "twins" and mark.decidable]
     outside = [mark for mark in marks if mark.tier == "outside" and mark.decidable]
-    held = [inside for mark in marks for inside in mark.intervals]
-    nominal = [inside for mark in marks for inside in mark.nominal_intervals]
     curves = [mark for mark in outside if mark.curve_r_squared is not None]
     fits = [mark for mark in marks if mark.outcome == "right" and mark.held_out_ratio is not None]
     right: Choice = lambda mark: mark.outcome == "right"  # noqa: E731 - one rule, used in several rows
-    rows = [
+    return [
         *(
             (
                 f"single effect named, noise {noise:g}x",
@@ -206,8 +203,15 @@ def _targets(marks: Sequence[Mark]) -> list[Target]:
             _count(fits, lambda mark: mark.held_out_ratio is not None and mark.held_out_ratio <= 1.1),
         ),
     ]
-    targets = [_at_least(statement, goal, reached) for statement, goal, reached in rows]
+
+
+def _targets(marks: Sequence[Mark]) -> list[Target]:
+    targets = [_at_least(statement, goal, reached) for statement, goal, reached in _shares(marks)]
     sets = [mark for mark in marks if mark.tier in SETS]
+    small = [mark for mark in marks if mark.tier == "small"]
+    null = [mark for mark in marks if mark.tier in ("null", "null_parameters")]
+    held = [inside for mark in marks for inside in mark.intervals]
+    nominal = [inside for mark in marks for inside in mark.nominal_intervals]
     targets += [
         _at_most("names in sets that are false", 0.02, _false_names(sets)),
         _at_most("small effects named wrongly", 0.01, _count(small, lambda mark: mark.outcome == "wrong")),
