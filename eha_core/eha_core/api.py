@@ -108,8 +108,7 @@ def diagnose(
         jobs: threads that simulate side by side.
         progress: is told each stage as it begins.
         tests: recordings that nothing is fitted to, only predicted.
-        as_recorded: go on where a recording cannot be right (a sign, a scale or a unit is wrong); the first remark
-            warns of it.
+        as_recorded: go on where a recording cannot be right (a sign, a scale or a unit is wrong); a remark warns of it.
 
     Raises:
         RecordingError: the recording cannot be right or cannot be diagnosed; the message says why.
