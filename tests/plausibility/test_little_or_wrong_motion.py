@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from eha_core.exam.drawing import draw_case
-from eha_core.exam.measuring import measure
+from eha_core.exam.measuring import measure, simulate_case
 from eha_core.parameters import nominal_values
 from eha_core.plausibility import check
-from eha_core.plausibility.relations import relations
+from eha_core.plausibility.relations import OPPOSED, relations
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tools.hostile import wrong_recordings as wrong
@@ -90,6 +90,20 @@ def test_a_force_speaks_for_a_sign_only_where_it_is_more_than_noise(noise: float
             arrays[name] = (time, values + noise * rng.standard_normal(len(time)))
         found = relations(wrong.as_recording(arrays), nominal)["force"]
         assert (found.sound, found.broken) == ((False, False) if noise else (order > 0.0, order < 0.0))
+
+
+def test_a_force_from_outside_may_drive_the_piston_against_its_oil() -> None:
+    """244 N at 3.3 Hz shake a light piston behind a leak: the oil's force goes against the motion, as if the chambers
+    were swapped, but at a given command it falls as the speed rises."""
+    case = replace(draw_case("named_and_unknown", 8, 70219), duration=8.0)
+    assert case.effect_ids == ("turbulent_leakage", "periodic_force")
+    shaken, nominal = wrong.as_recording(measure(case, simulate_case(case))), {**nominal_values(), **case.nominal}
+    found = relations(shaken, nominal)["force"]
+    assert found.value < OPPOSED and not found.broken and not found.sound
+    assert check(shaken, nominal) is None
+    calm = rig("null_parameters", 1)
+    swapped = wrong.make_wrong(made("chambers swapped"), calm, calm)
+    assert relations(swapped, calm.nominal)["force"].broken
 
 
 def test_chambers_that_a_leak_empties_while_a_single_rod_creeps_are_no_mistake() -> None:
