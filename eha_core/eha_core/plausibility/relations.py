@@ -29,7 +29,7 @@ NOTHING_LEFT = -0.98
 """Excess of both pressures, over half the supply, that no leak explains: the piston moves (assumed). Of unequal areas
 it is the share of what empty chambers have, where that is more."""
 OPPOSED = -0.2
-"""Part of the oil's force that goes with the speed, as a correlation, from which on the force goes against the motion."""
+"""Part of the oil's force that goes with the speed, as a correlation, from which on the force opposes the motion."""
 DRIVEN = -0.95
 """Correlation of speed and oil's force at a given command, from which on a force from outside drives the piston: it is
 then the pressures that give way. Of 295 recordings of the exam's kind (seed 70219) -0.99 in the one whose oil was
