@@ -174,14 +174,17 @@ def test_each_channels_error_is_told_on_the_windows_fitted_to_and_on_those_held_
 
 
 def test_remarks_name_their_recording_where_there_are_several_and_the_units_of_what_turns():
-    def remarks(*observations):
-        return conclude._remarks(SimpleNamespace(observations=observations, observation=observations[0]))
+    def remarks(*observations, cut_short=False):
+        evidence = SimpleNamespace(observations=observations, observation=observations[0])
+        return conclude._remarks(replace_in(evidence, comparison=SimpleNamespace(cut_short=cut_short)))
 
     assert remarks(observed()) == ("late",)
     assert remarks(observed(), observed(path="two.mcap", remarks=("cut",))) == ("one.mcap: late", "two.mcap: cut")
     vane = compose(cylinder="rotary_vane")
     units, late = remarks(observed(composition=vane))
     assert late == "late" and "rad/s and N m" in units
+    cut, late = remarks(observed(), cut_short=True)
+    assert late == "late" and "cut short at 500 fits" in cut
 
 
 def proposed(monkeypatch, observation: Observation):

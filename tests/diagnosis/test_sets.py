@@ -11,7 +11,9 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.candidates import Proposal, Search
+from eha_core.diagnosis.search.candidates import Candidate, Proposal, Search
+from eha_core.diagnosis.search.found import MOST_FITS, Effort
+from eha_core.diagnosis.search.grow import grow
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
 from eha_core.diagnosis.search.prune import asked_of, by_chance, prune, refit_without, wald
 from eha_core.diagnosis.verdict import coherence
@@ -100,6 +102,20 @@ def test_a_laws_form_leaves_something_for_what_acts_in_the_same_balance(three):
     assert left[load] == pytest.approx(criteria.OF_ITS_FORM * 1e5)  # the friction's form; air acts on the oil's flow
     assert left[air] == left[friction] == 0.0
     assert left[scale] == pytest.approx(criteria.OF_ITS_FORM * 2e5)
+
+
+def test_a_search_ends_with_what_it_has_after_so_many_fits(search):
+    nothing = search.again(Candidate(NOTHING, search.found[NOTHING]))
+    alone = replace(search, found={NOTHING: nothing.fit}, effort=Effort())
+    assert not alone.is_over and alone.leaves(nothing, criteria.NEAR_NOISE)
+    grown = grow(alone, nothing)
+    assert grown.hypothesis.ids == ("constant_load", "valve_deadband")
+    assert len(alone.found) <= alone.effort.fits < MOST_FITS
+    over = replace(search, found={NOTHING: nothing.fit}, effort=Effort(MOST_FITS))
+    assert over.is_over and not over.leaves(nothing, criteria.NEAR_NOISE)
+    assert grow(over, nothing) == nothing and list(over.found) == [NOTHING]
+    scout = replace(over, found={}, short=True)  # what is tried over short windows counts, too
+    assert scout.effort is over.effort
 
 
 def test_a_fit_in_another_noise_is_the_same_model(search):

@@ -29,6 +29,7 @@ from eha_core.diagnosis.result import (
     NamedEffect,
     UnknownLaw,
 )
+from eha_core.diagnosis.search.found import MOST_FITS
 from eha_core.diagnosis.search.model_comparison import Entry
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
@@ -156,9 +157,12 @@ def zeros_to_correct(effects: Iterable[NamedEffect], recording: Recording) -> It
 
 
 def _remarks(evidence: Evidence) -> tuple[str, ...]:
-    """What was put right in each recording; of several, each with its path."""
-    turns = evidence.observation.composition.cylinder.motion == "rad"
-    what = ("the actuator turns: for m, m/s and N of the channels read rad, rad/s and N m",) if turns else ()
+    """What was put right in each recording, of several each with its path; and a search that was cut short."""
+    what = []
+    if evidence.observation.composition.cylinder.motion == "rad":
+        what.append("the actuator turns: for m, m/s and N of the channels read rad, rad/s and N m")
+    if evidence.comparison.cut_short:
+        what.append(f"the search for sets of effects was cut short at {MOST_FITS} fits; another set may explain more")
     if len(evidence.observations) == 1:
         return (*what, *evidence.observation.remarks)
     return (

@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.hypothesis import Hypothesis, neutral
-from eha_core.diagnosis.search.found import Found, Progress, keep_better
+from eha_core.diagnosis.search.found import MOST_FITS, Effort, Found, Progress, keep_better
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, fit_in_stages, with_noise
 from eha_core.identification.free_parameters import FreeParameter
@@ -72,6 +72,16 @@ class Search:
     found: Found = field(default_factory=dict)
     shorter: Sequence[Shooting] = ()
     short: bool = False
+    effort: Effort = field(default_factory=Effort)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it has made as many fits as it may."""
+        return self.effort.fits >= MOST_FITS
+
+    def leaves(self, best: Candidate, more_than: float) -> bool:
+        """Whether the best leaves more than so much chi^2 a sample, and the search may go on."""
+        return best.times_noise > more_than and not self.is_over
 
     def keep(self, hypothesis: Hypothesis, result: Fit) -> Candidate:
         """Keep a fit if it is the best of its hypothesis; the hypothesis with its best fit."""
@@ -100,6 +110,7 @@ class Search:
                 iterations=iterations, give_up_above=give_up_above,
             )  # fmt: skip
 
+        self.effort.fits += len(proposals)
         results = each(fitted, proposals, self._announce)
         return [self.keep(proposal.hypothesis, result) for proposal, result in zip(proposals, results, strict=True)]
 

@@ -18,7 +18,7 @@ LEGS = ((3, 4), (4, 2), (10, 1))
 
 def grow(search: Search, best: Candidate) -> Candidate:
     """The best set that adding to `best` leads to; every set that was fitted stays with the search."""
-    while len(best.hypothesis.members) < MOST_EFFECTS:
+    while len(best.hypothesis.members) < MOST_EFFECTS and not search.is_over:
         score_tests = screen_in_time(search.problem, best.fit, guesses_beside(search, best))
         if not search.short:
             try_for_a_while(search, best, score_tests)

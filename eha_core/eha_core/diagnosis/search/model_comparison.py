@@ -51,13 +51,15 @@ class Entry:
 @dataclass(frozen=True)
 class ModelComparison:
     """All that was refitted, the best first, the nominal model among them with score 0; the screening's score tests;
-    and what one more effect beside the best is predicted to gain, the most of each site."""
+    what one more effect beside the best is predicted to gain, the most of each site; and whether the search for sets
+    was cut short."""
 
     nominal: Entry
     entries: tuple[Entry, ...]
     score_tests: tuple[ScoreTest, ...]
     residual_variance: float
     left_over: Mapping[str, float] = field(default_factory=dict)
+    cut_short: bool = False
 
 
 def compete(

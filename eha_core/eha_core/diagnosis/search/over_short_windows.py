@@ -38,6 +38,6 @@ def grown_over_short_windows(search: Search, nominal: Candidate) -> Candidate:
             moved = tuple(as_free.get(parameter.name, parameter) for parameter in grown.fit.free)
             search.keep(grown.hypothesis, to_long_windows(search.problem, search.shorter, grown.fit.values, moved))
         best = search.best
-        if best.times_noise < UNFITTED:
+        if not search.leaves(best, UNFITTED):
             break
     return best

@@ -53,19 +53,19 @@ def search_sets(search: Search, nominal: Candidate) -> Candidate:
     best = search.best
     if best.hypothesis.limited and not NEAR_NOISE < best.times_noise < FAR_FROM_NOISE:
         return best  # it explains all, or led the single effects and hardly explains anything
-    if best.times_noise > NEAR_NOISE:
+    if search.leaves(best, NEAR_NOISE):
         best = beside_the_singles(search)
-    if best.times_noise > UNFITTED:
+    if search.leaves(best, UNFITTED):
         best = grown_over_short_windows(search, nominal)
-    if best.times_noise > UNFITTED and sticks(best.hypothesis):
+    if search.leaves(best, UNFITTED) and sticks(best.hypothesis):
         best = forms_of_friction(search, nominal)
     best = grow(search, best)
-    if best.times_noise > UNFITTED:
+    if search.leaves(best, UNFITTED):
         best = grow(search, all_at_once(search, nominal))
-    if best.times_noise > NEAR_NOISE and sticks(best.hypothesis):
+    if search.leaves(best, NEAR_NOISE) and sticks(best.hypothesis):
         best = grow(search, set_in_each_form(search, best))
     for _ in range(ROUNDS):
-        if best.times_noise < NEAR_NOISE or len(best.hypothesis.members) < 2:
+        if not search.leaves(best, NEAR_NOISE) or len(best.hypothesis.members) < 2:
             break
         better = exchange(search, best)
         if better.hypothesis == best.hypothesis:

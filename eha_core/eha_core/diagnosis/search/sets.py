@@ -65,7 +65,8 @@ def with_sets(
     entries = rank(search.problem, nominal, found)
     left_over = {} if best.hypothesis.limited else _left_over(search, best)
     nothing, spread = Entry(NOTHING, nominal, 0.0), residual_variance(nominal, entries)
-    return calibration, ModelComparison(nothing, entries, comparison.score_tests, spread, left_over)
+    compared = ModelComparison(nothing, entries, comparison.score_tests, spread, left_over, search.is_over)
+    return calibration, compared
 
 
 def _near(search: Search, best: Candidate) -> Found:

@@ -21,7 +21,7 @@ def settle(search: Search, best: Candidate) -> Candidate:
     held_against: set[Hypothesis] = set()
     for _ in range(ROUNDS):
         before, best = best.hypothesis, _against_its_rivals(search, best, held_against)
-        if best.hypothesis == before:
+        if best.hypothesis == before or search.is_over:
             break
         # it may lead because its fit converged further, and not because of its new member
         best = prune(search, grow(search, best))
