@@ -17,6 +17,7 @@ from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.discrimination import RATE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import ChannelFit, Correlation, Explained, Location, Step, UnknownLaw
+from eha_core.diagnosis.search.found import MOST_FITS
 from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
@@ -184,7 +185,7 @@ def test_remarks_name_their_recording_where_there_are_several_and_the_units_of_w
     units, late = remarks(observed(composition=vane))
     assert late == "late" and "rad/s and N m" in units
     cut, late = remarks(observed(), cut_short=True)
-    assert late == "late" and "cut short at 500 fits" in cut
+    assert late == "late" and f"cut short at {MOST_FITS} fits" in cut
 
 
 def proposed(monkeypatch, observation: Observation):

@@ -45,7 +45,9 @@ def test_three_effects_at_once_are_found_from_the_nominal_values(search):
     assert search.found.keys() == {NOTHING, found.hypothesis}, "of what was fitted over short windows only the best"
 
 
-def test_where_more_than_noise_is_left_the_nominal_values_are_held_in_a_second_attempt(search, monkeypatch):
+def test_where_more_than_noise_is_left_it_is_tried_over_longer_windows_and_with_the_nominal_values_held(
+    search, monkeypatch
+):
     scouts = []
 
     def nothing_grows(scout, best):
@@ -55,9 +57,10 @@ def test_where_more_than_noise_is_left_the_nominal_values_are_held_in_a_second_a
     monkeypatch.setattr(over_short_windows, "grow", nothing_grows)
     search.found = {NOTHING: search.found[NOTHING]}
     assert grown_over_short_windows(search, Candidate(NOTHING, search.found[NOTHING])).hypothesis == NOTHING
-    (free, as_believed), (held, near_what_was_given) = scouts
-    for scout in (free, held):
+    (free, as_believed), (longer, believed_again), (held, near_what_was_given) = scouts
+    for scout, length in ((free, SHORT[0]), (longer, SHORT[1]), (held, SHORT[0])):
         edges = scout.problem.shooting.edges * scout.problem.shooting.step_size
-        assert scout.short and edges[1] - edges[0] == pytest.approx(SHORT[0])
+        assert scout.short and edges[1] - edges[0] == pytest.approx(length)
+    assert believed_again.fit.free == as_believed.fit.free
     for one, other in zip(as_believed.fit.free, near_what_was_given.fit.free, strict=True):
         assert other.prior_deviation == pytest.approx(HELD * one.prior_deviation)

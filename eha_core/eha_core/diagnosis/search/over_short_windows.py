@@ -22,21 +22,23 @@ from eha_core.identification.short_windows import ITERATIONS, held, starts, to_l
 def grown_over_short_windows(search: Search, nominal: Candidate) -> Candidate:
     """The best so far when a set was grown over the shortest windows from the nominal values, and led to long ones.
 
-    Where that leaves more than noise, once more with the nominal values held near what was given: what is free takes
-    the place of what is missing, but a value that is far off needs to move.
+    Where that leaves more than noise, once more over longer ones, in which what is slow shows better; and then with the
+    nominal values held near what was given: what is free takes the place of what is missing, but a value that is far
+    off needs to move.
     """
-    problem, free = whole(search.shorter[0]), nominal.fit.free
+    free = nominal.fit.free
     values = at_nominal(nominal.fit.values, free)
-    begun = starts(problem, values)
-    for believed in (free, held(free, values)):
-        nothing = fit(problem, values, believed, begun, iterations=ITERATIONS)
+    as_free = {parameter.name: parameter for parameter in free}
+    attempts = ((search.shorter, free), (search.shorter[1:], free), (search.shorter, held(free, values)))
+    for shorter, believed in attempts:
+        problem = whole(shorter[0])
+        nothing = fit(problem, values, believed, starts(problem, values), iterations=ITERATIONS)
         found = {NOTHING: nothing}
-        scout = replace(search, problem=problem, found=found, shorter=search.shorter[:1], short=True)
+        scout = replace(search, problem=problem, found=found, shorter=shorter[:1], short=True)
         grown = settle(scout, grow(scout, Candidate(NOTHING, nothing)))
         if grown.hypothesis != NOTHING:
-            as_free = {parameter.name: parameter for parameter in free}
             moved = tuple(as_free.get(parameter.name, parameter) for parameter in grown.fit.free)
-            search.keep(grown.hypothesis, to_long_windows(search.problem, search.shorter, grown.fit.values, moved))
+            search.keep(grown.hypothesis, to_long_windows(search.problem, shorter, grown.fit.values, moved))
         best = search.best
         if not search.leaves(best, UNFITTED):
             break
