@@ -11,7 +11,7 @@ from eha_core.diagnosis.search.candidates import Candidate, Search
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
 from eha_core.diagnosis.search.over_short_windows import grown_over_short_windows
 from eha_core.identification.observation import observe
-from eha_core.identification.short_windows import HELD, SHORT
+from eha_core.identification.short_windows import HELD, SHORT, VERY_SHORT
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
@@ -32,7 +32,8 @@ def search():
     given = {**nominal_values(), "bulk_modulus": 0.8 * nominal_values()["bulk_modulus"]}
     calibration = calibrate([observation], NominalModel(given), 2e-4)
     scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
-    made = Search(calibration.problem, applicable_effects([observation]), scales, shorter=calibration.shorter)
+    short = {"shorter": calibration.shorter, "shortest": calibration.shortest}
+    made = Search(calibration.problem, applicable_effects([observation]), scales, **short)
     made.keep(NOTHING, calibration.fitted)
     return made
 
@@ -45,7 +46,7 @@ def test_three_effects_at_once_are_found_from_the_nominal_values(search):
     assert search.found.keys() == {NOTHING, found.hypothesis}, "of what was fitted over short windows only the best"
 
 
-def test_where_more_than_noise_is_left_it_is_tried_over_longer_windows_and_with_the_nominal_values_held(
+def test_where_more_than_noise_is_left_it_is_tried_over_shorter_windows_and_with_the_nominal_values_held(
     search, monkeypatch
 ):
     scouts = []
@@ -57,8 +58,8 @@ def test_where_more_than_noise_is_left_it_is_tried_over_longer_windows_and_with_
     monkeypatch.setattr(over_short_windows, "grow", nothing_grows)
     search.found = {NOTHING: search.found[NOTHING]}
     assert grown_over_short_windows(search, Candidate(NOTHING, search.found[NOTHING])).hypothesis == NOTHING
-    (free, as_believed), (longer, believed_again), (held, near_what_was_given) = scouts
-    for scout, length in ((free, SHORT[0]), (longer, SHORT[1]), (held, SHORT[0])):
+    (free, as_believed), (shortest, believed_again), (held, near_what_was_given) = scouts
+    for scout, length in ((free, SHORT[0]), (shortest, VERY_SHORT[0]), (held, SHORT[0])):
         edges = scout.problem.shooting.edges * scout.problem.shooting.step_size
         assert scout.short and edges[1] - edges[0] == pytest.approx(length)
     assert believed_again.fit.free == as_believed.fit.free

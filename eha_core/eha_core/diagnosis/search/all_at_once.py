@@ -41,7 +41,7 @@ def all_at_once(search: Search, nominal: Candidate) -> Candidate:
     search.progress(f"fitting {len(effects)} effects together, from short windows to long ones")
     small, free = _small(effects, search.scales)
     plant = nominal.fit.free
-    short, *longer = map(whole, search.shorter[1:])
+    short, *longer = map(whole, search.shorter)
     values = {**at_nominal(nominal.fit.values, plant), **small}
     begun = fit(short, values, held((*plant, *free), values), starts(short, values), iterations=ITERATIONS)
     values = dict(begun.values)

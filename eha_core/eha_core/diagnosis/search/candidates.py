@@ -61,8 +61,9 @@ class Candidate:
 class Search:
     """What is searched, and all that was fitted on the way, by hypothesis.
 
-    `shorter`: see `from_short_windows`. `short`: the problem's windows are the shortest. They tell little about when an
-    effect acts, and nothing goes far in them, so that the valve's dynamics need not wait for the rest.
+    `shorter`, `shortest`: see `from_short_windows`. `short`: the problem's windows are the first of these. They tell
+    little about when an effect acts, and nothing goes far in them, so that the valve's dynamics need not wait for the
+    rest. `effort`: what is fitted over short windows counts, too.
     """
 
     problem: Problem
@@ -71,6 +72,7 @@ class Search:
     progress: Progress = lambda _: None
     found: Found = field(default_factory=dict)
     shorter: Sequence[Shooting] = ()
+    shortest: Sequence[Shooting] = ()
     short: bool = False
     effort: Effort = field(default_factory=Effort)
 

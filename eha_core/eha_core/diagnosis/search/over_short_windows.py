@@ -1,7 +1,7 @@
 """Over short windows: a set grown where the objective is smooth, and then led to long windows.
 
 Where much is missing, a fit over long windows rests wherever the piston breaks away too early or too late, and the next
-effect makes up for that. Over 50 ms nothing can go far another way than measured, so what is missing shows as itself.
+effect makes up for that. Over 0.1 s nothing can go far another way than measured, so what is missing shows as itself.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from eha_core.identification.short_windows import ITERATIONS, held, starts, to_l
 
 
 def grown_over_short_windows(search: Search, nominal: Candidate) -> Candidate:
-    """The best so far when a set was grown over the shortest windows from the nominal values, and led to long ones.
+    """The best so far when a set was grown over short windows from the nominal values, and led to long ones.
 
-    Where that leaves more than noise, once more over longer ones, in which what is slow shows better; and then with the
+    Where that leaves more than noise, once more over the shortest, in which friction finds its law; and then with the
     nominal values held near what was given: what is free takes the place of what is missing, but a value that is far
     off needs to move.
     """
     free = nominal.fit.free
     values = at_nominal(nominal.fit.values, free)
     as_free = {parameter.name: parameter for parameter in free}
-    attempts = ((search.shorter, free), (search.shorter[1:], free), (search.shorter, held(free, values)))
+    attempts = ((search.shorter, free), (search.shortest, free), (search.shorter, held(free, values)))
     for shorter, believed in attempts:
         problem = whole(shorter[0])
         nothing = fit(problem, values, believed, starts(problem, values), iterations=ITERATIONS)

@@ -36,7 +36,8 @@ def with_sets(
     """The comparison with the best set in it and whatever comes near that, and the calibration in the noise found."""
     singles = {entry.hypothesis: entry.fit for entry in comparison.entries}
     found: Found = {**singles, NOTHING: comparison.nominal.fit}
-    search = Search(calibration.problem, applicable, scales, progress, found, calibration.shorter)
+    short = calibration.shorter, calibration.shortest
+    search = Search(calibration.problem, applicable, scales, progress, found, *short)
     best = search_sets(search, search.again(Candidate(NOTHING, comparison.nominal.fit)))
     if len(best.hypothesis.members) > 1:
         # a set that stopped short would make any other form of a law look better
