@@ -12,7 +12,7 @@ from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case
 from eha_core.identification.fit import Ending, fit, fit_in_stages
 from eha_core.identification.observation import observe
-from eha_core.identification.short_windows import HELD, SHORT, from_short_windows, held
+from eha_core.identification.short_windows import HELD, SHORT, VERY_SHORT, from_short_windows, held
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
@@ -51,8 +51,9 @@ def test_short_windows_lead_nearer_than_long_ones_from_afar(rig, sizes):
 
 def test_the_recordings_are_the_same_in_windows_of_the_lengths_stated(rig):
     calibration, _ = rig
-    assert len(calibration.shorter) == len(SHORT)
-    for shooting, length in zip(calibration.shorter, SHORT, strict=True):
+    assert (SHORT, VERY_SHORT) == ((0.1, 0.25), (0.05, 0.25))
+    short = (*calibration.shorter, *calibration.shortest)
+    for shooting, length in zip(short, (*SHORT, *VERY_SHORT), strict=True):
         spans = np.diff(shooting.edges) * shooting.step_size
         assert np.median(spans) == pytest.approx(length, rel=0.21)
         assert sum(len(one.values) for one in shooting.samplings) >= 0.99 * calibration.problem.count()
