@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import subprocess
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,8 @@ from eha_core.exam.tiers import MEANINGS
 from eha_core.workers import Workers
 
 if TYPE_CHECKING:
+    from eha_core.exam.scoring import Mark
+    from eha_core.exam.shipped import Shown
     from eha_core.exam.summary import Summary
 
 OWN = "eha diagnose"
@@ -58,6 +61,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--lost", type=int, default=0, metavar="N", help="write reports of the first N wrong or failed cases"
     )
+    parser.add_argument(
+        "--pool",
+        type=Path,
+        nargs="+",
+        metavar="TABLE",
+        help="score the table.json of several sittings of one exam together, and ask nothing",
+    )
     parser.add_argument("--require", type=float, metavar="SHARE", help="fail when fewer of all cases are right")
 
 
@@ -65,12 +75,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the verb; the exit status says whether --require was met."""
     if arguments.real is not None:
         return _run_real(arguments)
+    if arguments.pool is not None:
+        return _run_pooled(arguments)
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
-    from eha_core.exam.page import as_html
     from eha_core.exam.run_exam import Exam, report_lost, run_exam
     from eha_core.exam.shipped import show_bags
     from eha_core.exam.summary import summarise
-    from eha_core.exam.tables import as_json, as_markdown
 
     if arguments.cases < 1 or arguments.jobs < 1:
         raise EhaError(f"--cases {arguments.cases} --jobs {arguments.jobs}: give 1 or more of each")
@@ -82,22 +92,45 @@ def run(arguments: argparse.Namespace) -> int:
     summaries = [summarise(tool, marks[tool]) for tool in tools]
     shown = show_bags(arguments.bags, _show) if arguments.bags else []
     reports = report_lost(exam, summaries[0].lost[: arguments.lost])
-    about = {
-        "command": " ".join(["eha", "exam", *sys.argv[2:]]),
-        "commit": _commit(),
-        "cases": arguments.cases,
-        "seed": arguments.seed,
-        "plants and recordings": "simulated by the exam's own truth",
-    }
+    about = {"commit": _commit(), "cases": arguments.cases, "seed": arguments.seed}
+    return _tell(arguments, summaries, marks, about, reports, shown)
+
+
+def _run_pooled(arguments: argparse.Namespace) -> int:
+    """Score several sittings of one exam together; --require is the share of all cases to be right."""
+    from eha_core.exam.sittings import read_sittings
+    from eha_core.exam.summary import summarise
+
+    marks, shared = read_sittings(arguments.pool)
+    summaries = [summarise(tool, marks[tool]) for tool in marks]
+    about = {**shared, "cases": summaries[0].rows[0].cases}
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    return _tell(arguments, summaries, marks, about)
+
+
+def _tell(
+    arguments: argparse.Namespace,
+    summaries: Sequence[Summary],
+    marks: Mapping[str, Sequence[Mark]],
+    about: Mapping[str, object],
+    reports: Mapping[str, str] | None = None,
+    shown: Sequence[Shown] = (),
+) -> int:
+    """Write the tables, print the shares, and hold them against --require."""
+    from eha_core.exam.page import as_html
+    from eha_core.exam.tables import as_json, as_markdown
+
+    command = " ".join(["eha", "exam", *sys.argv[2:]])
+    about = {"command": command, **about, "plants and recordings": "simulated by the exam's own truth"}
     for name, text in (
         ("table.md", as_markdown(summaries, about, shown)),
         ("table.json", as_json(summaries, marks, about, shown)),
-        ("table.html", as_html(summaries, marks, about, reports, shown)),
+        ("table.html", as_html(summaries, marks, about, reports or {}, shown)),
     ):
-        (exam.folder / name).write_text(text, encoding="utf-8")
+        (arguments.out / name).write_text(text, encoding="utf-8")
     for summary in summaries:
         _print_summary(summary)
-    print(f"tables: {exam.folder}/table.md, table.json, table.html")
+    print(f"tables: {arguments.out}/table.md, table.json, table.html")
     share = summaries[0].rows[0].right.value or 0.0
     if arguments.require is not None and share < arguments.require:
         print(f"eha exam: {share:.3f} of the cases are right, below --require {arguments.require}", file=sys.stderr)

@@ -8,6 +8,7 @@ from dataclasses import asdict
 
 from eha_core.exam.scoring import Mark
 from eha_core.exam.shipped import Shown
+from eha_core.exam.sittings import SCHEMA
 from eha_core.exam.summary import Summary
 from eha_core.exam.tiers import MEANINGS
 
@@ -27,7 +28,7 @@ def as_json(
         for summary in summaries
     }
     others = [asdict(result) for result in shown]
-    return json.dumps({"schema": "eha.exam/1", "about": dict(about), "tools": tools, "others": others}, indent=1)
+    return json.dumps({"schema": SCHEMA, "about": dict(about), "tools": tools, "others": others}, indent=1)
 
 
 def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown: Sequence[Shown] = ()) -> str:
