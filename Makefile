@@ -29,7 +29,7 @@ env:  ## make .venv/, or bring it up to date; PYTHON=... makes it anew with anot
 	@$(PYTHON) tools/make_env.py $(VENV)
 
 test: lint  ## lint, types, architecture and every test
-	$(WITH_PATH) $(RUN)/python -m pytest $(PYTEST_OPTIONS)
+	$(WITH_PATH) $(RUN)/python -m pytest $(PYTEST_OPTIONS) --numprocesses 2 --dist loadgroup
 
 lint: env  ## style, types and the walls between the packages
 	$(RUN)/ruff check .
