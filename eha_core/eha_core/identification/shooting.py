@@ -16,8 +16,8 @@ import numpy as np
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.per_recording import values_of
 from eha_core.plant import PAPER, Composition
-from eha_core.plant.active_intervals import Timetable, intervals, spans
-from eha_core.plant.composite import compiled_step
+from eha_core.plant.active_intervals import BEGINS, FIRST, Timetable, Windows, spans, stretches
+from eha_core.plant.composite import compiled_windows
 from eha_core.plant.memory import start_memory, starting_memory, trailing
 from eha_core.plant.one_by_one import side_by_side
 from eha_core.plant.simulator import LONGEST_DELAY, pack
@@ -113,22 +113,21 @@ class Shooting:
         rows = np.empty((steps // self.every, len(COLUMNS if full else SEEN)))
         ends = np.empty((self.windows, STATE_SIZE))
         for number, windows in enumerate(self.recordings, 1):
-            self._simulate_one(values_of(values, number), states, windows, rows, ends)
+            self._simulate_one(self._values_of(values, number), states, windows, rows, ends)
         return rows, ends
 
     def _simulate_one(
         self, values: Mapping[str, float], states: Array, windows: range, rows: Array, ends: Array
     ) -> None:
         """Fill the rows and end states of one recording's windows."""
-        step = compiled_step()
         changes = set(self.leakage[windows.start : windows.stop].tolist())
         packed = {
             change: pack({**values, "internal_leakage": values["internal_leakage"] + change}, self.step_size)
             for change in changes
         }
         acting = Timetable(spans(values, next(iter(packed.values()))[1], self.step_size))
-        start = int(self.edges[windows.start])
-        first = self.inputs[0, start]
+        start, inputs, own = self._of(windows)
+        first = inputs[0, 0]
         current = min(
             max(first / values["coil_resistance"], -values["saturation_current"]), values["saturation_current"]
         )
@@ -138,28 +137,40 @@ class Shooting:
         history = np.full(int(LONGEST_DELAY / self.step_size) + 3, first)
         history[-1] = 0
         memory = starting_memory(current, states[windows.start])
-        for window in windows:
-            begin, end = int(self.edges[window]), int(self.edges[window + 1])
-            vector, _, valve = packed[float(self.leakage[window])]
-            state[AT.time] = (begin - start) * self.step_size
-            state[PISTON] = states[window]
-            memory[trailing().slots] = self.initial_states[window, trailing().states]
-            inputs, out = self.inputs[:, begin:end], rows[begin // self.every : end // self.every]
-            for interval in intervals(begin - start, end - begin, self.every, acting):
-                if any(interval.beginning):
-                    start_memory(memory, interval.beginning, state[AT.current], state[PISTON])
-                piece = inputs[:, interval.steps]
-                if self.drive == "voltage":
-                    step.advance(
-                        state, memory, history, vector, interval.acting, valve, piece[0], self.step_size,
-                        interval.every, out[interval.rows],
-                    )  # fmt: skip
-                else:
-                    step.advance_driven(
-                        state, memory, vector, interval.acting, piece[0], piece[1], self.step_size, interval.every,
-                        out[interval.rows],
-                    )  # fmt: skip
-            ends[window] = state[PISTON]
+        kernel, slots = compiled_windows(), trailing().slots
+        shown = np.ascontiguousarray(own.shown[:, trailing().states])
+        starts = np.ascontiguousarray(states[windows.start : windows.stop])
+        changed = own.edges[1:-1][np.diff(own.leakage) != 0.0].tolist()
+        window = 0
+        for stretch in stretches(own.edges, self.every, acting.instants, changed):
+            at = int(stretch[0, FIRST])
+            if stretch[0, BEGINS] >= 0:
+                window = int(stretch[0, BEGINS])
+                kernel.begin(window, at * self.step_size, starts, shown, slots, state, memory)
+            if any(acting.beginning(at)):
+                start_memory(memory, acting.beginning(at), state[AT.current], state[PISTON])
+            vector, _, valve = packed[float(own.leakage[window])]
+            if self.drive == "voltage":
+                kernel.advance(
+                    stretch, starts, shown, slots, ends[windows.start : windows.stop], state, memory, history, vector,
+                    acting.acting(at), valve, inputs[0], self.step_size, rows[start // self.every :],
+                )  # fmt: skip
+            else:
+                kernel.advance_driven(
+                    stretch, starts, shown, slots, ends[windows.start : windows.stop], state, memory, vector,
+                    acting.acting(at), inputs[0], inputs[1], self.step_size, rows[start // self.every :],
+                )  # fmt: skip
+
+    def _values_of(self, values: Mapping[str, float], number: int) -> Mapping[str, float]:
+        """The parameters of one recording; of the only one they are there as they are."""
+        return values if len(self.first_windows) == 1 else values_of(values, number)
+
+    def _of(self, windows: range) -> tuple[int, Array, Windows]:
+        """Of one recording: its first step, what is given, and its windows, counted from that step."""
+        start, end = int(self.edges[windows.start]), int(self.edges[windows.stop])
+        here = slice(windows.start, windows.stop)
+        edges = self.edges[windows.start : windows.stop + 1] - start
+        return start, self.inputs[:, start:end], Windows(edges, self.leakage[here], self.initial_states[here])
 
     def simulate_many(self, sets: Sequence[tuple[Mapping[str, float], Array]]) -> tuple[Array, Array]:
         """`simulate` for up to LANES pairs of values and states, in lock-step and to the same digits.
@@ -174,21 +185,16 @@ class Shooting:
         ends = np.empty((self.windows, STATE_SIZE, len(sets)))
         starts = np.stack([states for _, states in sets])
         for number, windows in enumerate(self.recordings, 1):
-            start = int(self.edges[windows.start])
-            own = [values_of(values, number) for values, _ in sets]
-            lanes = side_by_side(own, self.step_size, self.inputs[0, start], self.composition)
+            start, inputs, own = self._of(windows)
+            plants = [self._values_of(values, number) for values, _ in sets]
+            lanes = side_by_side(plants, self.step_size, inputs[0, 0], self.composition)
             if rows is None:
                 rows = np.empty((int(self.edges[-1]) // self.every, width, lanes.lanes))
-            lanes.place(starts[:, windows.start])
+            here = starts[:, windows.start : windows.stop]
+            lanes.place(here[:, 0])
             lanes.start_memory()
-            for window in windows:
-                begin, end = int(self.edges[window]), int(self.edges[window + 1])
-                lanes.add_leakage(float(self.leakage[window]))
-                lanes.place(starts[:, window])
-                lanes.start_sensors(self.initial_states[window])
-                out = rows[begin // self.every : end // self.every]
-                lanes.advance(begin - start, self.inputs[:, begin:end], self.every, out)
-                ends[window] = lanes.states()[: len(sets)].T
+            out = rows[start // self.every :]
+            ends[windows.start : windows.stop] = lanes.advance_windows(own, here, inputs, self.every, out)
         assert rows is not None, "there is a recording"
         return rows, ends
 

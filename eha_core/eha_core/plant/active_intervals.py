@@ -7,9 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eha_core.effects import effects
 
 NEVER = (0, 0)
+
+Integers = NDArray[np.int64]
 
 Spans = tuple[tuple[int, int], ...]
 """Of each effect, in the catalogue's order: the first step in which it acts, and the first in which it no longer does.
@@ -90,3 +95,52 @@ def intervals(first: int, count: int, every: int, timetable: Timetable) -> Itera
     for piece in pieces(first, count, every, timetable.instants):
         at = first + piece.steps.start
         yield Interval(*piece, timetable.acting(at), timetable.beginning(at))
+
+
+class Windows(NamedTuple):
+    """The windows of a record, in each of which the piston begins anew: the steps `edges` (windows + 1,) at which they
+    begin, and the end; what is added to the internal leakage coefficient in each (windows,); and what sensors showed
+    there, position, velocity, pressure A and pressure B (windows, 4)."""
+
+    edges: Integers
+    leakage: NDArray[np.float64]
+    shown: NDArray[np.float64]
+
+
+FIRST, LAST, EVERY, FIRST_ROW, LAST_ROW, BEGINS, ENDS = range(7)
+"""What stands in the columns of a stretch: a piece's first step and the one after its last, how many make a row, its
+first row and the one after its last, and the windows that begin and end with it (-1: none)."""
+
+
+def stretches(
+    edges: Integers, every: int, instants: Sequence[int], apart: Sequence[int] = ()
+) -> list[Integers]:
+    """Windows in a row, of which the first begins with step `edges[0]` of the record and the last ends before
+    `edges[-1]`, cut as `pieces` does where an effect begins or ceases to act.
+
+    Throughout each stretch the same effects act; a new one begins at steps that are to stand `apart`, too. A stretch is
+    (pieces, 7), its columns those above; rows are counted from the record's start, and each window's begin with it.
+    """
+    windows = np.arange(len(edges) - 1)
+    firsts, lasts = edges[:-1], edges[1:]
+    steps = (firsts, lasts, np.full_like(firsts, every), firsts // every, lasts // every)
+    table = np.stack([*steps, windows, windows], axis=1)
+    within = set((np.searchsorted(edges, instants, side="right") - 1).tolist())
+    for window in sorted(within.intersection(range(len(windows))), reverse=True):
+        table = np.concatenate([table[:window], _cut(table[window], instants), table[window + 1 :]])
+    borders = np.sort(np.array([*instants, *apart], dtype=np.int64))
+    between = np.searchsorted(borders, table[:, FIRST], side="right")
+    return np.split(table, np.flatnonzero(np.diff(between)) + 1)
+
+
+def _cut(window: Integers, instants: Iterable[int]) -> Integers:
+    """A window's row of a stretch as the rows of its pieces."""
+    first, last, every, row, _, number, _ = window.tolist()
+    cut = [
+        (first + piece.steps.start, first + piece.steps.stop, piece.every, row + piece.rows.start,
+         row + piece.rows.stop, -1, -1)
+        for piece in pieces(first, last - first, every, instants)
+    ]  # fmt: skip
+    table = np.array(cut, dtype=np.int64)
+    table[0, BEGINS] = table[-1, ENDS] = number
+    return table

@@ -32,7 +32,8 @@ from eha_core.plant.parts import Source, parts
 SOURCES = (
     "compiled.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
     "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
-    "plant/composite.py", "plant/source.py", "plant/given.py", "plant/parts/sources/*.py", "effects/*.py",
+    "plant/windows.py", "plant/active_intervals.py", "plant/composite.py", "plant/source.py", "plant/given.py",
+    "plant/parts/sources/*.py", "effects/*.py",
 )
 
 
@@ -209,7 +210,7 @@ def _cache_root() -> Path:
 def _texts(given: bool) -> dict[str, str]:
     """What a package is made of, by file name."""
     here = Path(__file__).parent
-    copies = ("step.py",) if given else ("step.py", "lanes.py", "source.py")
+    copies = ("step.py",) if given else ("step.py", "lanes.py", "windows.py", "source.py")
     texts = {"__init__.py": "", "hooks.py": write_hooks()}
     texts |= {name: (here / name).read_text(encoding="utf-8") for name in copies}
     return texts | ({"source.py": write_source()} if given else {"lane_hooks.py": write_lane_hooks()})
@@ -259,6 +260,12 @@ def compiled_step() -> ModuleType:
 def compiled_given_step() -> ModuleType:
     """The same step under the sources whose input is measured: its `advance`."""
     return importlib.import_module(f"{_package(True)}.step")
+
+
+@cache
+def compiled_windows() -> ModuleType:
+    """Both of them through a record's windows: the functions of `eha_core.plant.windows`."""
+    return importlib.import_module(f"{_package(False)}.windows")
 
 
 @cache

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.effects import effects
-from eha_core.plant.active_intervals import instants, pieces, spans
-from eha_core.plant.composite import compiled_lanes, layout
+from eha_core.plant.active_intervals import BEGINS, FIRST, Integers, Windows, instants, pieces, spans, stretches
+from eha_core.plant.composite import compiled_lanes, compiled_windows, layout
 from eha_core.plant.lane_rows import (
     CURRENT,
     LANES,
@@ -54,7 +55,6 @@ class LockStep:
         self._active = 0
         self._leakage = np.array([values["internal_leakage"] for values in filled])
         self._block = _aligned(layout().end)
-        self._memory = list(self._memory_rows())
         self._rows = self._block.reshape(-1, LANES)[:, : self.lanes]
         self._fill(PARAMETERS, np.array([vector for vector, _, _ in packed]).T)
         self._fill(PROPAGATOR, np.array([valve for _, _, valve in packed]).T)
@@ -66,16 +66,6 @@ class LockStep:
         self._history = np.full(int(LONGEST_DELAY / step_size) + 3, before)
         self._history[-1] = 0
         self._kernel = compiled_lanes()
-
-    def _memory_rows(self) -> Iterator[tuple[int, str, Array]]:
-        """Which effect each memory slot is of, what it starts from, and its values in all lanes: a lane's slots of one
-        effect lie together."""
-        place = layout().memory
-        for number, effect in enumerate(effects()):
-            size = len(effect.memory) * LANES
-            slots = self._block[place : place + size].reshape(LANES, -1)[: self.lanes]
-            yield from ((number, *slot) for slot in zip(effect.memory, slots.T, strict=True))
-            place += size
 
     def _fill(self, place: int, rows: Array) -> None:
         self._rows[place // LANES : place // LANES + len(rows)] = rows
@@ -98,15 +88,14 @@ class LockStep:
         effects)."""
         starts = {"current": CURRENT, "position": POSITION, "velocity": VELOCITY, "pressure_a": PRESSURE_A,
                   "pressure_b": PRESSURE_B}  # fmt: skip
-        for number, kind, slot in self._memory:
+        for (number, kind), places in zip(_memory(), memory_places()[:, : self.lanes], strict=True):
             chosen = slice(None) if beginning is None else beginning[:, number]
-            slot[chosen] = 0.0 if kind == "zero" else self._rows[starts[kind] // LANES, chosen]
+            self._block[places[chosen]] = 0.0 if kind == "zero" else self._rows[starts[kind] // LANES, chosen]
 
     def start_sensors(self, shown: Array) -> None:
         """Sensors that trail what they measure begin anew from what they showed: position, velocity, pressure A and
         pressure B."""
-        for slot, state in zip(*trailing(), strict=True):
-            self._memory[slot][2][:] = shown[state]
+        self._block[memory_places()[trailing().slots, : self.lanes]] = shown[trailing().states, None]
 
     def advance(self, first: int, inputs: Array, every: int, out: Array) -> None:
         """Take a step for each column of `inputs`, the first of them step `first` of the record.
@@ -115,18 +104,8 @@ class LockStep:
         columns, lanes), columns either four (what the sensors say) or, under a voltage, all of COLUMNS.
         """
         self._rows[TIME // LANES] = first * self.step_size
-        starts, stops = self._spans[:, :, 0], self._spans[:, :, 1]
         for piece in pieces(first, inputs.shape[1], every, self._instants):
-            at = first + piece.steps.start
-            stretch = bisect_right(self._instants, at)
-            if stretch != self._stretch:
-                self._stretch = stretch
-                beginning = (starts == at) & (starts > 0) & (starts < stops)
-                if beginning.any():
-                    self.start_memory(beginning)
-                acts = ((starts <= at) & (at < stops)).T
-                self._fill(layout().acts, acts.astype(np.float64))
-                self._active = sum(1 << index for index in np.flatnonzero(acts.any(axis=1)).tolist())
+            self._act(first + piece.steps.start)
             given, rows = inputs[:, piece.steps], out[piece.rows]
             if len(inputs) == 1:
                 self._kernel.advance(
@@ -136,6 +115,70 @@ class LockStep:
                 self._kernel.advance_driven(
                     self._block, self.lanes, self._active, given[0], given[1], self.step_size, piece.every, rows
                 )
+
+    def advance_windows(self, windows: Windows, starts: Array, inputs: Array, every: int, out: Array) -> Array:
+        """Take a step for each column of `inputs` through the windows of a record, in each of which the pistons begin
+        in the states `starts` (sets, windows, 4).
+
+        inputs, out: as in `advance`. Returns the pistons' states at the windows' ends, (windows, 4, sets).
+        """
+        slots = memory_places()[trailing().slots]
+        spare = np.minimum(np.arange(self.lanes), len(starts) - 1)
+        starting = np.ascontiguousarray(np.moveaxis(starts[spare], 0, 2))
+        shown = np.ascontiguousarray(windows.shown[:, trailing().states])
+        leaking = self._leakage + windows.leakage[:, None]
+        ends = np.empty_like(starting)
+        kernel = compiled_windows()
+        for stretch in stretches(windows.edges, every, self._instants):
+            first = int(stretch[0, FIRST])
+            if stretch[0, BEGINS] >= 0:
+                kernel.begin_lanes(
+                    stretch[0, BEGINS], first * self.step_size, starting, shown, leaking, slots, self._block, self.lanes
+                )
+            self._act(first)
+            if len(inputs) == 1:
+                kernel.advance_lanes(
+                    stretch, starting, shown, leaking, slots, ends, self._block, self.lanes, self._history,
+                    self._active, inputs[0], self.step_size, out,
+                )  # fmt: skip
+            else:
+                kernel.advance_lanes_driven(
+                    stretch, starting, shown, leaking, slots, ends, self._block, self.lanes, self._active, inputs[0],
+                    inputs[1], self.step_size, out,
+                )  # fmt: skip
+        return ends[:, :, : len(starts)]
+
+    def _act(self, step: int) -> None:
+        """Let those effects act that do from this step of the record on."""
+        stretch = bisect_right(self._instants, step)
+        if stretch == self._stretch:
+            return
+        self._stretch = stretch
+        starts, stops = self._spans[:, :, 0], self._spans[:, :, 1]
+        beginning = (starts == step) & (starts > 0) & (starts < stops)
+        if beginning.any():
+            self.start_memory(beginning)
+        acts = ((starts <= step) & (step < stops)).T
+        self._fill(layout().acts, acts.astype(np.float64))
+        self._active = sum(1 << index for index in np.flatnonzero(acts.any(axis=1)).tolist())
+
+
+@cache
+def _memory() -> list[tuple[int, str]]:
+    """Of each memory slot, which effect it is of and what it starts from."""
+    return [(number, kind) for number, effect in enumerate(effects()) for kind in effect.memory]
+
+
+@cache
+def memory_places() -> Integers:
+    """Where each memory slot stands in the block, in each lane (slots, LANES): a lane's slots of one effect lie
+    together."""
+    found, place = [np.empty((0, LANES), dtype=np.int64)], layout().memory
+    for effect in effects():
+        size = len(effect.memory)
+        found.append(place + np.arange(size * LANES).reshape(LANES, size).T)
+        place += size * LANES
+    return np.concatenate(found)
 
 
 def _aligned(size: int) -> Array:

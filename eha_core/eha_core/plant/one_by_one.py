@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.effects import effects
-from eha_core.plant.active_intervals import instants, pieces, spans
+from eha_core.plant.active_intervals import Windows, instants, pieces, spans
 from eha_core.plant.composite import compiled_given_step
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.lockstep import LockStep
@@ -40,6 +41,7 @@ class OneByOne:
             state[[AT.target, AT.current, AT.spool_position]] = settled
             rests = "return_pressure" if composition.source.line else "supply_pressure"
             state[AT.supply_pressure], state[AT.return_pressure] = values[rests], values["return_pressure"]
+        self._change = np.nan
         self.add_leakage(0.0)
         pairs = zip(sets, self._packed, strict=True)
         self._spans = np.array([spans(values, active, step_size) for values, (_, active, _) in pairs])
@@ -54,6 +56,9 @@ class OneByOne:
 
     def add_leakage(self, change: float) -> None:
         """As `LockStep.add_leakage`."""
+        if change == self._change:
+            return
+        self._change = change
         leaking = [{**values, "internal_leakage": values["internal_leakage"] + change} for values in self._sets]
         self._packed = [pack(values, self.step_size, self._composition) for values in leaking]
 
@@ -87,6 +92,17 @@ class OneByOne:
                     piece.every, rows,
                 )  # fmt: skip
                 out[piece.rows, :, lane] = rows
+
+    def advance_windows(self, windows: Windows, starts: Array, inputs: Array, every: int, out: Array) -> Array:
+        """As `LockStep.advance_windows`."""
+        ends = np.empty((len(windows.leakage), starts.shape[2], len(starts)))
+        for window, (begin, end) in enumerate(pairwise(windows.edges.tolist())):
+            self.add_leakage(float(windows.leakage[window]))
+            self.place(starts[:, window])
+            self.start_sensors(windows.shown[window])
+            self.advance(begin, inputs[:, begin:end], every, out[begin // every : end // every])
+            ends[window] = self.states().T
+        return ends
 
 
 def side_by_side(

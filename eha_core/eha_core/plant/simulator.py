@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from math import expm1, inf, isfinite
+from operator import itemgetter
 from types import MappingProxyType, ModuleType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +82,45 @@ def held_propagator(damping_ratio: float, frequency: float, step_size: float) ->
     return (0.0, 0.0, *map(float, rows[0]), *map(float, rows[1]))
 
 
+Reader = Callable[[Mapping[str, float]], tuple[float, ...]]
+"""Takes some of a plant's parameters, as a tuple."""
+
+
+@cache
+def _vector_of() -> Reader:
+    """Takes what the compiled step takes out of a plant's parameters, as a tuple."""
+    return itemgetter(*step_rows())
+
+
+class Switches(NamedTuple):
+    """What takes every parameter that switches an effect out of a plant's, their neutral values, and whose they are."""
+
+    values_of: Reader
+    neutral: tuple[float, ...]
+    effects: tuple[int, ...]
+
+
+@cache
+def _switches() -> Switches:
+    rows = [
+        (f"{effect.id}.{row.name}", row.nominal, number)
+        for number, effect in enumerate(effects())
+        for row in effect.parameters
+        if row.switches
+    ]
+    names, neutral, owners = zip(*rows, strict=True)
+    return Switches(itemgetter(*names), neutral, owners)
+
+
+def active_effects(values: Mapping[str, float]) -> tuple[bool, ...]:
+    """Which effects of the catalogue act, as `Effect.is_active` says of each: a fit asks for this in each column of
+    each Jacobian."""
+    switches = _switches()
+    pairs = zip(switches.values_of(values), switches.neutral, switches.effects, strict=True)
+    acting = {number for value, neutral, number in pairs if value != neutral}
+    return tuple(number in acting for number in range(len(effects())))
+
+
 Packed = tuple[tuple[float, ...], tuple[bool, ...], tuple[float, ...]]
 
 
@@ -90,8 +131,8 @@ def pack(values: Mapping[str, float], step_size: float, composition: Composition
     the equations, `Composition.places`. Where the source's input is measured, its own parameters and what `given` reads
     follow those of the catalogue.
     """
-    active = tuple(effect.is_active(values) for effect in effects())
-    vector = tuple(values[name] for name in step_rows())
+    active = active_effects(values)
+    vector = _vector_of()(values)
     source = composition.source
     if source.valve == "coil" or source.given:
         valve = propagator(
