@@ -17,7 +17,7 @@ from eha_core.effects.sites import SITES
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant, hooks, step
 from eha_core.plant.composite import compiled_step
-from eha_core.plant.simulator import LONGEST_DELAY, pack
+from eha_core.plant.simulator import LONGEST_DELAY, active_effects, pack
 from eha_core.plant.state import COLUMNS
 
 CATALOGUE = [
@@ -92,7 +92,9 @@ def test_typical_sizes_are_within_bounds_and_switch_the_effect_on(effect: Effect
         assert row.starts
         if row.switches:
             assert row.typical != row.nominal
-            assert effect.is_active(nominal_values() | typical(effect, only=row.name))
+            on = nominal_values() | typical(effect, only=row.name)
+            assert effect.is_active(on)
+            assert active_effects(on) == tuple(each.is_active(on) for each in effects())
 
 
 def test_the_longest_delay_fits_the_plants_memory_of_commands() -> None:

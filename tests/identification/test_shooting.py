@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from eha_core.identification.problem import STATE_STEP, Problem, changes, linear
 from eha_core.identification.segments import cut
 from eha_core.identification.shooting import Shooting
 from eha_core.parameters import nominal_values
+from eha_core.plant import Plant
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +50,28 @@ def test_rows_and_ends_are_those_of_each_set_alone(shooting: Shooting) -> None:
         expected_rows, expected_ends = shooting.simulate(values, states)
         assert np.ascontiguousarray(rows[:, :, lane]).tobytes() == expected_rows.tobytes()
         assert np.ascontiguousarray(ends[:, :, lane]).tobytes() == expected_ends.tobytes()
+
+
+def test_windows_are_a_plant_that_is_placed_anew_at_each(shooting: Shooting) -> None:
+    """Effects begin and cease inside windows and at their edges; the leakage changes with the last one."""
+    edge = float(shooting.edges[1]) * shooting.step_size
+    acting = {
+        "coulomb_friction.force": 180.0, "coulomb_friction.acts_from": 0.4321, "coulomb_friction.acts_until": 2.5,
+        "constant_load.force": 90.0, "constant_load.acts_from": edge, "valve_deadband.half_width": 1e-4,
+    }  # fmt: skip
+    voltages = shooting.inputs[0].copy()
+    voltages[0] = 0.0  # a plant begins with its valve at rest
+    given = replace(shooting, inputs=voltages[None])
+    rows, ends = given.simulate(nominal_values() | acting, given.initial_states, full=True)
+    plant = Plant(acting, given.step_size)
+    leakage = plant.parameters["internal_leakage"]
+    for window, (first, last) in enumerate(pairwise(given.edges.tolist())):
+        plant.set_parameters({"internal_leakage": leakage + given.leakage[window]})
+        plant.place(*given.initial_states[window])
+        expected = plant.run(voltages[first:last], given.every).values
+        assert np.array_equal(rows[first // given.every : last // given.every], expected)
+        state = plant.state
+        assert tuple(ends[window]) == (state.position, state.velocity, state.pressure_a, state.pressure_b)
 
 
 def test_a_late_sensor_begins_each_window_from_what_it_showed(shooting: Shooting) -> None:

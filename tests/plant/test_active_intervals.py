@@ -4,7 +4,19 @@ import numpy as np
 import pytest
 
 from eha_core.plant import Plant
-from eha_core.plant.active_intervals import Timetable, instants, intervals
+from eha_core.plant.active_intervals import (
+    BEGINS,
+    ENDS,
+    EVERY,
+    FIRST,
+    FIRST_ROW,
+    LAST,
+    LAST_ROW,
+    Timetable,
+    instants,
+    intervals,
+    stretches,
+)
 
 FRICTION = {"coulomb_friction.force": 300.0}
 SPAN = {"effects_from": 0.0503, "effects_until": 0.1201}
@@ -76,6 +88,35 @@ def test_every_step_and_every_row_comes_once(first, count, every, spans) -> None
         assert interval.beginning == tuple(begins)
     assert steps == list(range(count))
     assert rows == list(range(count // every))
+
+
+@pytest.mark.parametrize(
+    ("edges", "every", "spans", "apart"),
+    [
+        ((0, 20, 40, 70), 5, ((0, 900),), ()),
+        ((0, 20, 40, 70), 5, ((0, 900), (23, 41)), (40,)),
+        ((0, 20, 40, 70), 10, ((20, 40), (3, 7), (69, 70), (-5, 70)), (20, 40)),
+        ((0, 8), 4, ((1, 2), (2, 3), (50, 60)), ()),
+    ],
+)
+def test_windows_are_taken_whole_but_where_an_effect_begins_or_ceases_to_act(edges, every, spans, apart) -> None:
+    cuts = instants(spans)
+    steps, rows, begun, ended = [], [], [], []
+    for stretch in stretches(np.array(edges), every, sorted(cuts), apart):
+        for piece in stretch:
+            first, last = int(piece[FIRST]), int(piece[LAST])
+            assert [begin <= first < end for begin, end in spans] == [begin <= last - 1 < end for begin, end in spans]
+            assert (last - first) // piece[EVERY] == piece[LAST_ROW] - piece[FIRST_ROW]
+            steps += range(first, last)
+            rows += range(piece[FIRST_ROW], piece[LAST_ROW])
+            begun += [(piece[BEGINS], first)] if piece[BEGINS] >= 0 else []
+            ended += [(piece[ENDS], last)] if piece[ENDS] >= 0 else []
+        inside = range(int(stretch[0, FIRST]) + 1, int(stretch[-1, LAST]))
+        assert not {*cuts, *apart}.intersection(inside)
+    assert steps == list(range(edges[-1]))
+    assert rows == list(range(edges[-1] // every))
+    assert begun == list(enumerate(edges[:-1]))
+    assert ended == list(enumerate(edges[1:]))
 
 
 def test_what_is_off_cuts_nothing() -> None:
