@@ -14,8 +14,8 @@ from benchmarks.row import as_markdown
 from eha_core.errors import EhaError
 
 BENCHMARKS = ("plant_step", "lockstep", "integrators", "windows", "reading", "diagnosis", "layer", "node")
-ON_REQUEST = ("hour",)
-"""Those that take many minutes: they are measured where they are named."""
+ON_REQUEST = ("hour", "nodes")
+"""Those that take many minutes, or a core that nothing else uses: they are measured where they are named."""
 
 
 def parser() -> argparse.ArgumentParser:

@@ -77,10 +77,10 @@ def _observe(rclpy: Any, simulator: int, started: list[subprocess.Popen[str]], s
     started += [start("subscriber", seconds, round(1e9 / RATE)) for _ in range(SUBSCRIBERS)]
     started.append(start("sleep_loop", RATE, seconds, WINDOW))
     reports.clear()
-    cpu, begun = _cpu_seconds(simulator), time.monotonic()
+    cpu, begun = cpu_seconds(simulator), time.monotonic()
     while time.monotonic() - begun < seconds:
         rclpy.spin_once(node, timeout_sec=0.5)
-    share = (_cpu_seconds(simulator) - cpu) / (time.monotonic() - begun)
+    share = (cpu_seconds(simulator) - cpu) / (time.monotonic() - begun)
     *counts, bare = [process.communicate(timeout=seconds + START_LIMIT)[0].split() for process in started]
     return Run(
         # The first report still covers the start of the subscribers.
@@ -93,13 +93,13 @@ def _observe(rclpy: Any, simulator: int, started: list[subprocess.Popen[str]], s
     )
 
 
-def _cpu_seconds(process: int) -> float:
+def cpu_seconds(process: int) -> float:
     """Return the CPU time [s] that a process has used, user and system."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def _milliseconds(lateness: tuple[float, ...]) -> str:
+def milliseconds(lateness: tuple[float, ...]) -> str:
     return ", ".join(f"{late * 1e3:.3f}" for late in lateness) + " ms"
 
 
@@ -116,8 +116,8 @@ def _rows(run: Run, seconds: float) -> list[Row]:
         ),
         Row(
             f"{_WHAT}: lateness p50, p99, p99.9, and lost time",
-            f"{_milliseconds(run.lateness)}; {run.lost_time:g} s lost",
-            f"bare sleep loop beside it: {_milliseconds(run.bare_lateness)}",
+            f"{milliseconds(run.lateness)}; {run.lost_time:g} s lost",
+            f"bare sleep loop beside it: {milliseconds(run.bare_lateness)}",
             f"p99 {run.lateness[1] / run.bare_lateness[1]:.2f} x",
             "stated",
             True,
