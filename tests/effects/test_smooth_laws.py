@@ -46,11 +46,8 @@ CASES = {
 }  # fmt: skip
 """The effect's parameters here, and the same sizes in the reference; after a comma, a form of the effect."""
 
-WRONG = {"presliding_friction": 2e-3, "turbulent_leakage": 0.06}
-"""Share of the effect that may be wrong, where it is not 1e-3.
-
-The reference turns laminar at a tenth of the pressure.
-"""
+WRONG = {"presliding_friction": 2e-3}
+"""Share of the effect that may be wrong, where it is not 1e-3."""
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,7 @@
 """Turbulent leakage between the chambers: a worn or torn piston seal that acts as an orifice.
 
 Signature: the piston loses speed under load, less than in proportion as the load grows.
-Equation: q12 += coefficient sign(P1 - P2) sqrt|P1 - P2|, smooth below about 0.01 MPa where the flow is laminar.
+Equation: q12 += coefficient sign(P1 - P2) sqrt|P1 - P2|; laminar, and smooth, below the transition pressure.
 Sign: positive from chamber A to B where A's pressure is higher.
 Validity: a sharp-edged gap; Reynolds numbers past the transition.
 Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 3 (orifice flow). The transition's form is
@@ -13,9 +13,6 @@ from math import sqrt
 from eha_core.compiled import inlined
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
-
-TRANSITION_PRESSURE = 1e3
-"""Pa; below about this difference the flow turns laminar (assumed)."""
 
 EFFECT = Effect(
     site="chamber",
@@ -35,6 +32,18 @@ EFFECT = Effect(
             typical=3e-8,
             switches=True,
             starts=(0.3, 3.0),
+        ),
+        Parameter(
+            "transition_pressure",
+            "p_t",
+            "Pa",
+            1e3,
+            1e2,
+            1e5,
+            "difference below which the flow turns laminar",
+            ASSUMED,
+            typical=1e3,
+            logarithmic=True,
         ),
     ),
 )
@@ -56,10 +65,11 @@ def contribution(
     pressure_b,
     atmospheric_pressure,
     coefficient,
+    transition_pressure,
 ):
     """Add d / (d^2 + p^2)^(1/4) for the root of the difference d, p the transition pressure, and its derivative."""
     difference = pressure_a - pressure_b
-    square = difference * difference + TRANSITION_PRESSURE * TRANSITION_PRESSURE
+    square = difference * difference + transition_pressure * transition_pressure
     root = sqrt(sqrt(square))
     cross_flow += coefficient * difference / root
     cross_slope += coefficient * (1.0 - 0.5 * difference * difference / square) / root
