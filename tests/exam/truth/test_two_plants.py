@@ -19,8 +19,8 @@ STEPS = 50
 
 CLOSE = 2.5e-7
 """m RMS, a fortieth of the noise of a good sensor; the model's step is the larger part of it."""
-WHERE_LAMINAR = {"turbulent_leakage": {"transition_pressure": PLANT["transition_pressure"]}}
-"""The truth has one transition for all of its orifices, the model one of the leakage path's own."""
+WHERE_LAMINAR = {"turbulent_leakage": {"transition_pressure": CATALOGUE["turbulent_leakage"]["transition_pressure"]}}
+"""The two assume different transitions unless one is given."""
 UNTIL_REVERSAL = ("stribeck_friction", "presliding_friction")
 """Stick-slip at a reversal amplifies whatever differs, SciPy's Radau and the truth included; compared before it."""
 

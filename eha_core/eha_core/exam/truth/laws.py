@@ -137,7 +137,8 @@ def leakage_flow(difference, position, elapsed, p):  # type: ignore[no-untyped-d
     conductance = p.internal_leakage * (1.0 + p.thermal_drift_leakage_ratio * warmth)
     if p.bore_wear_leakage_coefficient > 0.0:
         conductance += p.bore_wear_leakage_coefficient * worn_share(position, p)
-    flow = conductance * difference + p.turbulent_leakage_coefficient * root(difference, p.transition_pressure)
+    orifice = root(difference, p.turbulent_leakage_transition_pressure)
+    flow = conductance * difference + p.turbulent_leakage_coefficient * orifice
     lifted = max(p.relief_leakage_direction * difference - p.relief_leakage_opening, 0.0)
     return flow + p.relief_leakage_direction * p.relief_leakage_coefficient * lifted
 

@@ -77,7 +77,7 @@ CATALOGUE: dict[str, dict[str, float]] = {
     "valve_null_leakage": {"conductance": 0.0, "width": 1.0, "underlap": 0.0},
     "supply_pressure_droop": {"resistance": 0.0, "time_constant": 1.0},
     "return_back_pressure": {"resistance": 0.0, "time_constant": 1.0},
-    "turbulent_leakage": {"coefficient": 0.0},
+    "turbulent_leakage": {"coefficient": 0.0, "transition_pressure": PLANT["transition_pressure"]},
     "external_leakage": {"coefficient_a": 0.0, "coefficient_b": 0.0},
     "entrained_air": {"air_fraction": 0.0},
     "unequal_piston_area": {"ratio": 1.0},
