@@ -8,7 +8,6 @@ from functools import cache, lru_cache
 from math import expm1, inf, isfinite
 from operator import itemgetter
 from types import MappingProxyType, ModuleType
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,32 +91,21 @@ def _vector_of() -> Reader:
     return itemgetter(*step_rows())
 
 
-class Switches(NamedTuple):
-    """What takes every parameter that switches an effect out of a plant's, their neutral values, and whose they are."""
-
-    values_of: Reader
-    neutral: tuple[float, ...]
-    effects: tuple[int, ...]
-
-
 @cache
-def _switches() -> Switches:
-    rows = [
+def _switches() -> tuple[tuple[str, float, int], ...]:
+    """Every parameter that switches an effect, its neutral value, and the effect's number in the catalogue."""
+    return tuple(
         (f"{effect.id}.{row.name}", row.nominal, number)
         for number, effect in enumerate(effects())
         for row in effect.parameters
         if row.switches
-    ]
-    names, neutral, owners = zip(*rows, strict=True)
-    return Switches(itemgetter(*names), neutral, owners)
+    )
 
 
 def active_effects(values: Mapping[str, float]) -> tuple[bool, ...]:
     """Which effects of the catalogue act, as `Effect.is_active` says of each: a fit asks for this in each column of
     each Jacobian."""
-    switches = _switches()
-    pairs = zip(switches.values_of(values), switches.neutral, switches.effects, strict=True)
-    acting = {number for value, neutral, number in pairs if value != neutral}
+    acting = {number for name, neutral, number in _switches() if values[name] != neutral}
     return tuple(number in acting for number in range(len(effects())))
 
 
