@@ -146,7 +146,7 @@ class Shooting:
             at = int(stretch[0, FIRST])
             if stretch[0, BEGINS] >= 0:
                 window = int(stretch[0, BEGINS])
-                kernel.begin(window, at * self.step_size, starts, shown, slots, state, memory)
+            kernel.begin(stretch[0], self.step_size, starts, shown, slots, state, memory)
             if any(acting.beginning(at)):
                 start_memory(memory, acting.beginning(at), state[AT.current], state[PISTON])
             vector, _, valve = packed[float(own.leakage[window])]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.effects import effects
-from eha_core.plant.active_intervals import BEGINS, FIRST, Integers, Windows, instants, pieces, spans, stretches
+from eha_core.plant.active_intervals import FIRST, Integers, Windows, instants, pieces, spans, stretches
 from eha_core.plant.composite import compiled_lanes, compiled_windows, layout
 from eha_core.plant.lane_rows import (
     CURRENT,
@@ -130,12 +130,10 @@ class LockStep:
         ends = np.empty_like(starting)
         kernel = compiled_windows()
         for stretch in stretches(windows.edges, every, self._instants):
-            first = int(stretch[0, FIRST])
-            if stretch[0, BEGINS] >= 0:
-                kernel.begin_lanes(
-                    stretch[0, BEGINS], first * self.step_size, starting, shown, leaking, slots, self._block, self.lanes
-                )
-            self._act(first)
+            kernel.begin_lanes(
+                stretch[0], self.step_size, starting, shown, leaking, slots, self._block, self.lanes
+            )
+            self._act(int(stretch[0, FIRST]))
             if len(inputs) == 1:
                 kernel.advance_lanes(
                     stretch, starting, shown, leaking, slots, ends, self._block, self.lanes, self._history,

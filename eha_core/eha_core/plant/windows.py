@@ -17,12 +17,28 @@ from . import step
 
 
 @compiled
-def begin(window, time, starts, shown, slots, state, memory):
-    """Put the piston into the state in which a window starts, and sensors that trail to what they showed then.
+def of_steps(piece, inputs):
+    """The inputs of the piece's steps."""
+    return inputs[piece[FIRST] : piece[LAST]]
+
+
+@compiled
+def of_rows(piece, rows):
+    """The rows that the piece fills."""
+    return rows[piece[FIRST_ROW] : piece[LAST_ROW]]
+
+
+@compiled
+def begin(piece, step_size, starts, shown, slots, state, memory):
+    """Put the piston into the state in which the piece's window starts, and sensors that trail to what they showed
+    then; nothing where no window begins.
 
     starts: (windows, 4); shown: (windows, slots); slots: of the memory, which are those sensors'.
     """
-    state[AT.time] = time
+    window = piece[BEGINS]
+    if window < 0:
+        return
+    state[AT.time] = piece[FIRST] * step_size
     for place in range(4):
         state[AT.position + place] = starts[window, place]
     for place in range(len(slots)):
@@ -30,20 +46,25 @@ def begin(window, time, starts, shown, slots, state, memory):
 
 
 @compiled
+def end(piece, state, ends):
+    """Keep the piston's state in `ends` (windows, 4) where a window ends with the piece."""
+    if piece[ENDS] >= 0:
+        ends[piece[ENDS]] = state[AT.position : AT.position + 4]
+
+
+@compiled
 def advance(
     pieces, starts, shown, slots, ends, state, memory, history, parameters, active, propagator, inputs, step_size, rows,
 ):
-    """`step.advance` through windows; fills `ends` (windows, 4) with the piston's state at the end of each."""
+    """`step.advance` through windows; fills `ends`."""
     for number in range(len(pieces)):
-        first, last, window = pieces[number, FIRST], pieces[number, LAST], pieces[number, BEGINS]
-        if number and window >= 0:
-            begin(window, first * step_size, starts, shown, slots, state, memory)
+        if number:
+            begin(pieces[number], step_size, starts, shown, slots, state, memory)
         step.advance(
-            state, memory, history, parameters, active, propagator, inputs[first:last], step_size,
-            pieces[number, EVERY], rows[pieces[number, FIRST_ROW] : pieces[number, LAST_ROW]],
+            state, memory, history, parameters, active, propagator, of_steps(pieces[number], inputs), step_size,
+            pieces[number, EVERY], of_rows(pieces[number], rows),
         )
-        if pieces[number, ENDS] >= 0:
-            ends[pieces[number, ENDS]] = state[AT.position : AT.position + 4]
+        end(pieces[number], state, ends)
 
 
 @compiled
@@ -52,26 +73,27 @@ def advance_driven(
 ):
     """The same of `step.advance_driven`."""
     for number in range(len(pieces)):
-        first, last, window = pieces[number, FIRST], pieces[number, LAST], pieces[number, BEGINS]
-        if number and window >= 0:
-            begin(window, first * step_size, starts, shown, slots, state, memory)
+        if number:
+            begin(pieces[number], step_size, starts, shown, slots, state, memory)
         step.advance_driven(
-            state, memory, parameters, active, pressures_a[first:last], pressures_b[first:last], step_size,
-            pieces[number, EVERY], rows[pieces[number, FIRST_ROW] : pieces[number, LAST_ROW]],
+            state, memory, parameters, active, of_steps(pieces[number], pressures_a),
+            of_steps(pieces[number], pressures_b), step_size, pieces[number, EVERY], of_rows(pieces[number], rows),
         )
-        if pieces[number, ENDS] >= 0:
-            ends[pieces[number, ENDS]] = state[AT.position : AT.position + 4]
+        end(pieces[number], state, ends)
 
 
 @compiled
-def begin_lanes(window, time, starts, shown, leaking, slots, block, lanes):
+def begin_lanes(piece, step_size, starts, shown, leaking, slots, block, lanes):
     """`begin` in every lane of a block, and the internal leakage of that window.
 
     starts: (windows, 4, lanes); shown: (windows, slots); leaking: (windows, lanes); slots: (slots, lanes) places in
     `block`.
     """
+    window = piece[BEGINS]
+    if window < 0:
+        return
     for lane in range(lanes):
-        block[at.TIME + lane] = time
+        block[at.TIME + lane] = piece[FIRST] * step_size
         block[at.STATED_LEAKAGE + lane] = leaking[window, lane]
         for place in range(4):
             block[at.POSITION + place * at.LANES + lane] = starts[window, place, lane]
@@ -80,8 +102,11 @@ def begin_lanes(window, time, starts, shown, leaking, slots, block, lanes):
 
 
 @compiled
-def end_lanes(window, ends, block, lanes):
-    """Keep the pistons' states (windows, 4, lanes) at a window's end."""
+def end_lanes(piece, block, lanes, ends):
+    """Keep the pistons' states in `ends` (windows, 4, lanes) where a window ends with the piece."""
+    window = piece[ENDS]
+    if window < 0:
+        return
     for place in range(4):
         for lane in range(lanes):
             ends[window, place, lane] = block[at.POSITION + place * at.LANES + lane]
@@ -93,15 +118,13 @@ def advance_lanes(
 ):
     """`lanes.advance` through windows."""
     for number in range(len(pieces)):
-        first, last, window = pieces[number, FIRST], pieces[number, LAST], pieces[number, BEGINS]
-        if number and window >= 0:
-            begin_lanes(window, first * step_size, starts, shown, leaking, slots, block, lanes)
+        if number:
+            begin_lanes(pieces[number], step_size, starts, shown, leaking, slots, block, lanes)
         lock_step.advance(
-            block, lanes, history, active, voltages[first:last], step_size, pieces[number, EVERY],
-            rows[pieces[number, FIRST_ROW] : pieces[number, LAST_ROW]],
+            block, lanes, history, active, of_steps(pieces[number], voltages), step_size, pieces[number, EVERY],
+            of_rows(pieces[number], rows),
         )
-        if pieces[number, ENDS] >= 0:
-            end_lanes(pieces[number, ENDS], ends, block, lanes)
+        end_lanes(pieces[number], block, lanes, ends)
 
 
 @compiled
@@ -110,12 +133,10 @@ def advance_lanes_driven(
 ):
     """The same of `lanes.advance_driven`."""
     for number in range(len(pieces)):
-        first, last, window = pieces[number, FIRST], pieces[number, LAST], pieces[number, BEGINS]
-        if number and window >= 0:
-            begin_lanes(window, first * step_size, starts, shown, leaking, slots, block, lanes)
+        if number:
+            begin_lanes(pieces[number], step_size, starts, shown, leaking, slots, block, lanes)
         lock_step.advance_driven(
-            block, lanes, active, pressures_a[first:last], pressures_b[first:last], step_size, pieces[number, EVERY],
-            rows[pieces[number, FIRST_ROW] : pieces[number, LAST_ROW]],
+            block, lanes, active, of_steps(pieces[number], pressures_a), of_steps(pieces[number], pressures_b),
+            step_size, pieces[number, EVERY], of_rows(pieces[number], rows),
         )
-        if pieces[number, ENDS] >= 0:
-            end_lanes(pieces[number, ENDS], ends, block, lanes)
+        end_lanes(pieces[number], block, lanes, ends)
