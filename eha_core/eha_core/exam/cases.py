@@ -30,7 +30,8 @@ recording, whose windows also meet, that is some ten times as much ..."""
 AIMED_AT = 0.1
 """... and those that an effect is made so small as to gain."""
 MAKERS = (
-    "case", "cases", "concealed", "drawing", "excitation", "measuring", "oracle", "outside", "plants", "tiers",
+    "case", "cases", "concealed", "drawing", "excitation", "imitation", "measuring", "oracle", "outside", "plants",
+    "tiers",
 )  # fmt: skip
 """The exam's modules that a case and its recording are made by; the others score and present."""
 

@@ -196,6 +196,8 @@ def resume_truth(
     row = {name: float(truth[name][first]) for name in COLUMNS}
     for name, step in (shift or {}).items():
         row[name] += step
+        if name == "position":
+            row["sensed_position"] += step  # what trails the piston goes with it
     valve = Valve(last - first + 8)
     play = float(record["spool_hysteresis_half_width"])
     target = min(max(row["spool_target"], row["current"] - play), row["current"] + play)
