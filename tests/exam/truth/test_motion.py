@@ -173,3 +173,11 @@ def test_what_the_truth_does_not_know_is_said(
 ) -> None:
     with pytest.raises(EhaError, match=message):
         simulate_truth(plant, effects, np.zeros(11), 0.01)
+
+
+def test_a_truth_that_cannot_be_integrated_says_so_once(capfd: pytest.CaptureFixture[str]) -> None:
+    """A piston a metre beyond the end of its stroke; the solver's own messages would come between what is printed."""
+    truth = simulate_truth({}, [], SINE, 1.0)
+    with pytest.raises(EhaError, match="cannot be integrated past 0"):
+        resume_truth({}, [], truth, 500, 700, shift={"position": 1.0})
+    assert capfd.readouterr() == ("", "")

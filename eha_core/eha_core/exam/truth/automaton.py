@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import warnings
+from contextlib import redirect_stdout
 
 import numpy as np
 from numba import njit
@@ -23,6 +25,9 @@ from eha_core.exam.truth.laws import (
     margins,
 )
 from eha_core.exam.truth.valve import Valve, evaluate
+
+# what goes wrong is raised; SUNDIALS would write it into whatever is printed, too
+os.environ.setdefault("SUNLOGGER_WARNING_FILENAME", os.devnull)
 
 ABSOLUTE_TOLERANCE = np.array([1e-11, 1e-9, 1.0, 1.0, 1.0, 1.0, 1e-11, 1e-12, 1e-12, 1e-12, 1e-12] + [1.0] * 4)
 RELATIVE_TOLERANCE = 1e-8
@@ -99,7 +104,7 @@ class Automaton:
         if stop - self.time < SHORTEST_SPAN:
             return
         for _ in range(EVENTS_PER_SAMPLE):
-            with warnings.catch_warnings():
+            with warnings.catch_warnings(), redirect_stdout(None):
                 warnings.simplefilter("ignore")
                 result = self._solver.step(stop, tstop=stop)
             self.time, self.state = float(result.t), np.array(result.y)
