@@ -181,3 +181,9 @@ def test_a_truth_that_cannot_be_integrated_says_so_once(capfd: pytest.CaptureFix
     with pytest.raises(EhaError, match="cannot be integrated past 0"):
         resume_truth({}, [], truth, 500, 700, shift={"position": 1.0})
     assert capfd.readouterr() == ("", "")
+
+
+def test_a_truth_that_runs_away_cannot_be_integrated() -> None:
+    truth = simulate_truth({}, [], SINE, 1.0)
+    with pytest.raises(EhaError, match="cannot be integrated past 0"):
+        resume_truth({}, [], truth, 500, 700, shift={"pressure_a": np.inf, "pressure_b": 1e148})

@@ -51,7 +51,10 @@ def _piece_at(table, cursor, time):  # type: ignore[no-untyped-def]
 
 def _rates(time, y, rates, automaton):  # type: ignore[no-untyped-def]
     piece = _piece_at(automaton.valve.table, automaton.cursor, time)
-    derivatives(time, y, rates, evaluate(piece, time, automaton.records)[2], automaton.mode, automaton.records)
+    try:
+        derivatives(time, y, rates, evaluate(piece, time, automaton.records)[2], automaton.mode, automaton.records)
+    except ZeroDivisionError:  # a state that ran away; raised from here, the solver would turn it into another error
+        rates[:] = np.nan
 
 
 def _events(time, y, values, automaton):  # type: ignore[no-untyped-def]
