@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from eha_core.exam.truth.record import CATALOGUE
 
 FOLDER = Path(truth_package.__file__).parent
 ALLOWED = ("numpy", "numba", "sksundae", "eha_core.errors", "eha_core.exam.truth")
-STANDARD = ("__future__", "collections", "dataclasses", "warnings")
+STANDARD = sys.stdlib_module_names - {"importlib"}
 
 
 def imports(path: Path) -> set[str]:
