@@ -126,9 +126,12 @@ def left_by_the_best(
     windows = without_change
     for number in range(STEPS):
         if number:
-            windows = [
-                model.linearised(first, at.changes, shift) for first, shift in zip(starts, at.shifts, strict=True)
-            ]
+            try:
+                windows = [
+                    model.linearised(first, at.changes, shift) for first, shift in zip(starts, at.shifts, strict=True)
+                ]
+            except EhaError:  # a rig a little beside it cannot be integrated
+                break
         better = _better(model, starts, at, *_step(windows, at.changes))
         if better is None:
             break
