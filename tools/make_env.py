@@ -29,6 +29,7 @@ DEFAULT_INDEX = "https://pypi.org/simple"
 EDITABLE = ("eha_core", "eha_sim_node", "rclpy_dds")
 DEFINITIONS = "eha_interfaces"
 NODES = "eha_sim_node"
+RECORDING = ROOT / "bags" / "rig_as_modelled.mcap"
 # Whatever decides what gets installed: a change of one of these makes the environment stale.
 SOURCES = (
     "tools/make_env.py",
@@ -115,6 +116,15 @@ def make(folder: Path) -> None:
     packages = [word for name in EDITABLE for word in ("--editable", ROOT / name)] + [ROOT / DEFINITIONS]
     subprocess.run([*pip, "--no-build-isolation", "--no-deps", "--force-reinstall", *packages], check=True)
     lay_out_nodes(folder)
+    compile_plant(folder)
+
+
+def compile_plant(folder: Path) -> None:
+    """Have a recording diagnosed, which compiles the plant for all that comes after: the code is kept by user and by
+    version."""
+    print("make env: a first diagnosis, which compiles the plant", flush=True)
+    diagnosis: list[str | Path] = [folder / "bin" / "eha", "diagnose"]
+    subprocess.run([*diagnosis, RECORDING, "--json", "-"], check=True, stdout=subprocess.DEVNULL)
 
 
 def lay_out_nodes(folder: Path) -> None:

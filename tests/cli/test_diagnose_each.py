@@ -31,7 +31,9 @@ def test_an_unusable_recording_stops_none_of_the_others(
     out, err = capfd.readouterr()
     assert sorted(line.split(":")[0] for line in out.splitlines()) == ["as_modelled.mcap", "rig_cut_short.mcap"]
     assert "dry friction" in out
-    assert re.fullmatch(r"absent.csv: .*absent.csv.*\n", err)
+    # a worker that has to compile the plant says so, too
+    [refusal] = [line for line in err.splitlines() if "compiling the plant" not in line]
+    assert re.fullmatch(r"absent.csv: .*absent.csv.*", refusal)
     written = (tmp_path / "out").glob("*/diagnosis.json")
     verdicts = {path.parent.name: json.loads(path.read_text())["verdict"] for path in written}
     assert verdicts == {"as_modelled": "consistent", "rig_cut_short": "missing_physics"}

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import logging
 import os
 import pkgutil
 import sys
@@ -21,6 +22,9 @@ from eha_core.version import __version__
 
 UNUSABLE = 2
 """Exit status where the input or the arguments cannot be used."""
+
+CLEAR_LINE = "\r\x1b[K"
+"""Takes away what stands in a terminal's last line."""
 
 _INTERRUPTED = 130
 _UNREAD = 141  # what a shell reports of a program that SIGPIPE ended
@@ -79,6 +83,8 @@ def main(words: Sequence[str] | None = None) -> int:
 
         autocomplete(parser)
     arguments = parser.parse_args(words)
+    # what a line of progress has left on a terminal goes first
+    logging.basicConfig(format=f"{CLEAR_LINE if sys.stderr.isatty() else ''}eha {arguments.verb}: %(message)s")
     try:
         status: int = modules[arguments.verb].run(arguments)
         sys.stdout.flush()

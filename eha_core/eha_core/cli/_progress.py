@@ -8,6 +8,7 @@ from pathlib import Path
 from time import monotonic
 from typing import TextIO
 
+from eha_core.cli import CLEAR_LINE
 from eha_core.errors import EhaError
 
 PHASES = {
@@ -57,7 +58,7 @@ class Progress:
             print(f"{passed:7.1f} s  {self.placed(message)}", file=self._log, flush=True)
         if self._out.isatty():
             line = f"  {passed:.0f} s {self.placed(message)}"
-            print(f"\r\x1b[K{line[:WIDTH]}", end="", file=self._out, flush=True)
+            print(f"{CLEAR_LINE}{line[:WIDTH]}", end="", file=self._out, flush=True)
         elif self._clock() - self._told >= NOW_AND_THEN:
             self._told = self._clock()
             print(f"eha diagnose: {passed:.0f} s {self.placed(message)}", file=self._out, flush=True)
@@ -74,7 +75,7 @@ class Progress:
     def end(self) -> None:
         """Take the line away."""
         if self._out.isatty():
-            print("\r\x1b[K", end="", file=self._out, flush=True)
+            print(CLEAR_LINE, end="", file=self._out, flush=True)
         if self._log:
             self._log.close()
 

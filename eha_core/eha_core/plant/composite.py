@@ -13,6 +13,7 @@ import hashlib
 import importlib
 import importlib.util
 import inspect
+import logging
 import os
 import sys
 import tempfile
@@ -251,24 +252,41 @@ def _package(given: bool) -> str:
 
 
 @cache
+def _announce() -> None:
+    """A warning, so that it is seen where nobody has set up logging: a silence this long looks like a hang."""
+    logging.getLogger(__name__).warning(
+        "compiling the plant, once after an installation or an update: up to a minute"
+    )
+
+
+def _module(given: bool, name: str) -> ModuleType:
+    """One of the generated package's modules; says so where the first call will compile it."""
+    module = importlib.import_module(f"{_package(given)}.{name}")
+    cached = getattr(module.advance, "stats", None)  # none where NUMBA_DISABLE_JIT leaves nothing to compile
+    if cached and not any(Path(cached.cache_path).glob(f"{name}.advance-*.nbi")):
+        _announce()
+    return module
+
+
+@cache
 def compiled_step() -> ModuleType:
     """The step with every effect of the catalogue plugged in: a module with the functions of `eha_core.plant.step`."""
-    return importlib.import_module(f"{_package(False)}.step")
+    return _module(False, "step")
 
 
 @cache
 def compiled_given_step() -> ModuleType:
     """The same step under the sources whose input is measured: its `advance`."""
-    return importlib.import_module(f"{_package(True)}.step")
+    return _module(True, "step")
 
 
 @cache
 def compiled_windows() -> ModuleType:
     """Both of them through a record's windows: the functions of `eha_core.plant.windows`."""
-    return importlib.import_module(f"{_package(False)}.windows")
+    return _module(False, "windows")
 
 
 @cache
 def compiled_lanes() -> ModuleType:
     """The lock-step with every effect of the catalogue plugged in: the functions of `eha_core.plant.lanes`."""
-    return importlib.import_module(f"{_package(False)}.lanes")
+    return _module(False, "lanes")
