@@ -69,9 +69,9 @@ def run(
 
 
 def compile_plant() -> None:
-    """Compile the plant, or read its code from the cache, and say how long that took."""
+    """Compile the plant, which says so, or read its code from the cache; say how long that took."""
     log = get_logger("eha_plant")
-    log.info("loading the plant, which the first start on a machine compiles")
+    log.info("loading the plant")
     start = time.monotonic()
     Plant().advance(0.0, 1)
     log.info(f"the plant is ready after {time.monotonic() - start:.1f} s")
