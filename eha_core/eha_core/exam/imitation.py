@@ -1,7 +1,8 @@
 """What imitates a concealed effect: the truth without it, its values and the states it starts from changed.
 
 The changes are found by Gauss-Newton steps, each simulated: those that imitate a large effect are too large for one
-linearisation.
+linearisation. Where oil and piston ring through a window, derivatives lead nowhere at all; for the effect that changes
+their frequency, air in the oil, the steps begin at oil that is as soft.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from numpy.typing import NDArray
 from eha_core.errors import EhaError
 from eha_core.exam.case import POSITION_NOISE, PRESSURE_NOISE, Case
 from eha_core.exam.truth import resume_truth
-from eha_core.exam.truth.record import Effect
+from eha_core.exam.truth.laws import stiffness_of_oil
+from eha_core.exam.truth.record import Effect, neutral_record, with_effect
 
 Array = NDArray[np.float64]
 
@@ -117,27 +119,38 @@ class _Imitation:
     nats: float
 
 
-def left_by_the_best(
-    model: Doubted, starts: Sequence[int], without_change: Sequence[Linearised], enough: float
-) -> float:
-    """Nats that the best imitation leaves in the windows from the samples `starts`, begun where nothing is changed; it
-    may leave less where that is less than `enough`."""
-    at = _imitation(model, starts, np.zeros(model.size), np.zeros((len(starts), len(SHIFTS))))
-    windows = without_change
-    for number in range(STEPS):
-        if number:
-            try:
-                windows = [
-                    model.linearised(first, at.changes, shift) for first, shift in zip(starts, at.shifts, strict=True)
-                ]
-            except EhaError:  # a rig a little beside it cannot be integrated
-                break
+def as_soft(model: Doubted) -> Array:
+    """The changes that make up for air that is left out: oil without it, as soft as the mixture is at the mean pressure
+    of the chambers. None of them changes anything where no air is left out."""
+    changes = np.zeros(model.size)
+    pressure = float(np.mean([model.truth["pressure_a"], model.truth["pressure_b"]]))
+    for effect in model.case.effects:
+        if effect[0] == "entrained_air" and effect not in model.kept:
+            mixture = with_effect(neutral_record(model.case.plant), effect)[0]
+            ratio = float(stiffness_of_oil(pressure, mixture)) / model.case.plant["bulk_modulus"]
+            changes[model.names.index("bulk_modulus")] = np.clip(ratio - 1.0, LEAST, MOST)
+    return changes
+
+
+def left_by_the_best(model: Doubted, starts: Sequence[int], begin: Array, enough: float) -> float:
+    """Nats that the best imitation leaves in the windows from the samples `starts`; the search for it begins at the
+    changes `begin`, and may leave less where that is less than `enough`."""
+    try:
+        at = _imitation(model, starts, begin, np.zeros((len(starts), len(SHIFTS))))
+    except EhaError:  # no such rig can be integrated
+        return np.inf
+    for _ in range(STEPS):
+        if at.nats < enough:
+            break
+        pairs = zip(starts, at.shifts, strict=True)
+        try:
+            windows = [model.linearised(first, at.changes, shift) for first, shift in pairs]
+        except EhaError:  # nor one a little beside it
+            break
         better = _better(model, starts, at, *_step(windows, at.changes))
         if better is None:
             break
         at = better
-        if at.nats < enough:
-            break
     return at.nats
 
 

@@ -6,7 +6,8 @@ effect's mark. What the nominal parameters, the window's initial state or a riva
 Windows that show the mark most are taken, so the gain is a lower bound of the whole recording's.
 
 A large effect may be imitated by changes too large for one linearisation: a position that reads 9 % short, exactly, by
-gain, leakage, volumes, mass and damping. Where one nearly imitates it all, the imitation is simulated and improved.
+gain, leakage, volumes, mass and damping. Where one nearly imitates it all, the imitation is simulated and improved. So
+it is for air in the oil, which oil that is as soft imitates: where it rings, no linearisation finds that.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.exam.case import Case
-from eha_core.exam.imitation import SHIFTS, TRUST, Doubted, left_by_the_best, length, scaled
+from eha_core.exam.imitation import SHIFTS, TRUST, Doubted, as_soft, left_by_the_best, length, scaled
 from eha_core.exam.plants import RIG_MISTAKES, UNCERTAIN
 from eha_core.exam.truth import resume_truth
 from eha_core.exam.truth.record import Effect
@@ -85,8 +86,9 @@ def consult(
         beyond = _best_imitation(marks, np.column_stack([columns, FREE * np.concatenate(rivals)]))[0]
     if kept:
         gain = _best_imitation(marks, columns)[0]
-    if DECIDABLE <= gain < NEARLY * 0.5 * float(marks @ marks):
-        gain = min(gain, left_by_the_best(model, starts, windows, DECIDABLE))
+    begin = as_soft(model)
+    if gain >= DECIDABLE and (begin.any() or gain < NEARLY * 0.5 * float(marks @ marks)):
+        gain = min(gain, left_by_the_best(model, starts, begin, DECIDABLE))
     return Insight(gain, residual, dict(zip(NAMES, solution.tolist(), strict=True)), beyond)
 
 
