@@ -160,6 +160,8 @@ def test_of_several_effects_those_that_can_be_seen_must_be_named_and_no_other() 
     ):
         one = mark(hidden, answer("missing_physics", *named))
         assert (one.outcome, one.exact) == (outcome, exact), named
+    assert mark(hidden, answer("parameters")).outcome == "abstained"
+    assert mark(replace(hidden, seen=()), answer("parameters")).outcome == "right"
 
 
 def test_complete_is_told_truly_where_no_channel_keeps_more_than_one_and_a_half_times_the_noise() -> None:

@@ -151,7 +151,7 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
             return "wrong"
         return "right" if case.rivals else "abstained"
     if silent:
-        return "abstained" if case.decidable else "right"
+        return "abstained" if case.decidable or case.seen else "right"
     return "wrong"
 
 
