@@ -160,6 +160,8 @@ def test_of_several_effects_those_that_can_be_seen_must_be_named_and_no_other() 
     ):
         one = mark(hidden, answer("missing_physics", *named))
         assert (one.outcome, one.exact) == (outcome, exact), named
+        one = mark(hidden, answer("ambiguous", "end_stop", alternatives=[{"effects": list(named)}]))
+        assert one.outcome == ("abstained" if exact else "wrong"), named
     assert mark(hidden, answer("parameters")).outcome == "abstained"
     assert mark(replace(hidden, seen=()), answer("parameters")).outcome == "right"
 

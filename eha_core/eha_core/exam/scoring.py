@@ -144,8 +144,7 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
     if verdict == case.verdict == "unknown_physics":
         return "right" if _site_right(case, diagnosis) else "wrong"
     if verdict == "missing_physics":
-        tellable = not case.decidable and set(case.seen) <= set(named) < set(case.effect_ids)
-        return "right" if (set(named) in accepted(case) or tellable) and not case.rivals else "wrong"
+        return "right" if _is_told(case, set(named)) and not case.rivals else "wrong"
     if verdict == "ambiguous":
         if not _in_stated_set(case, diagnosis):
             return "wrong"
@@ -153,6 +152,12 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
     if silent:
         return "abstained" if case.decidable or case.seen else "right"
     return "wrong"
+
+
+def _is_told(case: Case, named: set[str]) -> bool:
+    """Whether these are the effects concealed, or of those all that can be seen beside the others."""
+    all_seen = not case.decidable and set(case.seen) <= named < set(case.effect_ids)
+    return named in accepted(case) or all_seen
 
 
 def _named_and_unknown(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[str, Any]) -> str:
@@ -182,7 +187,7 @@ def _nothing_unnamed(case: Case, verdict: str, named: Sequence[str]) -> bool:
 def _in_stated_set(case: Case, diagnosis: Mapping[str, Any]) -> bool:
     stated = [{str(effect["id"]) for effect in diagnosis.get("effects") or ()}]
     stated += [set(option["effects"]) for option in diagnosis.get("alternatives") or ()]
-    return any(names in stated for names in accepted(case))
+    return any(_is_told(case, names) for names in stated)
 
 
 def _site_right(case: Case, diagnosis: Mapping[str, Any]) -> bool | None:
