@@ -3,7 +3,8 @@
 It starts the truth again in windows of the recording from the true states, without the effect; the difference is the
 effect's mark. What the nominal parameters, the window's initial state or a rival effect can imitate is projected out
 (linearised at the truth). What is left, over the noise, is the log-likelihood that naming the effect can gain at best.
-Windows that show the mark most are taken, so the gain is a lower bound of the whole recording's.
+Windows that show the mark most are taken; the whole recording holds more. Where an imitation is too large for one
+linearisation, the gain is too high.
 
 A large effect may be imitated by changes too large for one linearisation: a position that reads 9 % short, exactly, by
 gain, leakage, volumes, mass and damping. Where one nearly imitates it all, the imitation is simulated and improved. So
