@@ -5,7 +5,13 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.effect_parameters import with_effects
+from eha_core.effects import effect
+from eha_core.identification import fit as fitting
+from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe
+from eha_core.identification.parallel import side_by_side
+from eha_core.identification.problem import whole
 from eha_core.identification.segments import coarser, cut
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
@@ -51,3 +57,22 @@ def test_a_fit_goes_on_where_bounds_cut_its_moves_short():
     planted = {"constant_load.force": 60.0, "valve_deadband.half_width": 2e-4}
     calibration = calibrate([observe(recorded(planted, duration=4.0))], NominalModel(nominal_values()), 2e-4)
     assert calibration.fitted.objective < 0.1 * calibration.nominal.objective
+
+
+def test_dampings_tried_at_once_lead_where_one_after_the_other_does(monkeypatch):
+    """Of those that lead lower the least is taken, whichever thread is done first."""
+    shooting = cut(observe(recorded({"valve_deadband.half_width": 3e-4}, duration=4.0)), nominal_values())
+    begun = nominal_values() | {"valve_deadband.half_width": 1e-4, "valve_deadband.rounding": 5e-5}
+    free = with_effects((), [effect("valve_deadband")], begun)
+    trials: list[int] = []
+    simulate = fitting.simulate
+    monkeypatch.setattr(fitting, "simulate", lambda *given: trials.append(1) or simulate(*given))
+    ends = []
+    for jobs in (1, 2):
+        trials.clear()
+        with side_by_side(jobs):
+            ends.append(fit(whole(shooting), begun, free))
+        ends[-1] = (ends[-1].q.tobytes(), ends[-1].states.tobytes(), ends[-1].ending, ends[-1].iterations, len(trials))
+    (*one, in_turn), (*two, at_once) = ends
+    assert one == two
+    assert in_turn > one[3] + 2 and at_once > in_turn

@@ -15,6 +15,7 @@ from scipy.linalg import LinAlgError
 from eha_core.identification.free_parameters import LATE, FreeParameter, coordinates, values_at
 from eha_core.identification.normal_matrix import NormalMatrix
 from eha_core.identification.numbers import Array
+from eha_core.identification.parallel import each, threads
 from eha_core.identification.per_recording import base_name, in_each, is_one_of
 from eha_core.identification.problem import (
     Problem,
@@ -34,6 +35,9 @@ WORTH = 2e-4
 """Of what is left beside noise: a model that is far off is not worth its last digits."""
 
 HOPE = 4.0
+
+TRIALS = 10
+"""Dampings that an iteration tries at most, the last 2e16 times the first: that is a step of next to nothing."""
 
 
 class Ending(Enum):
@@ -220,19 +224,34 @@ def _descend(
     gradient: Array,
     damping: float,
 ) -> tuple[_Point, Array, float] | None:
-    """The first point that lies lower as the damping grows, with the move to it and that damping; None if none does."""
-    growth = 4.0
-    for _ in range(10):
+    """The first point that lies lower as the damping grows, with the move to it and that damping; None if none does.
+
+    As many dampings as there are threads are tried at once: half of the steps need more than one.
+    """
+
+    def tried(damping: float) -> tuple[_Point, Array, float] | None:
         move = _step(normal, gradient, damping, free, at.q)
-        if move is not None:
-            q, states = _moved(problem, free, at.q, at.states, move)
-            rows, ends = simulate(problem.shooting, values, free, q, states)
-            objective = objective_of(problem, free, q, states, rows, ends)
-            if objective < at.objective:
-                return _Point(q, states, rows, ends, objective), move, damping
-        damping = max(damping * growth, 1e-8)
-        growth *= 2.0
+        if move is None:
+            return None
+        q, states = _moved(problem, free, at.q, at.states, move)
+        rows, ends = simulate(problem.shooting, values, free, q, states)
+        objective = objective_of(problem, free, q, states, rows, ends)
+        return (_Point(q, states, rows, ends, objective), move, damping) if objective < at.objective else None
+
+    dampings, at_once = _growing(damping), threads()
+    for first in range(0, TRIALS, at_once):
+        for lower in each(tried, dampings[first : first + at_once]):
+            if lower is not None:
+                return lower
     return None
+
+
+def _growing(damping: float) -> list[float]:
+    """The dampings that an iteration tries one after the other, each by twice the factor of the one before it."""
+    dampings = [damping]
+    for trial in range(TRIALS - 1):
+        dampings.append(max(dampings[-1] * 4.0 * 2.0**trial, 1e-8))
+    return dampings
 
 
 def _step(
