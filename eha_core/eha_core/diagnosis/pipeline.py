@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.attribution import attribute
-from eha_core.diagnosis.calibrate import calibrate_but_for_the_ends
-from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.calibrate import Calibration, calibrate_but_for_the_ends
+from eha_core.diagnosis.characteristic_scales import Scales, characteristic_scales
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.criteria import NEAR_NOISE, chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.search.found import Progress
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
-from eha_core.diagnosis.search.model_comparison import compete
+from eha_core.diagnosis.search.model_comparison import ModelComparison, compete
 from eha_core.diagnosis.search.sets import with_sets
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
+from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import not_believed
-from eha_core.identification.observation import observe, with_sufficient_stroke
+from eha_core.identification.observation import Observation, observe, with_sufficient_stroke
 from eha_core.identification.parallel import side_by_side
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.together import check_alike, fit_alone, recording_alone
@@ -37,21 +38,38 @@ RIVALS = 5
 """How many of the best are asked whether they would lead without the bounds that they rest on."""
 
 
+@dataclass(frozen=True)
+class _Singles:
+    """What is known before sets are tried: each stage's result up to the comparison of single effects."""
+
+    nominal: Mapping[str, float]
+    observations: tuple[Observation, ...]
+    calibration: Calibration
+    scales: Scales
+    applicable: Sequence[Effect]
+    comparison: ModelComparison
+
+
 def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
     """Run the stages up to the decision; once more without the bounds that the model found rests on.
 
     How far a nominal value is believed must not decide which physics is named. Raises RecordingError where a recording
     cannot be used.
     """
-    evidence = _examine(recordings, model, progress)
+    evidence = _with_sets(_single_effects(recordings, model, progress), progress)
     bounds = _holding_back(evidence) - model.unknown
     if not bounds:
         return evidence
-    progress(f"once more: {', '.join(sorted(bounds))} went as far as believed of it")
-    again = _examine(recordings, replace(model, unknown=model.unknown | bounds), progress)
+    again = _with_sets(_single_effects(recordings, _without(model, bounds, progress), progress), progress)
     gain = evidence.decision.winner.fit.objective - again.decision.winner.fit.objective
     needed = chance_gain(again.calibration.problem.count(), again.comparison.residual_variance)
     return again if gain > needed else evidence
+
+
+def _without(model: NominalModel, bounds: frozenset[str], progress: Progress) -> NominalModel:
+    """The model with parameters that go as far as a recording leads them."""
+    progress(f"once more: {', '.join(sorted(bounds))} went as far as believed of it")
+    return replace(model, unknown=model.unknown | bounds)
 
 
 def _holding_back(evidence: Evidence) -> frozenset[str]:
@@ -66,22 +84,22 @@ def _holding_back(evidence: Evidence) -> frozenset[str]:
     found: frozenset[str] = frozenset()
     for at in (winner, *(entry.fit for entry in rivals if entry.fit is not winner)):
         bounds = at.held_by_belief()
-        if bounds and winner.objective - _without(evidence, at, bounds).objective > needed:
+        if bounds and winner.objective - _freed(evidence.calibration, at, bounds).objective > needed:
             found |= bounds
     return found
 
 
-def _without(evidence: Evidence, at: Fit, bounds: frozenset[str]) -> Fit:
+def _freed(calibration: Calibration, at: Fit, bounds: frozenset[str]) -> Fit:
     """A model fitted further without these bounds."""
-    rows = evidence.observation.composition.place_rows
+    rows = calibration.shooting.composition.place_rows
     free = [
         not_believed(parameter, rows[base_name(parameter.name)]) if base_name(parameter.name) in bounds else parameter
         for parameter in at.free
     ]
-    return fit(evidence.calibration.problem, at.values, free, at.states, iterations=BEYOND)
+    return fit(calibration.problem, at.values, free, at.states, iterations=BEYOND)
 
 
-def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:
+def _single_effects(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> _Singles:
     progress("reading and aligning")
     seen = [observe(recording, model.composition) for recording in recordings]
     check_alike(seen)
@@ -89,23 +107,28 @@ def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Pro
         seen[number], model = with_sufficient_stroke(observation, model)
     progress("calibrating the nominal equations")
     observations, calibration = calibrate_but_for_the_ends(seen, model)
-    shooting, fitted = calibration.shooting, calibration.fitted
-    scales = characteristic_scales(observations, shooting, fitted)
+    scales = characteristic_scales(observations, calibration.shooting, calibration.fitted)
+    applicable = applicable_effects(observations)
+    comparison = compete(calibration.problem, calibration.fitted, applicable, scales, progress)
+    return _Singles(model.values, observations, calibration, scales, applicable, comparison)
+
+
+def _with_sets(singles: _Singles, progress: Progress) -> Evidence:
+    observations, scales = singles.observations, singles.scales
+    shooting, fitted = singles.calibration.shooting, singles.calibration.fitted
     lead = telling_most(shooting, fitted)
     alternatives = tuple(
         equation_residuals(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, result, lead))
-        for result in (fitted, calibration.nominal)
+        for result in (fitted, singles.calibration.nominal)
     )
-    applicable = applicable_effects(observations)
-    comparison = compete(calibration.problem, fitted, applicable, scales, progress)
-    calibration, comparison = with_sets(calibration, comparison, applicable, scales, progress)
+    calibration, comparison = with_sets(singles.calibration, singles.comparison, singles.applicable, scales, progress)
     recovery = recover(calibration.problem, comparison, scales, progress)
-    decision = decide(calibration, model.values, comparison, recovery)
+    decision = decide(calibration, singles.nominal, comparison, recovery)
     equations = smallest(alternatives)
     location = attribute(calibration, comparison.nominal.fit, scales, comparison, lead)
     return Evidence(
-        observations, lead, model.values, calibration, scales, equations, alternatives, comparison, recovery, decision,
-        location,
+        observations, lead, singles.nominal, calibration, scales, equations, alternatives, comparison, recovery,
+        decision, location,
     )  # fmt: skip
 
 
