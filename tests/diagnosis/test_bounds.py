@@ -26,10 +26,15 @@ def test_an_unknown_value_may_go_a_thousandfold():
     assert not_believed(known, PAPER.place_rows[name]) == unknown
 
 
-@pytest.mark.timeout(400)
 @pytest.mark.parametrize("unknown", [(), ("damping_coefficient",)], ids=["believed", "said to be unknown"])
 def test_damping_far_from_its_guess_is_found_and_the_friction_beside_it(unknown):
-    found = diagnose_together([recorded(RIG, duration=8.0)], NominalModel(nominal_values(), frozenset(unknown)))
+    told: list[str] = []
+    model = NominalModel(nominal_values(), frozenset(unknown))
+    found = diagnose_together([recorded(RIG, duration=8.0)], model, told.append)
+    released = [place for place, line in enumerate(told) if line.startswith("once more: damping_coefficient")]
+    assert len(released) == (0 if unknown else 1)
+    # before any set is grown within the bounds
+    assert not any(" + " in line for line in told[: sum(released)])
     assert [effect.id for effect in found.effects] == ["coulomb_friction"]
     damping = next(one for one in found.parameters if one.name == "damping_coefficient")
     assert damping.fitted == pytest.approx(RIG["damping_coefficient"], rel=0.02)

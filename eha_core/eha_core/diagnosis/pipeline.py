@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 
 from threadpoolctl import threadpool_limits
 
@@ -11,7 +12,7 @@ from eha_core.diagnosis.attribution import attribute
 from eha_core.diagnosis.calibrate import Calibration, calibrate_but_for_the_ends
 from eha_core.diagnosis.characteristic_scales import Scales, characteristic_scales
 from eha_core.diagnosis.conclude import conclude
-from eha_core.diagnosis.criteria import NEAR_NOISE, chance_gain
+from eha_core.diagnosis.criteria import NEAR_NOISE, OVER, chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.search.found import Progress
@@ -53,10 +54,15 @@ class _Singles:
 def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
     """Run the stages up to the decision; once more without the bounds that the model found rests on.
 
-    How far a nominal value is believed must not decide which physics is named. Raises RecordingError where a recording
-    cannot be used.
+    How far a nominal value is believed must not decide which physics is named. Where a single effect explains nearly
+    all without its bounds, no set is grown within them first. Raises RecordingError where a recording cannot be used.
     """
-    evidence = _with_sets(_single_effects(recordings, model, progress), progress)
+    singles = _single_effects(recordings, model, progress)
+    bounds = _held_back_alone(singles) - model.unknown
+    if bounds:
+        model = _without(model, bounds, progress)
+        singles = _single_effects(recordings, model, progress)
+    evidence = _with_sets(singles, progress)
     bounds = _holding_back(evidence) - model.unknown
     if not bounds:
         return evidence
@@ -70,6 +76,22 @@ def _without(model: NominalModel, bounds: frozenset[str], progress: Progress) ->
     """The model with parameters that go as far as a recording leads them."""
     progress(f"once more: {', '.join(sorted(bounds))} went as far as believed of it")
     return replace(model, unknown=model.unknown | bounds)
+
+
+def _held_back_alone(singles: _Singles) -> frozenset[str]:
+    """The bounds of belief without which the nominal model or a single effect explains nearly all that the best of them
+    leaves within them."""
+    count, comparison = singles.calibration.problem.count(), singles.comparison
+    leading = [entry.fit for entry in (comparison.nominal, *comparison.entries[:RIVALS])]
+    best = min(leading, key=lambda at: at.objective)
+    if best.data < NEAR_NOISE * best.count:
+        return frozenset()
+    nearly_all = count + OVER * (best.objective - count)
+    for at in leading:
+        bounds = at.held_by_belief()
+        if bounds and _freed(singles.calibration, at, bounds, nearly_all).objective < nearly_all:
+            return bounds
+    return frozenset()
 
 
 def _holding_back(evidence: Evidence) -> frozenset[str]:
@@ -89,14 +111,14 @@ def _holding_back(evidence: Evidence) -> frozenset[str]:
     return found
 
 
-def _freed(calibration: Calibration, at: Fit, bounds: frozenset[str]) -> Fit:
+def _freed(calibration: Calibration, at: Fit, bounds: frozenset[str], give_up_above: float = inf) -> Fit:
     """A model fitted further without these bounds."""
     rows = calibration.shooting.composition.place_rows
     free = [
         not_believed(parameter, rows[base_name(parameter.name)]) if base_name(parameter.name) in bounds else parameter
         for parameter in at.free
     ]
-    return fit(calibration.problem, at.values, free, at.states, iterations=BEYOND)
+    return fit(calibration.problem, at.values, free, at.states, iterations=BEYOND, give_up_above=give_up_above)
 
 
 def _single_effects(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> _Singles:
