@@ -29,14 +29,16 @@ def converge(problem: Problem, found: Found, progress: Progress = lambda _: None
     """The leaders fitted until they converge, with derivatives at the full step.
 
     Where more than noise is left, or a nominal parameter went improbably far, they are fitted from the nominal values,
-    too: beginning at a calibration that is far off, the nominal parameters can end in a local minimum.
+    too: beginning at a calibration that is far off, the nominal parameters can end in a local minimum. When an effect
+    acts is looked for once: `warm_start` gives what the first one's interval is to the others.
     """
     exact = replace(problem, slope_step=problem.shooting.step_size)
     best = np.inf
     converged = dict(found)
-    for hypothesis in best_first(found)[:CONVERGED_LEADERS]:
+    leaders = best_first(found)[:CONVERGED_LEADERS]
+    for hypothesis in leaders:
         result = found[hypothesis]
-        if result.objective > best + 0.5 * max(best - problem.count(), 0.0) + CONVERGE_WITHIN:
+        if not comes_near(problem, result, best):
             continue
         progress(f"fitting {' and '.join(hypothesis.ids)}")
         result = fit(exact, result.values, result.free, result.states, iterations=30)
@@ -49,10 +51,16 @@ def converge(problem: Problem, found: Found, progress: Progress = lambda _: None
             again = fit(problem, dynamics_held.values, result.free, dynamics_held.states, iterations=10)
             if again.objective < result.objective:
                 result = fit(exact, again.values, again.free, again.states, iterations=6)
-        result = _other_instants(problem, exact, result)
+        if result.objective < best or not (hypothesis.has_one_interval and leaders[0].has_one_interval):
+            result = _other_instants(problem, exact, result)
         best = min(best, result.objective)
         converged[hypothesis] = result
     return converged
+
+
+def comes_near(problem: Problem, result: Fit, best: float) -> bool:
+    """Whether a fit lies near enough to the best objective that it may come to lead when both have converged."""
+    return result.objective <= best + 0.5 * max(best - problem.count(), 0.0) + CONVERGE_WITHIN
 
 
 def _other_instants(problem: Problem, exact: Problem, result: Fit) -> Fit:

@@ -12,7 +12,7 @@ from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import ADEQUATE, ENOUGH, FAR_FROM_NOISE, HARDLY, OVER, parameter_cost
 from eha_core.diagnosis.effect_parameters import parameters_used
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.search.converge import converge
+from eha_core.diagnosis.search.converge import comes_near, converge
 from eha_core.diagnosis.search.found import Found, Progress, keep_better
 from eha_core.diagnosis.search.initial_guesses import initial_guesses
 from eha_core.diagnosis.search.planned_refits import planned_refits, refit_with
@@ -84,9 +84,11 @@ def compete(
         result = refit_with(problem, planned, best)
         keep_better(found, NOTHING.with_effects([effect]), result)
         best = min(best, result.objective)
-    # single effects that are far off need not converge
+    # single effects that are far off need not converge, nor those that always act where one for a while leads by far
     if best < FAR_FROM_NOISE * problem.count() or limited:
-        found = warm_start(problem, converge(problem, found, progress))
+        for_a_while = min((result.objective for result in limited.values()), default=np.inf)
+        near = {hypothesis: result for hypothesis, result in found.items() if comes_near(problem, result, for_a_while)}
+        found |= warm_start(problem, converge(problem, near, progress))
     return _ranked(problem, calibrated, {**limited, **found}, score_tests)
 
 

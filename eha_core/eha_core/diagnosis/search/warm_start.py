@@ -70,7 +70,7 @@ def _to_their_ends(problem: Problem, found: Found) -> Found:
 
 def _same_interval(hypothesis: Hypothesis, other: Hypothesis, values: Mapping[str, float]) -> dict[str, float]:
     """The interval in which the other's effect acts, for this one's, where each has one that acts for a while."""
-    if len(hypothesis.limited) != 1 or len(other.limited) != 1:
+    if not (hypothesis.has_one_interval and other.has_one_interval):
         return {}
     names = (either.limited[0].effect.acting_names() for either in (hypothesis, other))
     return {own: values[theirs] for own, theirs in zip(*names, strict=True)}
