@@ -77,8 +77,8 @@ this share of what that gained is not tried."""
 
 OVER = 0.05
 """Share of what is left beside noise that a model may leave when it explains nearly all: without the bounds of belief
-that it rests on, too. A value twenty times what was believed led there; of the sets of the exam (development cases)
-whose single effects rest on bounds, none came below 0.7."""
+that it rests on, too. A value twenty times what was believed led there; in 22 development cases of the exam (seed
+70219) whose single effects rest on bounds and leave more than FAR_FROM_NOISE, none came below 0.76."""
 
 ADEQUATE = 1.05
 DEAR = 0.03

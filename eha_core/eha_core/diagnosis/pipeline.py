@@ -12,7 +12,7 @@ from eha_core.diagnosis.attribution import attribute
 from eha_core.diagnosis.calibrate import Calibration, calibrate_but_for_the_ends
 from eha_core.diagnosis.characteristic_scales import Scales, characteristic_scales
 from eha_core.diagnosis.conclude import conclude
-from eha_core.diagnosis.criteria import NEAR_NOISE, OVER, chance_gain
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, OVER, chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.search.found import Progress
@@ -80,11 +80,11 @@ def _without(model: NominalModel, bounds: frozenset[str], progress: Progress) ->
 
 def _held_back_alone(singles: _Singles) -> frozenset[str]:
     """The bounds of belief without which the nominal model or a single effect explains nearly all that the best of them
-    leaves within them."""
+    leaves within them, if that is far from noise: else a set that stays within them is near."""
     count, comparison = singles.calibration.problem.count(), singles.comparison
     leading = [entry.fit for entry in (comparison.nominal, *comparison.entries[:RIVALS])]
     best = min(leading, key=lambda at: at.objective)
-    if best.data < NEAR_NOISE * best.count:
+    if best.data < FAR_FROM_NOISE * best.count:
         return frozenset()
     nearly_all = count + OVER * (best.objective - count)
     for at in leading:
