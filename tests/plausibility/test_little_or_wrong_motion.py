@@ -68,6 +68,19 @@ def test_a_worn_rigs_own_command_is_never_another_runs(effects: tuple, loop: flo
     assert check(wrong.as_recording(worn.arrays), worn.nominal) is None
 
 
+def test_a_command_that_feeds_a_leak_while_friction_holds_the_piston_has_no_wrong_scale() -> None:
+    """Steps under a slow loop move the piston by 0.3 mm against 884 N: volts for each m/s are 60 times the nominal."""
+    case = replace(draw_case("rig", 66, 70219), duration=8.0)
+    assert case.effect_ids[0] == "presliding_friction"
+    held, nominal = wrong.as_recording(measure(case, simulate_case(case))), {**nominal_values(), **case.nominal}
+    found = relations(held, nominal)["command_scale"]
+    assert found.value > 25.0 and not found.broken and not found.sound
+    assert check(held, nominal) is None
+    command = held.channels["voltage_command"]
+    against = replace(held, channels={**held.channels, "voltage_command": replace(command, values=-command.values)})
+    assert relations(against, nominal)["command_scale"].broken
+
+
 def test_a_creep_one_way_says_nothing_of_the_sensors_order() -> None:
     """Friction is the same all along; what changes in the force is a late sensor and air in the oil."""
     creeping = rig("rig", 9, "small")

@@ -47,7 +47,8 @@ def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list
     """The command against what it must be made of: the flow that moves the piston, and leakage under the force.
 
     A command is another run's where the motion takes what no creep does, and explains hardly more of the command than
-    of the same command elsewhere in the recording.
+    of the same command elsewhere in the recording. Its scale can be wrong only there, too: where friction holds the
+    piston, the command feeds leaks.
     """
     voltage = signals.channels.get("voltage_command")
     if voltage is None or not np.ptp(voltage) > 0.0 or not signals.is_motion_seen:
@@ -58,12 +59,12 @@ def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list
     ratio = slope * gain(nominal)  # command per speed, over the nominal
     related = explained > 0.3 and abs(together) > 0.3
     taken = float(np.ptp(signals.speed)) > LEAST_TAKEN * gain(nominal) * rated(nominal)
+    wrong = related and not within(ratio, 25.0) and (taken or ratio < 0.0)
     foreign = taken and explained < RELATED and explained < OUTSTANDING * _elsewhere(voltage, motion, signals.step)
     return [
         Relation("command", explained, foreign, explained > 0.3, 0.0),
-        Relation("command_scale", ratio, related and not within(ratio, 25.0), related and within(ratio, 12.0),
-                 off_by(ratio) if related else 0.0),
-    ]  # fmt: skip
+        Relation("command_scale", ratio, wrong, related and within(ratio, 12.0), off_by(ratio) if related else 0.0),
+    ]
 
 
 def _fits(voltage: FloatArray, motion: tuple[FloatArray, ...], step: float) -> Iterator[Fit]:
