@@ -47,8 +47,8 @@ def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list
     """The command against what it must be made of: the flow that moves the piston, and leakage under the force.
 
     A command is another run's where the motion takes what no creep does, and explains hardly more of the command than
-    of the same command elsewhere in the recording. Its scale can be wrong only there, too: where friction holds the
-    piston, the command feeds leaks.
+    of the same command elsewhere in the recording. Where friction lets the piston move by less, the command may feed
+    leaks as large, and its scale is wrong only beyond that.
     """
     voltage = signals.channels.get("voltage_command")
     if voltage is None or not np.ptp(voltage) > 0.0 or not signals.is_motion_seen:
@@ -58,9 +58,10 @@ def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list
     explained, together, slope = max(_fits(voltage, motion, signals.step))
     ratio = slope * gain(nominal)  # command per speed, over the nominal
     related = explained > 0.3 and abs(together) > 0.3
-    taken = float(np.ptp(signals.speed)) > LEAST_TAKEN * gain(nominal) * rated(nominal)
-    wrong = related and not within(ratio, 25.0) and (taken or ratio < 0.0)
-    foreign = taken and explained < RELATED and explained < OUTSTANDING * _elsewhere(voltage, motion, signals.step)
+    taken = float(np.ptp(signals.speed)) / (LEAST_TAKEN * gain(nominal) * rated(nominal))
+    wrong = related and not within(ratio, 25.0 / min(1.0, taken))
+    doubtful = taken > 1.0 and explained < RELATED
+    foreign = doubtful and explained < OUTSTANDING * _elsewhere(voltage, motion, signals.step)
     return [
         Relation("command", explained, foreign, explained > 0.3, 0.0),
         Relation("command_scale", ratio, wrong, related and within(ratio, 12.0), off_by(ratio) if related else 0.0),
