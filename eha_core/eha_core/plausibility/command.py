@@ -58,9 +58,9 @@ def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list
     explained, together, slope = max(_fits(voltage, motion, signals.step))
     ratio = slope * gain(nominal)  # command per speed, over the nominal
     related = explained > 0.3 and abs(together) > 0.3
-    taken = float(np.ptp(signals.speed)) / (LEAST_TAKEN * gain(nominal) * rated(nominal))
-    wrong = related and not within(ratio, 25.0 / min(1.0, taken))
-    doubtful = taken > 1.0 and explained < RELATED
+    taken, least = float(np.ptp(signals.speed)), LEAST_TAKEN * gain(nominal) * rated(nominal)
+    wrong = related and not within(ratio, 25.0 * max(1.0, least / taken))
+    doubtful = taken > least and explained < RELATED
     foreign = doubtful and explained < OUTSTANDING * _elsewhere(voltage, motion, signals.step)
     return [
         Relation("command", explained, foreign, explained > 0.3, 0.0),
