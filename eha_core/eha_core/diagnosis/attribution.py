@@ -11,7 +11,7 @@ from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.locate import stated, whereabouts
 from eha_core.diagnosis.result import Location
-from eha_core.diagnosis.search.model_comparison import ModelComparison
+from eha_core.diagnosis.sets.comparison import ModelComparison
 from eha_core.identification.fit import Fit
 
 
@@ -28,7 +28,7 @@ def attribute(
     """
     shooting = calibration.shooting
     unexplained = max(nominal.objective - nominal.count, 1.0)
-    gains = _site_gains(comparison)
+    gains = comparison.site_gains
     where, when = whereabouts(shooting, nominal, scales, recording)
     found: list[Location] = []
     for site, gain in sorted(gains.items(), key=lambda item: -item[1])[:4]:
@@ -37,21 +37,3 @@ def attribute(
             continue
         found.append(Location(site, share, where, when, stated(site, share, where, when)))
     return tuple(found)
-
-
-def _site_gains(comparison: ModelComparison) -> dict[str, float]:
-    """The refitted gain of each site's best hypothesis, or else the predicted one, which never counts as much."""
-    gains: dict[str, float] = {}
-    nominal = comparison.nominal.fit
-    refitted: dict[str, float] = {}
-    for entry in comparison.entries:  # an effect may be among them twice: acting always, and for a while
-        if len(entry.ids) == 1:
-            gain = nominal.objective - entry.fit.objective
-            refitted[entry.ids[0]] = max(gain, refitted.get(entry.ids[0], gain))
-    most = max([0.0, *refitted.values()])
-    for score_test in comparison.score_tests:
-        effect = score_test.guess.effect
-        gain = refitted.get(effect.id, min(score_test.gain, 0.5 * most))
-        if gain > gains.get(effect.site, 0.0):
-            gains[effect.site] = gain
-    return gains

@@ -29,8 +29,7 @@ from eha_core.diagnosis.result import (
     NamedEffect,
     UnknownLaw,
 )
-from eha_core.diagnosis.search.found import MOST_FITS
-from eha_core.diagnosis.search.model_comparison import Entry
+from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import SITES
@@ -162,7 +161,7 @@ def _remarks(evidence: Evidence) -> tuple[str, ...]:
     if evidence.observation.composition.cylinder.motion == "rad":
         what.append("the actuator turns: for m, m/s and N of the channels read rad, rad/s and N m")
     if evidence.comparison.cut_short:
-        what.append(f"the search for sets of effects was cut short at {MOST_FITS} fits; another set may explain more")
+        what.append("the search for sets of effects ended at its limit; another set may explain more")
     if len(evidence.observations) == 1:
         return (*what, *evidence.observation.remarks)
     return (

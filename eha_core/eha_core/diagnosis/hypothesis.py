@@ -10,7 +10,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from eha_core.effects import Effect
-from eha_core.parameters import acting_rows
+from eha_core.identification.fit import Fit
+from eha_core.identification.free_parameters import FreeParameter
+from eha_core.identification.per_recording import base_name, is_one_of
+from eha_core.parameters import NOMINAL, acting_rows
 
 
 @dataclass(frozen=True, order=True)
@@ -87,3 +90,14 @@ def neutral(effect: Effect) -> Mapping[str, float]:
     """The values (full names) at which an effect is off, and would always act."""
     off = {name: row.nominal for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}
     return off | {name: row.nominal for name, row in acting_rows(effect).items()}
+
+
+NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
+"""The names of the nominal plant's own parameters."""
+
+
+def without_effect(result: Fit, effect: Effect) -> tuple[dict[str, float], tuple[FreeParameter, ...]]:
+    """A fit's values with one effect off, and what is then free."""
+    off = neutral(effect)
+    values = {name: off.get(base_name(name), value) for name, value in result.values.items()}
+    return values, tuple(parameter for parameter in result.free if not is_one_of(parameter.name, off))

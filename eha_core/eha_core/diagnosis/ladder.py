@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,16 +16,26 @@ from eha_core.diagnosis.calibrate import corrected_noise
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.result import NOMINAL, RECALIBRATED, Correlation, Residual, Step
-from eha_core.diagnosis.search.candidates import Candidate, without_effect
-from eha_core.diagnosis.search.prune import REFITTED
+from eha_core.diagnosis.hypothesis import without_effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.parallel import each
+
+
+REFITTED = 8
+"""Iterations of a fit without a member."""
+
+
+class Fitted(NamedTuple):
+    """A set and a fit of it."""
+
+    hypothesis: Hypothesis
+    fit: Fit
 
 
 def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, Residual]]:
     """The steps from the nominal model to the final one, and what the set leaves without each of several members."""
     winner = evidence.decision.winner
-    whole = Candidate(winner.hypothesis, winner.fit)
+    whole = Fitted(winner.hypothesis, winner.fit)
     models, without = _taken_apart(evidence, whole)
     ends = (
         (NOMINAL, evidence.calibration.nominal),
@@ -41,16 +52,16 @@ def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, 
 
 
 def _taken_apart(
-    evidence: Evidence, whole: Candidate
-) -> tuple[list[tuple[Member, Candidate]], dict[Member, Candidate]]:
+    evidence: Evidence, whole: Fitted
+) -> tuple[list[tuple[Member, Fitted]], dict[Member, Fitted]]:
     """Each member with the model that it completes, the first to be added first; and the set without each.
 
     Every member is taken out of every set on the way: where the parameters can make up for much of a member, the
     curvature at the fit does not tell what it is worth.
     """
     known = {entry.hypothesis: entry.fit for entry in evidence.comparison.entries}
-    found: list[tuple[Member, Candidate]] = []
-    without: dict[Member, Candidate] = {}
+    found: list[tuple[Member, Fitted]] = []
+    without: dict[Member, Fitted] = {}
     rest = whole
     while len(rest.hypothesis.members) > 1:
         members = rest.hypothesis.members
@@ -64,14 +75,14 @@ def _taken_apart(
     return found[::-1], without
 
 
-def _refit_without(evidence: Evidence, at: Candidate, known: Mapping[Hypothesis, Fit], member: Member) -> Candidate:
+def _refit_without(evidence: Evidence, at: Fitted, known: Mapping[Hypothesis, Fit], member: Member) -> Fitted:
     """The set without one member, fitted from where the whole set stands, or as the search has fitted it if that is
     better."""
     values, free = without_effect(at.fit, member.effect)
     result = fit(evidence.calibration.problem, values, free, at.fit.states, iterations=REFITTED)
     hypothesis = at.hypothesis.without(member)
     earlier = known.get(hypothesis, result)
-    return Candidate(hypothesis, min(result, earlier, key=lambda model: model.objective))
+    return Fitted(hypothesis, min(result, earlier, key=lambda model: model.objective))
 
 
 def _scales(evidence: Evidence) -> list[float]:

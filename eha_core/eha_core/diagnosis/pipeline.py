@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import inf
+from dataclasses import replace
 
 from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.attribution import attribute
-from eha_core.diagnosis.calibrate import Calibration, calibrate_but_for_the_ends
-from eha_core.diagnosis.characteristic_scales import Scales, characteristic_scales
+from eha_core.diagnosis.calibrate import calibrate_but_for_the_ends
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.conclude import conclude
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, OVER, chance_gain
+from eha_core.diagnosis.criteria import chance_gain
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.diagnosis.search.found import Progress
-from eha_core.diagnosis.search.initial_guesses import applicable_effects
-from eha_core.diagnosis.search.model_comparison import ModelComparison, compete
-from eha_core.diagnosis.search.sets import with_sets
+from eha_core.diagnosis.sets.columns import applicable_effects
+from eha_core.diagnosis.sets.course import find_sets
+from eha_core.diagnosis.sets.pool import Progress
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
-from eha_core.effects import Effect
-from eha_core.identification.fit import Fit, fit
+from eha_core.identification.fit import fit
 from eha_core.identification.free_parameters import not_believed
-from eha_core.identification.observation import Observation, observe, with_sufficient_stroke
+from eha_core.identification.observation import observe, with_sufficient_stroke
 from eha_core.identification.parallel import side_by_side
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.together import check_alike, fit_alone, recording_alone
@@ -33,95 +30,43 @@ from eha_core.recording import Recording
 from eha_core.weak_form.equation_residuals import equation_residuals, smallest
 
 BEYOND = 20
-"""Iterations of a model without the bounds that it rests on, before all else is asked again without them."""
-
-RIVALS = 5
-"""How many of the best are asked whether they would lead without the bounds that they rest on."""
-
-
-@dataclass(frozen=True)
-class _Singles:
-    """What is known before sets are tried: each stage's result up to the comparison of single effects."""
-
-    nominal: Mapping[str, float]
-    observations: tuple[Observation, ...]
-    calibration: Calibration
-    scales: Scales
-    applicable: Sequence[Effect]
-    comparison: ModelComparison
+"""Iterations of a model without the bounds that it rests on, before the search is repeated without them."""
 
 
 def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
-    """Run the stages up to the decision; once more without the bounds that the model found rests on.
+    """Run the stages up to the decision; once more without the prior bounds that the best model rests on.
 
-    How far a nominal value is believed must not decide which physics is named. Where a single effect explains nearly
-    all without its bounds, no set is grown within them first. Raises RecordingError where a recording cannot be used.
+    How far a nominal value is believed must not decide which physics is named. Raises RecordingError where a recording
+    cannot be used.
     """
-    singles = _single_effects(recordings, model, progress)
-    bounds = _held_back_alone(singles) - model.unknown
-    if bounds:
-        model = _without(model, bounds, progress)
-        singles = _single_effects(recordings, model, progress)
-    evidence = _with_sets(singles, progress)
-    bounds = _holding_back(evidence) - model.unknown
+    evidence = _examine(recordings, model, progress)
+    bounds = _limiting(evidence) - model.unknown
     if not bounds:
         return evidence
-    again = _with_sets(_single_effects(recordings, _without(model, bounds, progress), progress), progress)
+    progress(f"once more: {', '.join(sorted(bounds))} went as far as its prior bound")
+    again = _examine(recordings, replace(model, unknown=model.unknown | bounds), progress)
     gain = evidence.decision.winner.fit.objective - again.decision.winner.fit.objective
     needed = chance_gain(again.calibration.problem.count(), again.comparison.residual_variance)
     return again if gain > needed else evidence
 
 
-def _without(model: NominalModel, bounds: frozenset[str], progress: Progress) -> NominalModel:
-    """The model with parameters that go as far as a recording leads them."""
-    progress(f"once more: {', '.join(sorted(bounds))} went as far as believed of it")
-    return replace(model, unknown=model.unknown | bounds)
-
-
-def _held_back_alone(singles: _Singles) -> frozenset[str]:
-    """The bounds of belief without which the nominal model or a single effect explains nearly all that the best of them
-    leaves within them, if that is far from noise: else a set that stays within them is near."""
-    count, comparison = singles.calibration.problem.count(), singles.comparison
-    leading = [entry.fit for entry in (comparison.nominal, *comparison.entries[:RIVALS])]
-    best = min(leading, key=lambda at: at.objective)
-    if best.data < FAR_FROM_NOISE * best.count:
+def _limiting(evidence: Evidence) -> frozenset[str]:
+    """The prior bounds without which the best model would explain more."""
+    at = evidence.decision.winner.fit
+    bounds = at.held_by_belief()
+    if not bounds:
         return frozenset()
-    nearly_all = count + OVER * (best.objective - count)
-    for at in leading:
-        bounds = at.held_by_belief()
-        if bounds and _freed(singles.calibration, at, bounds, nearly_all).objective < nearly_all:
-            return bounds
-    return frozenset()
-
-
-def _holding_back(evidence: Evidence) -> frozenset[str]:
-    """The bounds of belief without which the model found would explain more, or a rival more than it.
-
-    Rivals are asked where more than noise is left: what rests on no bound may lead because another form of its law took
-    up what the others may not.
-    """
-    problem, winner = evidence.calibration.problem, evidence.decision.winner.fit
-    rivals = evidence.comparison.entries[:RIVALS] if winner.data > NEAR_NOISE * winner.count else []
-    needed = chance_gain(problem.count(), evidence.comparison.residual_variance)
-    found: frozenset[str] = frozenset()
-    for at in (winner, *(entry.fit for entry in rivals if entry.fit is not winner)):
-        bounds = at.held_by_belief()
-        if bounds and winner.objective - _freed(evidence.calibration, at, bounds).objective > needed:
-            found |= bounds
-    return found
-
-
-def _freed(calibration: Calibration, at: Fit, bounds: frozenset[str], give_up_above: float = inf) -> Fit:
-    """A model fitted further without these bounds."""
-    rows = calibration.shooting.composition.place_rows
+    rows = evidence.calibration.shooting.composition.place_rows
     free = [
         not_believed(parameter, rows[base_name(parameter.name)]) if base_name(parameter.name) in bounds else parameter
         for parameter in at.free
     ]
-    return fit(calibration.problem, at.values, free, at.states, iterations=BEYOND, give_up_above=give_up_above)
+    freed = fit(evidence.calibration.problem, at.values, free, at.states, iterations=BEYOND)
+    needed = chance_gain(evidence.calibration.problem.count(), evidence.comparison.residual_variance)
+    return bounds if at.objective - freed.objective > needed else frozenset()
 
 
-def _single_effects(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> _Singles:
+def _examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:
     progress("reading and aligning")
     seen = [observe(recording, model.composition) for recording in recordings]
     check_alike(seen)
@@ -129,28 +74,21 @@ def _single_effects(recordings: Sequence[Recording], model: NominalModel, progre
         seen[number], model = with_sufficient_stroke(observation, model)
     progress("calibrating the nominal equations")
     observations, calibration = calibrate_but_for_the_ends(seen, model)
-    scales = characteristic_scales(observations, calibration.shooting, calibration.fitted)
+    shooting, fitted = calibration.shooting, calibration.fitted
+    scales = characteristic_scales(observations, shooting, fitted)
     applicable = applicable_effects(observations)
-    comparison = compete(calibration.problem, calibration.fitted, applicable, scales, progress)
-    return _Singles(model.values, observations, calibration, scales, applicable, comparison)
-
-
-def _with_sets(singles: _Singles, progress: Progress) -> Evidence:
-    observations, scales = singles.observations, singles.scales
-    shooting, fitted = singles.calibration.shooting, singles.calibration.fitted
     lead = telling_most(shooting, fitted)
     alternatives = tuple(
         equation_residuals(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, result, lead))
-        for result in (fitted, singles.calibration.nominal)
+        for result in (fitted, calibration.nominal)
     )
-    calibration, comparison = with_sets(singles.calibration, singles.comparison, singles.applicable, scales, progress)
+    calibration, comparison = find_sets(observations, calibration, applicable, scales, progress)
     recovery = recover(calibration.problem, comparison, scales, progress)
-    decision = decide(calibration, singles.nominal, comparison, recovery)
-    equations = smallest(alternatives)
+    decision = decide(calibration, model.values, comparison, recovery)
     location = attribute(calibration, comparison.nominal.fit, scales, comparison, lead)
     return Evidence(
-        observations, lead, singles.nominal, calibration, scales, equations, alternatives, comparison, recovery,
-        decision, location,
+        observations, lead, model.values, calibration, scales, smallest(alternatives), alternatives, comparison,
+        recovery, decision, location,
     )  # fmt: skip
 
 

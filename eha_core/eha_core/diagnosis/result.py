@@ -146,6 +146,17 @@ class PredictedRecording:
 
 
 @dataclass(frozen=True)
+class TraceStep:
+    """One fit of the search: what led to it, the set's effects, the chi^2 a sample that it ended at, and the CPU time
+    [s] since the search began."""
+
+    step: str
+    effects: tuple[str, ...]
+    chi2: float
+    cpu_s: float
+
+
+@dataclass(frozen=True)
 class Alternative:
     """Effects that explain the recording as well as the named ones, but for `evidence_gap`."""
 

@@ -13,15 +13,17 @@ from eha_core.curve import KNOTS
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CONVINCING, LEFT_OVER, UNFITTED, chance_gain, parameter_cost
 from eha_core.diagnosis.hypothesis import Hypothesis
-from eha_core.diagnosis.search.candidates import without_effect
-from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison
-from eha_core.diagnosis.search.prune import REFITTED
+from eha_core.diagnosis.hypothesis import without_effect
+from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import FreeParameter, coordinates
 from eha_core.identification.observation import WITH_OIL
 from eha_core.identification.problem import Problem, linearise, normal_equations
 from eha_core.identification.shooting import Shooting
+
+REFITTED = 8
+"""Iterations of a fit without a member."""
 
 FULLY_FITTED = 2
 """How many of the curves with the largest predicted gain are fitted in full."""

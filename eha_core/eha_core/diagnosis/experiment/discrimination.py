@@ -9,7 +9,7 @@ from itertools import permutations
 
 import numpy as np
 
-from eha_core.diagnosis.search.nominal_start import NOMINAL_NAMES
+from eha_core.diagnosis.hypothesis import NOMINAL_NAMES
 from eha_core.identification.fit import SETTLED, Fit
 from eha_core.identification.free_parameters import FreeParameter, coordinates, values_at
 from eha_core.identification.numbers import Array

@@ -1,0 +1,116 @@
+"""What could be added to a set: for each effect the values at which it is tried, as columns of the linear model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.effect_parameters import MOST_ABOVE
+from eha_core.effects import Effect
+from eha_core.identification.observation import Observation
+from eha_core.identification.per_recording import named
+from eha_core.parameter import Parameter
+
+
+SITES_OF_DRIVE = {
+    "voltage": ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
+    "pressures": ("force", "sensor"),
+    "force": ("force", "sensor"),
+    "measured": ("spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
+}
+"""Where a recording with this drive can show anything."""
+
+
+def applicable_effects(observations: Sequence[Observation]) -> tuple[Effect, ...]:
+    """The effects that these recordings could show: those of examined sites whose sensor was there."""
+    sites = SITES_OF_DRIVE[observations[0].drive]
+    found = [effect for effect in observations[0].composition.effects if effect.site in sites and effect.named]
+    if not any(channel.name.startswith("pressure") for observation in observations for channel in observation.measured):
+        found = [effect for effect in found if "measured_pressure_a" not in effect.needs]
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class Column:
+    """One guess of an effect: `values` (full names) at which it is tried, and what its sizes do.
+
+    Attributes:
+        effect: the effect.
+        values: of its parameters, in every recording where they differ between recordings.
+        sizes: the names that are scaled by the coefficient that the linear model finds for the column.
+        alternative: columns of one effect with the same number belong together, each with a coefficient of its own;
+            columns with different numbers exclude each other.
+        one_way: the coefficient cannot be negative.
+        limited: the effect acts over an interval only, whose ends are in `values`.
+    """
+
+    effect: Effect
+    values: Mapping[str, float]
+    sizes: tuple[str, ...]
+    alternative: int
+    one_way: bool
+    limited: bool = False
+
+    def sized(self, factor: float) -> dict[str, float]:
+        """The values with the sizes at so many times what they are, within their bounds."""
+        rows = dict(zip(self.effect.parameter_names(), self.effect.parameters, strict=True))
+        values = dict(self.values)
+        for name in self.sizes:
+            row = rows[name.partition("@")[0]]
+            values[name] = min(max(row.nominal + factor * (values[name] - row.nominal), row.lower), row.upper)
+        return values
+
+
+def columns_of(
+    effect: Effect, scales: Scales, per_recording: Sequence[str] = (), recordings: int = 1
+) -> tuple[Column, ...]:
+    """Every column of an effect: a combination of starting shapes each, and in it a column for each independent size.
+
+    Sizes are independent where the effect may have either of them alone, as the biases of two sensors, or where they
+    differ between recordings.
+    """
+    rows = dict(zip(effect.parameter_names(), effect.parameters, strict=True))
+    switching = [name for name, row in rows.items() if row.switches]
+    apart = len(switching) > 1 and all(0.0 in rows[name].starts for name in switching)
+    groups = [[name] for name in switching] if apart else [switching]
+    one_way = not all(rows[name].lower < rows[name].nominal for name in switching)
+    found: list[Column] = []
+    for alternative, chosen in enumerate(_starts(effect, rows, scales, one_way)):
+        off = {name: rows[name].nominal for name in switching}
+        for group in groups:
+            differs = any(name in per_recording for name in group)
+            for number in range(1, recordings + 1 if differs else 2):
+                on = {named(name, number) if name in per_recording else name: chosen[name] for name in group}
+                everywhere = {named(name, n): off[name] for name in group if name in per_recording
+                              for n in range(1, recordings + 1)}  # fmt: skip
+                values = {**chosen, **off, **everywhere, **on}
+                found.append(Column(effect, values, tuple(on), alternative, one_way))
+    return tuple(found)
+
+
+def _starts(
+    effect: Effect, rows: Mapping[str, Parameter], scales: Scales, one_way: bool
+) -> Iterator[dict[str, float]]:
+    """The combinations of starting values that the effect's rows declare; of sizes none that is zero or, where the
+    coefficient has a sign, differs by its sign alone."""
+    choices = []
+    for row in rows.values():
+        origin, scale = scales.by_quantity.get(row.relative_to, (0.0, row.typical))
+        starts = [at for at in row.starts if at != 0.0 or not row.switches]
+        if row.switches and not one_way:
+            starts = sorted({abs(at) for at in starts}) or [1.0]
+        choices.append([min(max(origin + scale * at, row.lower), row.upper) for at in starts])
+    for values in product(*choices):
+        found = dict(zip(rows, values, strict=True))
+        if all(_may_be(effect, found, row) for row in rows.values()):
+            yield found
+
+
+def _may_be(effect: Effect, values: Mapping[str, float], row: Parameter) -> bool:
+    """Whether a guess has a parameter as far above another as a fit lets it be."""
+    if not row.above:
+        return True
+    share = values[f"{effect.id}.{row.name}"] / values[f"{effect.id}.{row.above}"] - 1.0
+    return 0.0 <= share <= MOST_ABOVE

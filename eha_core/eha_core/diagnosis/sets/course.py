@@ -1,0 +1,187 @@
+"""The course of the search: short windows with friction held, friction free, long windows, then what can be dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from eha_core.diagnosis.calibrate import Calibration
+from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
+from eha_core.diagnosis.sets.best_sets import objective_without, one_more
+from eha_core.diagnosis.sets.columns import Column, columns_of
+from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, residual_variance
+from eha_core.diagnosis.sets.equations import Friction, friction_of
+from eha_core.diagnosis.sets.finish import finish, refit_nominal, rivals
+from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of
+from eha_core.diagnosis.sets.quadratic import QuadraticModel
+from eha_core.diagnosis.sets.search import NEAR, Search, cost, leader, required, search_sets
+from eha_core.effects import Effect
+from eha_core.identification.fit import Fit, fit, with_noise
+from eha_core.identification.free_parameters import FreeParameter
+from eha_core.identification.observation import Observation
+from eha_core.identification.per_recording import base_name
+from eha_core.identification.problem import Problem, whole
+from eha_core.identification.short_windows import held
+from eha_core.identification.shooting import Shooting
+
+CARRIED = 2
+"""Sets that are carried from one length of the windows to the next: the best and, where it is near, the second."""
+
+OF_STATES, RELEASED, CARRIED_ON = 6, 4, 8
+"""Iterations of windows' starts alone, of a set whose friction is set free, and of one carried to longer windows."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """What a search works on, the same over windows of all lengths."""
+
+    effects: Sequence[Effect]
+    columns: Sequence[Column]
+    plant: tuple[FreeParameter, ...]
+    trace: Trace
+    progress: Progress
+
+
+def find_sets(
+    observations: Sequence[Observation],
+    calibration: Calibration,
+    effects: Sequence[Effect],
+    scales: Scales,
+    progress: Progress = lambda _: None,
+) -> tuple[Calibration, ModelComparison]:
+    """The comparison of the best set with what comes near it, and the calibration in the noise that was found."""
+    shooting, fitted = calibration.shooting, calibration.fitted
+    recordings = len(shooting.first_windows)
+    columns = [column for effect in effects for column in columns_of(effect, scales, shooting.per_recording, recordings)]
+    material = Material(effects, columns, _plant(fitted), Trace(), progress)
+    progress("locating in the equations")
+    friction = friction_of(observations, calibration.nominal.values, effects, scales)
+    progress("searching sets over short windows")
+    pool = over_short_windows(calibration.shorter[0], calibration.nominal.values, friction, material)
+    best = leader(pool)
+    if pool.found[best].data > NEAR * pool.found[best].count:
+        pool = carried(pool, whole(calibration.shorter[1]), material)
+        search_sets(Search(pool, columns, progress))
+    progress("searching sets over long windows")
+    pool = carried(pool, calibration.problem, material)
+    pool.keep(NOTHING, in_noise_of(pool.problem, shooting, fitted))
+    search_sets(Search(pool, columns, progress))
+    return finished(pool, calibration, material)
+
+
+def _plant(fitted: Fit) -> tuple[FreeParameter, ...]:
+    """The plant's own free parameters, each once."""
+    return tuple(parameter for parameter in fitted.free if "@" not in parameter.name)
+
+
+def over_short_windows(
+    shooting: Shooting, nominal: Mapping[str, float], friction: Friction, material: Material
+) -> Pool:
+    """Sets over the shortest windows: the friction of the force balance held while the others are found, then free."""
+    plant = held(material.plant, nominal)
+    pool = Pool(whole(shooting), plant, material.trace)
+    values = {**nominal, **friction.held.values} if friction.held else dict(nominal)
+    states = fit(pool.problem, values, (), iterations=OF_STATES).states
+    pool.try_set("nominal", NOTHING, values, states, CARRIED_ON)
+    pool.measure_noise(NOTHING)
+    if not friction.known:
+        search_sets(Search(pool, material.columns, material.progress))
+        return pool
+    others = [column for column in material.columns if not column.effect.kind]
+    search_sets(Search(pool, others, material.progress))
+    if friction.held is None:
+        if pool.found[leader(pool)].data > NEAR * pool.found[leader(pool)].count:
+            search_sets(Search(pool, material.columns, material.progress))
+        return pool
+    return _released(pool, friction, material)
+
+
+def _released(pool: Pool, friction: Friction, material: Material) -> Pool:
+    """The best sets with the friction free that was held, and with its other forms where more than noise is left."""
+    assert friction.held is not None
+    free = Pool(pool.problem, pool.plant, pool.trace)
+    ahead = _ahead(pool)
+    for hypothesis in ahead:
+        at = pool.found[hypothesis]
+        free.try_set(
+            "friction free", hypothesis.with_effects([friction.held.effect]), at.values, at.states, RELEASED
+        )
+    best = leader(free)
+    if free.found[best].data < NEAR * free.found[best].count:
+        return free
+    at = pool.found[ahead[0]]
+    for start in friction.forms[1:]:
+        values = {**at.values, **neutral(friction.held.effect), **start.values}
+        free.try_set("form of friction", ahead[0].with_effects([start.effect]), values, at.states, RELEASED)
+    search_sets(Search(free, material.columns, material.progress))
+    return free
+
+
+def carried(pool: Pool, problem: Problem, material: Material) -> Pool:
+    """The best sets over longer windows, in the noise that was found."""
+    if pool.found[leader(pool)].data < 2.0 * pool.found[leader(pool)].count:
+        noise = [sampling.noise for sampling in pool.problem.shooting.samplings]
+        problem = replace(problem, shooting=with_noise(problem.shooting, noise))
+    longer = Pool(problem, material.plant, material.trace)
+    for hypothesis in _ahead(pool):
+        at = pool.found[hypothesis]
+        states = fit(longer.problem, at.values, (), iterations=OF_STATES).states
+        longer.try_set("longer windows", hypothesis, at.values, states, CARRIED_ON)
+    longer.measure_noise(leader(longer))
+    return longer
+
+
+def _ahead(pool: Pool) -> list[Hypothesis]:
+    """The best set, and the next ones that come near it."""
+    ahead = sorted(pool.found, key=lambda hypothesis: cost(hypothesis, pool.found[hypothesis]))[:CARRIED]
+    best = pool.found[ahead[0]]
+    return [h for h in ahead if cost(h, pool.found[h]) < cost(ahead[0], best) + 3.0 * required(best)]
+
+
+def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[Calibration, ModelComparison]:
+    """The best set fitted to its end, without what is not significant, with its rivals and the nominal model."""
+    material.progress("fitting the best set to its end")
+    best = finish(pool, leader(pool), material.progress)
+    leading, compared, model = rivals(pool, best, material.columns, material.progress)
+    if leading != best:
+        best = finish(pool, leading, material.progress)
+        _, compared, model = rivals(pool, best, material.columns, material.progress)
+    found = {hypothesis: pool.found[hypothesis] for hypothesis in compared if hypothesis.members}
+    nominal = refit_nominal(pool, pool.found[NOTHING], list(found.values()))
+    before, shooting = calibration.shooting, pool.problem.shooting
+    given, fitted = (in_noise_of(pool.problem, before, at) for at in (calibration.nominal, calibration.fitted))
+    calibration = replace(calibration, shooting=shooting, problem=pool.problem, nominal=given, fitted=fitted)
+    comparison = ModelComparison(
+        Entry(NOTHING, nominal, 0.0),
+        rank(nominal, found),
+        residual_variance([nominal, *found.values()]),
+        _gains_by_site(model, best),
+        _left_over(model, best),
+        tuple(material.trace.steps),
+    )
+    return calibration, comparison
+
+
+def _gains_by_site(model: QuadraticModel, best: Hypothesis) -> dict[str, float]:
+    """What the members of each site explain together with the others; of no set, what a single effect would."""
+    if not best.members:
+        return _left_over(model, best)
+    sites = {member.effect.site for member in best.members}
+    return {
+        site: objective_without(model, [member for member in best.members if member.effect.site == site])
+        - model.at.objective
+        for site in sites
+    }
+
+
+def _left_over(model: QuadraticModel, best: Hypothesis) -> dict[str, float]:
+    """What one more effect together with the best is predicted to gain, the most of each site."""
+    gains: dict[str, float] = {}
+    for proposal in one_more(model):
+        added = next(option.member for option in proposal.options if not option.present)
+        gain = model.at.objective - proposal.predicted
+        gains[added.effect.site] = max(gain, gains.get(added.effect.site, 0.0))
+    return gains

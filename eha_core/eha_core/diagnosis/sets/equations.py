@@ -1,0 +1,75 @@
+"""Equations first: the dry friction that the force balance shows, as the start of the search."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.sets.columns import columns_of
+from eha_core.effects import Effect
+from eha_core.identification.observation import Observation
+from eha_core.weak_form.dry_friction import CLEAR, DryFriction, dry_friction
+
+KIND = "dry friction"
+
+ABOVE = 1.2
+"""Share of the friction in motion that a law begins with at rest where the balance shows none higher (assumed)."""
+
+
+@dataclass(frozen=True)
+class FrictionStart:
+    """A form of dry friction with the values at which it begins, by full name."""
+
+    effect: Effect
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Friction:
+    """What the force balance says of dry friction.
+
+    Attributes:
+        known: whether it could be asked. Without both pressures, or hardly any motion between reversals, it could not.
+        held: the form that it shows clearly; None for none.
+        forms: every form as it would begin, the most probable first.
+    """
+
+    known: bool
+    held: FrictionStart | None
+    forms: tuple[FrictionStart, ...]
+
+
+def friction_of(
+    observations: Sequence[Observation], values: Mapping[str, float], effects: Sequence[Effect], scales: Scales
+) -> Friction:
+    """The dry friction of the first recording that tells it."""
+    offered = {effect.id: effect for effect in effects if effect.kind == KIND}
+    for observation in observations:
+        found = [form for form in dry_friction(observation, values) if not form.form or form.form in offered]
+        if not found:
+            continue
+        none = next((form.clear for form in found if not form.form), 2.0 * CLEAR)
+        frictions = [form for form in found if form.form]
+        if not frictions or none < CLEAR:
+            return Friction(True, None, ())
+        starts = [FrictionStart(offered[form.form], _begun(offered[form.form], form, scales)) for form in frictions]
+        sliding = next((form for form in frictions if form.form == "stribeck_friction"), frictions[0])
+        known = {form.form for form in frictions}
+        starts += [
+            FrictionStart(effect, _begun(effect, sliding, scales)) for name, effect in offered.items() if name not in known
+        ]
+        return Friction(True, starts[0], tuple(starts))
+    return Friction(False, None, ())
+
+
+def _begun(effect: Effect, form: DryFriction, scales: Scales) -> dict[str, float]:
+    """A form's parameters, those that the force balance gives from there, the others as their guess."""
+    values = dict(columns_of(effect, scales)[0].values)
+    force = form.values.get("force")
+    for row in effect.parameters:
+        if row.name in form.values:
+            values[f"{effect.id}.{row.name}"] = form.values[row.name]
+        elif row.above and force:
+            values[f"{effect.id}.{row.name}"] = ABOVE * force
+    return values

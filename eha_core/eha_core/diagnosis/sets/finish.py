@@ -1,0 +1,203 @@
+"""The end of the search: the best set fitted to its end, what is not significant dropped, and its rivals fitted too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from statistics import fmean
+
+import numpy as np
+
+from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.criteria import (
+    CHANCE,
+    CONVINCING,
+    NOISE_KNOWN,
+    OF_ITS_FORM,
+    OF_SAMPLES,
+    OF_SAMPLES_BESIDE_A_FORM,
+)
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
+from eha_core.diagnosis.sets.best_sets import Proposal, best_sets, objective_without
+from eha_core.diagnosis.sets.columns import Column
+from eha_core.diagnosis.sets.pool import Pool, Progress
+from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.sets.search import cost, required
+from eha_core.identification.fit import Fit, exact, fit
+from eha_core.identification.per_recording import base_name
+
+CONVERGED = 20
+"""Iterations in which what is compared is fitted to its end."""
+
+WITHOUT = 8
+"""Iterations of a fit without a member."""
+
+LOOKED_AT = 4.0
+"""A member is tried to be dropped where the curvature says that it costs no more than this many times what it must
+gain."""
+
+RIVALS = 5
+"""Sets near the best that are fitted in order to be compared with it."""
+
+COMPARED_WITHIN = 300.0
+"""Chi^2, in units of the residual's variance, behind the best within which a rival is fitted to its end."""
+
+
+def converge(pool: Pool, hypothesis: Hypothesis) -> Fit:
+    """Fit a set until nothing is gained, with derivatives at the full step."""
+    at = pool.found[hypothesis]
+    result = fit(exact(pool.problem), at.values, at.free, at.states, iterations=CONVERGED, in_a_row=2)
+    pool.trace.add("converge", hypothesis, result)
+    return pool.keep(hypothesis, result)
+
+
+def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> Hypothesis:
+    """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of
+    them."""
+    at = converge(pool, hypothesis)
+    refused: set[Member] = set()
+    while hypothesis.members:
+        costs = predicted_costs(pool, hypothesis, at)
+        needed = {member: required_of(pool, member, costs, at) for member in costs}
+        order = sorted(costs.keys() - refused, key=lambda member: costs[member] / needed[member])
+        if not order or costs[order[0]] > LOOKED_AT * needed[order[0]]:
+            break
+        member = order[0]
+        rest = hypothesis.without(member)
+        simpler = _without(pool, hypothesis, member, at, needed[member])
+        lost = simpler.objective - at.objective
+        progress(f"without {member.id}: chi^2 rises by {lost:.4g}, {needed[member]:.4g} is required")
+        if lost > needed[member]:
+            refused.add(member)
+        else:
+            hypothesis, at = rest, converge(pool, rest) if rest.members else simpler
+    return hypothesis
+
+
+def predicted_costs(pool: Pool, hypothesis: Hypothesis, at: Fit) -> dict[Member, float]:
+    """What the curvature says that chi^2 rises by without each member."""
+    model = quadratic_model(exact(pool.problem), at, hypothesis, pool.plant, ())
+    return {
+        option.member: max(objective_without(model, [option.member]) - at.objective, 0.0) for option in model.options
+    }
+
+
+def _without(pool: Pool, hypothesis: Hypothesis, member: Member, at: Fit, needed: float) -> Fit:
+    """The set without a member, fitted from where the whole set stands until it comes near enough or does not."""
+    rest = hypothesis.without(member)
+    off = neutral(member.effect)
+    values = {name: off.get(base_name(name), value) for name, value in at.values.items()}
+    free = tuple(parameter for parameter in at.free if base_name(parameter.name) not in off)
+    simpler = pool.try_set("without a member", rest, values, at.states, WITHOUT, free)
+    if simpler.objective - at.objective > needed:
+        simpler = pool.go_on("without a member", rest, CONVERGED, 2, give_up_above=at.objective + needed)
+    return simpler
+
+
+def required_of(pool: Pool, member: Member, costs: Mapping[Member, float], at: Fit) -> float:
+    """Chi^2 that a member has to explain together with the others.
+
+    More than chance, more than what the form of the other laws leaves in its equation, and most of what the set would
+    leave without it.
+    """
+    variance, count = max(1.0, at.data / at.count), at.count
+    left = max(at.data - count, 0.0)
+    ratio = CONVINCING / (1.0 - CONVINCING)
+    forms = [other for other in costs if other != member and other.effect.approximate]
+    by_chance = variance * (CHANCE + OF_SAMPLES * count)
+    if costs[member] < by_chance and forms:
+        # where friction makes the objective rugged a refit may stop short: a small loss is believed if the curvature says so
+        by_chance = variance * (CHANCE + OF_SAMPLES_BESIDE_A_FORM * count)
+    nothing = pool.found.get(NOTHING)
+    explained = max(nothing.objective - at.objective, 0.0) if nothing else np.inf
+    of_forms = OF_ITS_FORM * min(sum(costs[other] for other in forms if meet(member, other)), explained)
+    of_forms = min(of_forms, ratio * (left + NOISE_KNOWN * count))
+    return max(by_chance + of_forms, ratio * max(left - NOISE_KNOWN * count, 0.0))
+
+
+def meet(member: Member, other: Member) -> bool:
+    """Whether two effects act in one equation, of the piston's forces or of the oil's flow; a sensor shows both."""
+    sites = (member.effect.site, other.effect.site)
+    return any(site in ("sensor", "schedule") for site in sites) or (sites[0] == "force") == (sites[1] == "force")
+
+
+def rivals(
+    pool: Pool, best: Hypothesis, columns: Sequence[Column], progress: Progress
+) -> tuple[Hypothesis, list[Hypothesis], QuadraticModel]:
+    """The best set, once what comes near it was fitted to its end too; all of those; and the model about the best."""
+    at = pool.found[best]
+    addable = [c for c in columns if c.effect.id not in best.ids and c.effect.kind not in best.kinds]
+    model = quadratic_model(pool.posed(best), at, best, pool.plant, addable)
+    within = COMPARED_WITHIN * max(1.0, at.data / at.count)
+    near: list[tuple[float, Hypothesis, Proposal]] = []
+    for size, level in best_sets(model, len(best.members) + 1).items():
+        for proposal in level if abs(size - len(best.members)) <= 1 else ():
+            hypothesis = Hypothesis(tuple(sorted(option.member for option in proposal.options)))
+            adds_only = set(best.members) <= set(hypothesis.members)
+            if hypothesis != best and not adds_only and proposal.predicted < at.objective + within:
+                near.append((proposal.predicted, hypothesis, proposal))
+    for _, hypothesis, proposal in sorted(near, key=lambda item: item[0])[:RIVALS]:
+        values, states = model.start(proposal.options)
+        progress(f"comparing with {' + '.join(hypothesis.ids) or 'nothing'}")
+        pool.try_set("rival", hypothesis, values, states, 4)
+    for hypothesis, values in _other_forms(pool, best, columns):
+        progress(f"comparing with {' + '.join(hypothesis.ids)}")
+        pool.try_set("form", hypothesis, values, at.states, 6)
+    close = [
+        hypothesis for hypothesis, result in pool
+        if hypothesis != best and result.objective < at.objective + within and hypothesis.members
+        and not set(best.members) < set(hypothesis.members)
+    ]  # fmt: skip
+    for hypothesis in sorted(close, key=lambda h: pool.found[h].objective)[:RIVALS]:
+        converge(pool, hypothesis)
+    compared = [best, *close]
+    leading = min(compared, key=lambda hypothesis: cost(hypothesis, pool.found[hypothesis]))
+    return leading, compared, model
+
+
+def _other_forms(
+    pool: Pool, best: Hypothesis, columns: Sequence[Column]
+) -> Iterator[tuple[Hypothesis, dict[str, float]]]:
+    """The set with another form of a member's law, at its values where both have the parameter."""
+    at = pool.found[best]
+    for member in best.members:
+        if not member.effect.kind or member.limited:
+            continue
+        others = {c.effect.id: c for c in columns if c.effect.kind == member.effect.kind and c.effect.id != member.id}
+        for column in others.values():
+            hypothesis = best.without(member).with_effects([column.effect])
+            if hypothesis not in pool.found:
+                yield hypothesis, {**at.values, **neutral(member.effect), **as_large(column, member, at)}
+
+
+def as_large(column: Column, member: Member, result: Fit) -> dict[str, float]:
+    """One form of a law with another's values where both have the parameter, and its other sizes in proportion to the
+    first size that both have: the mean of the other form's where it has more sizes."""
+    sizes = [row.name for row in column.effect.parameters if row.switches]
+    theirs = {row.name: result.values[f"{member.id}.{row.name}"] for row in member.effect.parameters}
+    of_theirs = [row.name for row in member.effect.parameters if row.switches]
+    common = next((name for name in sizes if name in of_theirs), None)
+    if common is None:
+        return dict(column.values)
+    if not set(of_theirs) <= set(sizes):
+        theirs[common] = fmean(theirs[name] for name in of_theirs)
+    share = theirs[common] / column.values[f"{column.effect.id}.{common}"]
+    found = {}
+    for name, value in column.values.items():
+        own = base_name(name).rsplit(".", 1)[1]
+        found[name] = theirs.get(own, share * value if own in sizes else value)
+    return found
+
+
+def refit_nominal(pool: Pool, calibrated: Fit, others: Sequence[Fit]) -> Fit:
+    """The nominal model fitted once more from the best set's nominal values.
+
+    A nominal fit that stopped in a flat valley would make any set that left it look like a discovery.
+    """
+    if not others:
+        return calibrated
+    best = min(others, key=lambda result: result.objective)
+    names = {parameter.name for parameter in calibrated.free}
+    values = {name: best.values[name] if name in names else value for name, value in calibrated.values.items()}
+    again = fit(pool.problem, values, calibrated.free, best.states)
+    return again if again.objective < calibrated.objective else calibrated

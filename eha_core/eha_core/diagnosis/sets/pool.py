@@ -1,0 +1,140 @@
+"""What was fitted: the best fit of each set, what it cost, and which step gained what."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import inf
+
+import numpy as np
+
+from eha_core.diagnosis.calibrate import corrected_noise
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE
+from eha_core.diagnosis.effect_parameters import free_instants, with_effects
+from eha_core.diagnosis.hypothesis import Hypothesis
+from eha_core.diagnosis.result import TraceStep
+from eha_core.identification.fit import Fit, fit, with_noise
+from eha_core.identification.free_parameters import FreeParameter
+from eha_core.identification.numbers import Array
+from eha_core.identification.problem import Problem
+from eha_core.identification.shooting import Shooting
+from eha_core.identification.short_windows import with_finer_slopes
+
+
+REACH = 1.0
+"""s; how far a fit may move an instant from where the linear model has it."""
+
+SAME_NOISE = 0.01
+"""Share by which a channel's noise may seem to change before everything is weighed anew."""
+
+
+Progress = Callable[[str], None]
+"""Is told what is being tried."""
+
+
+@dataclass
+class Trace:
+    """Every fit of a search, in order."""
+
+    began: float = field(default_factory=time.process_time)
+    steps: list[TraceStep] = field(default_factory=list)
+
+    def add(self, step: str, hypothesis: Hypothesis, result: Fit) -> None:
+        """Note a fit."""
+        row = TraceStep(step, hypothesis.ids, result.data / max(result.count, 1), time.process_time() - self.began)
+        self.steps.append(row)
+
+
+@dataclass
+class Pool:
+    """The best fit so far of each set over windows of one length.
+
+    `plant`: the nominal parameters that are free; `trace` is shared by the pools of all lengths.
+    """
+
+    problem: Problem
+    plant: tuple[FreeParameter, ...]
+    trace: Trace
+    found: dict[Hypothesis, Fit] = field(default_factory=dict)
+
+    def free(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[FreeParameter, ...]:
+        """What a fit of a set moves: the plant, its members, and between which instants limited ones act, about
+        `values`."""
+        free = with_effects(self.plant, hypothesis.effects, values)
+        longest = float(np.max(self.problem.shooting.local_edges))
+        for member in hypothesis.limited:
+            span = {name: values[name] for name in member.effect.acting_names()}
+            reach = [(max(at - REACH, 0.0), min(at + REACH, longest)) for at in span.values()]
+            free = (*free, *free_instants(span, reach))
+        return free
+
+    def try_set(
+        self, step: str, hypothesis: Hypothesis, values: Mapping[str, float], states: Array | None, iterations: int,
+        free: Sequence[FreeParameter] | None = None, in_a_row: int = 1, give_up_above: float = inf,
+    ) -> Fit:  # fmt: skip
+        """Fit a set from values and states; keep it if it is the best fit of its set."""
+        free = self.free(hypothesis, values) if free is None else free
+        result = fit(
+            self.posed(hypothesis), values, free, states,
+            iterations=iterations, in_a_row=in_a_row, give_up_above=give_up_above,
+        )  # fmt: skip
+        self.trace.add(step, hypothesis, result)
+        return self.keep(hypothesis, result)
+
+    def glance(
+        self, step: str, hypothesis: Hypothesis, values: Mapping[str, float], states: Array, iterations: int
+    ) -> Fit:
+        """A fit of the members' own parameters alone; it is not kept."""
+        plant = {parameter.name for parameter in self.plant}
+        free = tuple(parameter for parameter in self.free(hypothesis, values) if parameter.name not in plant)
+        result = fit(self.problem, values, free, states, iterations=iterations)
+        self.trace.add(step, hypothesis, result)
+        return result
+
+    def posed(self, hypothesis: Hypothesis) -> Problem:
+        """The problem with derivatives taken as finely as the set needs."""
+        return with_finer_slopes(self.problem) if hypothesis.kinds else self.problem
+
+    def keep(self, hypothesis: Hypothesis, result: Fit) -> Fit:
+        """Keep a fit if it is the best of its set; the best fit of the set."""
+        before = self.found.get(hypothesis)
+        if before is None or result.objective < before.objective:
+            self.found[hypothesis] = result
+        return self.found[hypothesis]
+
+    def go_on(
+        self, step: str, hypothesis: Hypothesis, iterations: int, in_a_row: int = 1, give_up_above: float = inf
+    ) -> Fit:
+        """Fit a set further from where it stands."""
+        at = self.found[hypothesis]
+        return self.try_set(step, hypothesis, at.values, at.states, iterations, at.free, in_a_row, give_up_above)
+
+    def measure_noise(self, hypothesis: Hypothesis) -> None:
+        """Take each channel's noise from what a set leaves, if that is near it, and every fit so far with it.
+
+        A model that is far off leaves a rough residual, and the noise seems larger than it is.
+        """
+        at, samplings = self.found[hypothesis], self.problem.shooting.samplings
+        if at.data > FAR_FROM_NOISE * at.count:
+            return
+        before = self.problem.shooting
+        noise = corrected_noise(before, at)
+        if all(abs(level / sampling.noise - 1.0) < SAME_NOISE for level, sampling in zip(noise, samplings, strict=True)):
+            return
+        self.problem = replace(self.problem, shooting=with_noise(before, noise))
+        for other, result in self.found.items():
+            self.found[other] = in_noise_of(self.problem, before, result)
+
+    def __iter__(self) -> Iterator[tuple[Hypothesis, Fit]]:
+        return iter(self.found.items())
+
+
+def in_noise_of(problem: Problem, before: Shooting, result: Fit) -> Fit:
+    """A fit as it is in the noise of another problem: the same model, another chi^2."""
+    used = problem.used()
+    pairs = zip(problem.shooting.samplings, before.samplings, result.residuals, strict=True)
+    residuals = tuple(residual * (then.noise / now.noise) for now, then, residual in pairs)
+    kept = zip(problem.shooting.samplings, residuals, strict=True)
+    data = sum(float(np.sum(residual[used[sampling.window]] ** 2)) for sampling, residual in kept)
+    return replace(result, residuals=residuals, data=data, objective=result.objective - result.data + data)

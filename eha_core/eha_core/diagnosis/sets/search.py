@@ -1,0 +1,163 @@
+"""One search over whole sets: propose from the quadratic model, fit what is proposed, go on from the best of all fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from eha_core.diagnosis.criteria import MOST_EFFECTS
+from eha_core.diagnosis.hypothesis import Hypothesis
+from eha_core.diagnosis.sets.best_sets import Proposal, best_sets
+from eha_core.diagnosis.sets.columns import Column
+from eha_core.diagnosis.sets.pool import Pool, Progress
+from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
+from eha_core.identification.fit import Fit
+from eha_core.identification.numbers import Array
+from eha_core.identification.problem import objective_of
+from eha_core.plant.lane_rows import LANES
+
+EXPANSIONS = 8
+"""Sets about which the channels are linearised, over windows of one length."""
+
+FIRST, FURTHER, CONVERGE = 2, 3, 12
+LEADERS = 2
+"""Proposals that are fitted with all that is free, the best of those of which the members alone were fitted."""
+
+OF_SIZE = 4
+FAR_TRIED, NEAR_TRIED = 16, 4
+"""Proposals of one size, and of all, of which the members are fitted, far from the noise and near it."""
+
+NEAR = 1.03
+RELATED = 3.0
+WORTHWHILE = 0.9
+SHARES = (1.0, 0.5, 0.25)
+CHANCE, OF_SAMPLES, OF_EXCESS = 25.0, 0.001, 0.01
+
+
+def required(result: Fit) -> float:
+    """Chi^2 that a member has to gain together with the others of a set that leaves what `result` does."""
+    count = result.count
+    by_chance = (CHANCE + OF_SAMPLES * count) * max(1.0, result.data / count)
+    return by_chance + OF_EXCESS * max(0.0, result.objective - count)
+
+
+def cost(hypothesis: Hypothesis, result: Fit) -> float:
+    """What sets are compared by while the search goes on: chi^2, and what its members have to gain at least."""
+    return result.objective + len(hypothesis.members) * (CHANCE + OF_SAMPLES * result.count) * max(
+        1.0, result.data / result.count
+    )
+
+
+def leader(pool: Pool) -> Hypothesis:
+    """The best of all sets that were fitted."""
+    return min(pool.found, key=lambda hypothesis: cost(hypothesis, pool.found[hypothesis]))
+
+
+@dataclass
+class Search:
+    """A search over windows of one length: its pool, what can be added, and the sets that it has gone on from."""
+
+    pool: Pool
+    columns: Sequence[Column]
+    say: Progress = lambda _: None
+    expanded: dict[Hypothesis, float] = field(default_factory=dict)
+
+    def next(self) -> Hypothesis | None:
+        """The best set that the search has not gone on from yet; None where there is nothing more to do."""
+        lead = leader(self.pool)
+        if lead not in self.expanded:
+            return lead
+        result = self.pool.found[lead]
+        if result.objective < self.expanded[lead] - required(result) :
+            return lead
+        if result.data < NEAR * result.count:
+            return None
+        within = RELATED * cost(lead, result)
+        rest = [h for h, at in self.pool if h not in self.expanded and cost(h, at) < within]
+        return min(rest, key=lambda h: cost(h, self.pool.found[h]), default=None)
+
+
+def search_sets(search: Search) -> Hypothesis:
+    """The best set over the pool's windows; every set that was fitted stays in the pool."""
+    for number in range(EXPANSIONS):
+        base = search.next()
+        if base is None:
+            break
+        _expand(search, base, f"expansion {number + 1}")
+    return leader(search.pool)
+
+
+def _expand(search: Search, base: Hypothesis, step: str) -> None:
+    """Linearise about a set, and fit the best sets that follow from it: the members alone first, then all that is
+    free."""
+    pool, lead = search.pool, leader(search.pool)
+    at = pool.found[base]
+    search.expanded[base] = at.objective
+    addable = [c for c in search.columns if c.effect.id not in base.ids and c.effect.kind not in base.kinds]
+    in_time = base == lead and not base.limited
+    model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)
+    begun = _begun(pool, model, _worth_a_fit(pool, base, model))
+    tried: list[tuple[float, Hypothesis, Fit]] = []
+    for hypothesis, values, states in begun:
+        result = pool.glance(step, hypothesis, values, states, FIRST)
+        tried.append((cost(hypothesis, result), hypothesis, result))
+        if result.data < NEAR * result.count:
+            break  # what is larger is proposed from there, if it is needed
+    tried.sort(key=lambda item: item[0])
+    for _, hypothesis, result in tried[:LEADERS]:
+        pool.try_set(step, hypothesis, result.values, result.states, FURTHER)
+    now = leader(pool)
+    if now == lead and base == lead and pool.found[lead].data > NEAR * at.count:
+        pool.go_on(step, lead, CONVERGE, 2)  # it may have stopped short of its optimum
+    search.say(f"{step} at {'+'.join(base.ids) or 'nothing'}, {at.data / at.count:.4g} times the noise: {len(tried)} sets tried,"
+               f" best {'+'.join(now.ids) or 'nothing'}, {pool.found[now].data / at.count:.4g}")
+    pool.measure_noise(now)
+
+
+def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tuple[Hypothesis, Proposal]]:
+    """The proposals of a quadratic model: at the noise what is significant, else the best few of each size that explains
+    noticeably more than a smaller one."""
+    at = pool.found[base]
+    needed, at_noise = required(at), at.data < NEAR * at.count
+    chosen: dict[Hypothesis, tuple[int, float, Proposal]] = {}
+    least = np.inf
+    for size, level in best_sets(model, MOST_EFFECTS).items():
+        excess = max(level[0].predicted - at.count, 0.0)
+        if not at_noise and excess > WORTHWHILE * least and size > len(base.members):
+            continue
+        least = min(least, excess)
+        more = needed * (size - len(base.members)) - 0.5 * needed * (size <= len(base.members))
+        of_size = 0
+        for proposal in level:
+            hypothesis = Hypothesis(tuple(sorted(option.member for option in proposal.options)))
+            known = pool.found.get(hypothesis)
+            tried = known is not None and known.objective < proposal.predicted + needed
+            significant = not at_noise or proposal.predicted + more < at.objective
+            if hypothesis == base or hypothesis in chosen or tried or not significant:
+                continue
+            chosen[hypothesis] = of_size, proposal.predicted + needed * size, proposal
+            of_size += 1
+            if of_size == OF_SIZE:
+                break
+    ranked = sorted(chosen.items(), key=lambda item: item[1][:2])
+    return [(hypothesis, proposal) for hypothesis, (_, _, proposal) in ranked[: NEAR_TRIED if at_noise else FAR_TRIED]]
+
+
+def _begun(
+    pool: Pool, model: QuadraticModel, proposals: Sequence[tuple[Hypothesis, Proposal]]
+) -> list[tuple[Hypothesis, dict[str, float], Array]]:
+    """Where the fits of proposals begin: the share of each predicted way that leads lowest."""
+    starts = [model.start(proposal.options, share) for _, proposal in proposals for share in SHARES]
+    problem = replace(pool.problem, shooting=pool.problem.slopes)
+    objectives = []
+    for first in range(0, len(starts), LANES):
+        some = starts[first : first + LANES]
+        rows, ends = problem.shooting.simulate_many(some)
+        for lane, (_, states) in enumerate(some):
+            objectives.append(objective_of(problem, (), np.zeros(0), states, rows[:, :, lane], ends[:, :, lane]))
+    best = np.argmin(np.reshape(objectives, (-1, len(SHARES))), axis=1) if starts else []
+    return [
+        (hypothesis, *starts[len(SHARES) * k + share]) for k, ((hypothesis, _), share) in enumerate(zip(proposals, best, strict=True))
+    ]
