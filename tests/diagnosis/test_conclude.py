@@ -16,7 +16,7 @@ from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.discrimination import RATE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.result import ChannelFit, Correlation, Explained, Location, Step, UnknownLaw
+from eha_core.diagnosis.result import ChannelFit, Correlation, Explained, Location, UnknownLaw
 from eha_core.diagnosis.search.found import MOST_FITS
 from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
@@ -243,8 +243,8 @@ def _fitted_elsewhere(monkeypatch):
     monkeypatch.setattr(conclude, "pictures", lambda *given: None)
     monkeypatch.setattr(conclude, "correlation", lambda final: Correlation())
     monkeypatch.setattr(conclude, "propose", lambda *given: "a test")
-    order = ("nominal", "coulomb_friction", "constant_load")
-    monkeypatch.setattr(conclude, "ladder", lambda *given: (tuple(Step(name, None) for name in order), {}))
+    order = ("coulomb_friction", "constant_load")
+    monkeypatch.setattr(conclude, "ladder", lambda *given: ((), dict.fromkeys(order)))
     monkeypatch.setattr(conclude, "weak_law", lambda residuals: BALANCED)
 
 
@@ -300,7 +300,7 @@ def test_each_verdict_tells_a_place_a_law_and_a_further_test_where_it_has_one(ve
 
 
 @pytest.mark.usefixtures("_fitted_elsewhere")
-def test_effects_stand_in_the_order_in_which_they_earn_their_place():
+def test_effects_stand_in_the_order_in_which_they_matter():
     found = concluded("missing_physics", "constant_load", "coulomb_friction")
     assert [one.id for one in found.effects] == ["coulomb_friction", "constant_load"]
 

@@ -145,9 +145,7 @@ def several(friction: Diagnosis) -> Diagnosis:
     steps = (
         Step("nominal", residual(300.0, 160.0)),
         Step("recalibrated", residual(46.0, 54.0)),
-        Step("valve_deadband", residual(25.0, 17.0)),
-        Step("coulomb_friction", residual(6.0, 5.0)),
-        Step("constant_load", residual(1.0, 1.0)),
+        Step("augmented", residual(1.0, 1.0)),
     )
     without = {
         "valve_deadband": residual(30.0, 31.0),

@@ -66,9 +66,10 @@ def conclude(
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     recording = recordings[evidence.lead - 1]
     steps, without = ladder(replace(evidence, decision=decision), final)
-    order = [step.added for step in steps]
+    order = list(without)
     effects = named_effects(decision.winner, final, composition)
-    effects = tuple(sorted(effects, key=lambda effect: order.index(effect.id)))
+    if order:
+        effects = tuple(sorted(effects, key=lambda effect: order.index(effect.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
         path=str(recording.path),
