@@ -17,9 +17,9 @@ import pytest
 from matplotlib.image import imread
 
 import eha_core
-from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis, Pictures
 from eha_core.quantities import quantity
+from eha_core.report.document import as_json
 from eha_core.report.evidence import evidence_picture
 from eha_core.report.figures import write_figures
 from eha_core.report.first_screen import law_panel, law_picture, pictures

@@ -113,8 +113,8 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
 
 def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Progress) -> None:
     """Write what was asked for, and say on the terminal what was found."""
-    from eha_core.diagnosis.document import as_json
     from eha_core.report.account import account
+    from eha_core.report.document import as_json
 
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:
@@ -158,9 +158,9 @@ def _run_motion_given(
 ) -> int:
     """A test bench or a damper: nothing drives the plant, so the law of its force is found from the motion."""
     from eha_core.api import known_model
-    from eha_core.diagnosis.document import as_json
     from eha_core.motion_given import diagnose_motion
     from eha_core.report.account import account
+    from eha_core.report.document import as_json
     from eha_core.report.provenance import with_provenance
 
     tests = _read(arguments.test, arguments)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.errors import EhaError
 from eha_core.plant import dump_plant
+from eha_core.report.document import as_json
 from eha_core.report.experiment_file import FILE, experiment_file
 
 

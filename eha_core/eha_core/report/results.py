@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from eha_core.diagnosis.document import as_json, document
 from eha_core.diagnosis.result import Alternative, Diagnosis, FittedParameter, Location, NamedEffect
 from eha_core.errors import EhaError
 from eha_core.motion_given import Found
+from eha_core.report.document import as_json, document
 from eha_core.report.first_screen import law_picture, residual_picture
 from eha_core.report.picture import Picture
 from eha_core.report.stages import report_stages

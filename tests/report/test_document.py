@@ -8,7 +8,6 @@ import math
 import numpy as np
 import pytest
 
-from eha_core.diagnosis.document import as_json, document
 from eha_core.diagnosis.result import (
     Alternative,
     ChannelFit,
@@ -21,6 +20,7 @@ from eha_core.diagnosis.result import (
     Pictures,
     UnknownLaw,
 )
+from eha_core.report.document import as_json, document
 
 KEYS = {
     "schema": str, "recording": dict, "verdict": str, "location": list, "parameters": list, "effects": list,
