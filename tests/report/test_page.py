@@ -178,7 +178,7 @@ def test_points_are_explained_where_there_are_some() -> None:
 
 def test_a_per_cent_sign_stands_apart_from_its_number(friction: Diagnosis) -> None:
     words = "".join(_read(page(friction)).words)
-    assert "93\N{NO-BREAK SPACE}% sits in the force balance" in words
+    assert "93\N{NO-BREAK SPACE}% of what the calibrated model leaves unexplained sits in the force balance" in words
     assert not re.search(r"\d%", words)
 
 

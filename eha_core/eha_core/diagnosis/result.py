@@ -14,13 +14,19 @@ VERDICTS = ("consistent", "parameters", "missing_physics", "ambiguous", "unknown
 @dataclass(frozen=True)
 class Location:
     """Where the nominal equations fail: site, its share of the unexplained energy, where in state space, and when
-    [s]."""
+    [s].
+
+    `law_over`: the variable of a recovered law, where the share is that law's. `all_of_stretch`: `when` is a whole
+    stretch of a longer record. `alone`: no other equation could be examined.
+    """
 
     site: str
     share: float
     where: str
     when: tuple[tuple[float, float], ...]
-    statement: str
+    law_over: str = ""
+    all_of_stretch: bool = False
+    alone: bool = False
 
 
 @dataclass(frozen=True)
