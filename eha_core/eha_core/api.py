@@ -18,10 +18,6 @@ from eha_core.nominal import NominalModel, load_nominal, nominal_of
 from eha_core.parameters import effect_names
 from eha_core.plant import Composition, composition_of
 from eha_core.recording import Recording, read_recording
-from eha_core.recording.simulated import Experiment
-from eha_core.recording.simulated import simulate as run
-from eha_core.recording.simulated_table import as_recording
-from eha_core.signals import from_text, signals
 
 if TYPE_CHECKING:
     from eha_core.report.results import Results
@@ -70,6 +66,11 @@ def simulate(
     Raises:
         ParameterError: a parameter, the signal or the rate does not fit.
     """
+    from eha_core.recording.simulated import Experiment
+    from eha_core.recording.simulated import simulate as run
+    from eha_core.recording.simulated_table import as_recording
+    from eha_core.signals import from_text
+
     if isinstance(command, str):
         duration = duration or 10.0
         times = np.arange(round(duration * rate)) / rate
@@ -265,6 +266,8 @@ def catalogue() -> Catalogue:
 
 def signal_shapes() -> Catalogue:
     """The signals that `simulate` takes as a command, by name."""
+    from eha_core.signals import signals
+
     entries = []
     for name, signal in signals().items():
         units = {"same": "V or m"}

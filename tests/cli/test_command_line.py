@@ -38,13 +38,26 @@ def test_the_exam_s_help_has_each_tier_as_a_word(capsys: pytest.CaptureFixture[s
     assert [line.split()[0] for line in lines] == list(MEANINGS)
 
 
-def test_help_names_every_verb_and_imports_nothing_heavy() -> None:
+HEAVY = {"numpy", "numba", "scipy", "matplotlib", "plotly"}
+
+
+def run_and_list_heavy_modules(words: list[str]) -> str:
+    """What a command prints, then which heavy modules it has imported, as a list."""
     code = (
         "import sys; from eha_core.cli import main\n"
-        "try: main(['--help'])\n"
-        "finally: print(sorted({'numpy', 'numba', 'scipy', 'matplotlib', 'plotly'} & set(sys.modules)))"
+        f"try: sys.exit(main({words}))\n"
+        f"finally: print(sorted({HEAVY} & set(sys.modules)))"
     )
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False).stdout
+
+
+@pytest.mark.parametrize("words", [["diagnose", "--help"], ["diagnose", "missing.mcap"]])
+def test_the_help_and_a_missing_recording_wait_for_no_compiler(words: list[str]) -> None:
+    assert run_and_list_heavy_modules(words).rstrip().endswith("[]")
+
+
+def test_help_names_every_verb_and_imports_nothing_heavy() -> None:
+    out = run_and_list_heavy_modules(["--help"])
     assert out.rstrip().endswith("[]")
     for verb in verbs():
         assert re.search(rf"^ +{verb} +[a-z]+ ", out, re.MULTILINE), verb

@@ -11,7 +11,6 @@ import pytest
 from made import recorded
 
 import eha_core as eha
-from eha_core.diagnosis.document import document
 from eha_core.identification.observation import observe
 from eha_core.long_record import limits
 from eha_core.long_record.admission import admitted
@@ -21,6 +20,7 @@ from eha_core.plant import PAPER
 from eha_core.recording import Recording
 from eha_core.recording.blocks import BlocksInMemory
 from eha_core.report.account import account
+from eha_core.report.document import document
 
 FRICTION = {"coulomb_friction.force": 250.0}
 

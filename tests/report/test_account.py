@@ -14,11 +14,17 @@ WRITTEN = tuple(Path("out") / name for name in ("report.html", "figures", "diagn
 def test_says_what_where_how_sure_and_how_much_better(friction: Diagnosis) -> None:
     text = account(friction, WRITTEN)
     assert "the seals rub with 200 N" in text
-    assert "93% sits in the force balance; 1.0 s to 1.5 s and 3.0 s to 3.2 s" in " ".join(text.split())
+    assert "93 % of what the calibrated model leaves unexplained sits in the force balance" in " ".join(text.split())
     assert "coulomb_friction (force 200.4 ± 2.5 N; 95 %)" in text
     assert "moving_mass 10.946 ± 0.069 kg (nominal 9.00 kg)" in text
     assert "internal_leakage" not in text  # it did not change
     assert "out/: report.html, figures, diagnosis.json, fitted.yaml" in text
+
+
+def test_says_when_where_that_is_a_few_spans(friction: Diagnosis) -> None:
+    place = replace(friction.location[0], law_over="velocity")
+    text = " ".join(account(replace(friction, location=(place,)), WRITTEN).split())
+    assert "is a law over velocity; 1.0 s to 1.5 s and 3.0 s to 3.2 s" in text
 
 
 def test_errors_stand_in_the_channel_s_own_unit(friction: Diagnosis) -> None:
@@ -60,7 +66,7 @@ def test_stays_on_one_screen_however_much_there_is_to_say(ambiguous: Diagnosis) 
     wordy = replace(
         ambiguous,
         summary="word " * 200,
-        location=(replace(ambiguous.location[0], statement="word " * 200),),
+        location=(replace(ambiguous.location[0], where="word " * 200),),
         effects=ambiguous.effects * 9,
         parameters=ambiguous.parameters[:1] * 30,
         alternatives=(Alternative(("one", "other"), 1.0),) * 20,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +36,14 @@ def test_a_folder_that_is_a_file_is_named(friction: Diagnosis, tmp_path: Path) -
     (tmp_path / "out").write_text("")
     with pytest.raises(EhaError, match="out: cannot be written"):
         write_report(friction, tmp_path / "out")
+
+
+def test_results_and_the_document_wait_for_no_plotting() -> None:
+    code = (
+        "import sys, eha_core.report.files, eha_core.report.results\n"
+        "print({'matplotlib', 'plotly'} & set(sys.modules))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "set()\n"
 
 
 @pytest.fixture

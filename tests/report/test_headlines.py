@@ -8,8 +8,8 @@ from collections.abc import Callable
 import pytest
 from headlines import headlines, hold_against, key_answers
 
-from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.report.document import as_json
 from eha_core.report.html import page
 
 

@@ -151,6 +151,13 @@ def test_a_sensor_s_error_and_a_supply_that_gives_way(friction: Diagnosis) -> No
     np.testing.assert_allclose(law.y, 2.1e7 - 3e10 * law.x, rtol=1e-3)
 
 
+@pytest.mark.parametrize("time_constant", [0.01, 20.0, 100.0])
+def test_a_supply_s_law_is_the_steady_one_however_slowly_it_settles(friction: Diagnosis, time_constant: float) -> None:
+    values = {"resistance": 3e10, "time_constant": time_constant}
+    law = law_of(friction, named("supply_pressure_droop", values))
+    np.testing.assert_allclose(law.y, law.nominal - 3e10 * law.x, rtol=1e-9)
+
+
 def test_every_effect_of_the_catalogue_can_be_drawn_or_has_no_law(
     friction: Diagnosis, simulated: SimpleNamespace
 ) -> None:

@@ -17,9 +17,9 @@ import pytest
 from matplotlib.image import imread
 
 import eha_core
-from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis, Pictures
 from eha_core.quantities import quantity
+from eha_core.report.document import as_json
 from eha_core.report.evidence import evidence_picture
 from eha_core.report.figures import write_figures
 from eha_core.report.first_screen import law_panel, law_picture, pictures
@@ -178,7 +178,7 @@ def test_points_are_explained_where_there_are_some() -> None:
 
 def test_a_per_cent_sign_stands_apart_from_its_number(friction: Diagnosis) -> None:
     words = "".join(_read(page(friction)).words)
-    assert "93\N{NO-BREAK SPACE}% sits in the force balance" in words
+    assert "93\N{NO-BREAK SPACE}% of what the calibrated model leaves unexplained sits in the force balance" in words
     assert not re.search(r"\d%", words)
 
 

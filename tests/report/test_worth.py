@@ -19,62 +19,63 @@ from eha_core.report.summary import summarise
 from eha_core.report.worth import effect_table, ladder_picture, step_table, worth
 
 
-def bars_of(diagnosis: Diagnosis) -> list[Bars]:
+def bars_of(diagnosis: Diagnosis) -> Bars:
     picture = ladder_picture(diagnosis)
     assert picture is not None
-    return [mark for group in picture.groups for mark in group.panels[0].marks if isinstance(mark, Bars)]
+    (bars,) = (mark for group in picture.groups for mark in group.panels[0].marks if isinstance(mark, Bars))
+    return bars
 
 
 def test_the_way_to_the_noise_has_every_model_with_what_it_leaves(several: Diagnosis) -> None:
-    added, left_out = bars_of(several)
-    assert added.names == (
-        "nominal model", "recalibrated, nothing added", "+ valve deadband", "+ Coulomb friction", "+ constant load",
+    bars = bars_of(several)
+    assert bars.names == (
+        "nominal model", "recalibrated, nothing added", "without valve deadband", "without Coulomb friction",
+        "without constant load", "with all of them",
     )  # fmt: skip
-    overall = [one.residual.overall for one in several.steps]
-    assert 10.0 ** added.x[:-1] == pytest.approx(overall[:-1])
-    assert [float(text) for text in added.texts] == pytest.approx(overall, rel=5e-3)
-    assert left_out.names[-1] == "all of them"
-    assert [float(text) for text in left_out.texts[:3]] == pytest.approx(
-        [one.overall for one in several.without.values()], rel=5e-3
-    )
+    nominal, recalibrated, augmented = (one.residual.overall for one in several.steps)
+    overall = [nominal, recalibrated, *(one.overall for one in several.without.values()), augmented]
+    assert 10.0 ** bars.x[:-1] == pytest.approx(overall[:-1])
+    assert [float(text) for text in bars.texts] == pytest.approx(overall, rel=5e-3)
     picture = ladder_picture(several)
     assert picture is not None
     threshold = next(mark for mark in picture.groups[0].panels[0].marks if isinstance(mark, Upright))
     assert 10.0**threshold.x == pytest.approx(1.2)
 
 
-def test_a_single_effect_has_no_picture_of_the_set_without_it(several: Diagnosis) -> None:
-    alone = replace(several, effects=several.effects[:1], steps=several.steps[:3], without={})
-    assert len(bars_of(alone)) == 1
+def test_a_single_effect_or_law_has_no_model_without_it_but_the_recalibrated_one(
+    several: Diagnosis, unknown: Diagnosis
+) -> None:
+    alone = replace(several, effects=several.effects[:1], without={})
+    assert bars_of(alone).names[2:] == ("with valve deadband",)
+    assert bars_of(replace(unknown, steps=several.steps)).names[2:] == ("with the recovered law",)
     assert ladder_picture(replace(several, steps=(), without={})) is None
 
 
 def test_a_model_that_ran_away_is_not_drawn(several: Diagnosis) -> None:
     endless = replace(several.steps[0].residual, overall=float("inf"))
     ran_away = replace(several, steps=(replace(several.steps[0], residual=endless), *several.steps[1:]))
-    assert "nominal model" not in bars_of(ran_away)[0].names
-    assert np.all(np.isfinite(bars_of(ran_away)[0].x))
+    assert "nominal model" not in bars_of(ran_away).names
+    assert np.all(np.isfinite(bars_of(ran_away).x))
 
 
 def test_the_table_has_a_row_an_effect_in_their_order(several: Diagnosis) -> None:
     table = effect_table(several)
     assert [row[0] for row in table.rows] == ["Valve deadband", "Coulomb friction", "Constant load"]
-    assert table.rows[0][1:] == ("half width 59.60 ± 0.84 µA", "in the valve's flow", "20.0", "30.7")
+    assert table.rows[0][1:] == ("half width 59.60 ± 0.84 µA", "in the valve's flow", "30.7")
     assert table.rows[2][1] == "force -76.4 ± 1.0 N"
     (steps,) = step_table(several)
     assert steps.rows[1] == ("recalibrated, nothing added", "46.0", "54.0", "54.0", "51.5")
-    assert steps.rows[-1][0] == "all without constant load"
+    assert [row[0] for row in steps.rows[-2:]] == ["without constant load", "with all of them"]
 
 
 def test_what_an_effect_is_worth_is_said_in_the_figures_own_numbers(several: Diagnosis) -> None:
     assert worth(several, "valve_deadband") == (
-        "Added to the recalibrated model, it takes what is left from 51.5 to 20.0 times the noise. Without it, the"
-        " others fitted again, 30.7 times the noise are left."
+        "Without it, the others fitted again, 30.7 times the noise is left; with it 1.00."
     )
-    assert "Added to the model with valve deadband, it takes what is left from 20.0 to 5.35" in worth(
-        several, "coulomb_friction"
+    alone = replace(several, effects=several.effects[:1], without={})
+    assert worth(alone, "valve_deadband") == (
+        "Without it, the parameters fitted again, 51.5 times the noise is left; with it 1.00."
     )
-    assert "Added to the model with those above" in worth(several, "constant_load")
     assert worth(several, "end_stop") == ""
 
 

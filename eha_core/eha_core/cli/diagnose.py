@@ -9,16 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eha_core.api import given_model, known_model, takes_motion_as_given
 from eha_core.cli._paths import require_file, require_folder, require_recordings
 from eha_core.cli._progress import Progress
 from eha_core.errors import EhaError
-from eha_core.long_record.admission import admitted
-from eha_core.recording import Recording, load_topics_file, read_recording
-from eha_core.workers import Workers
 
+# what reads, simulates or plots is imported where it is used: the help and a refusal need none of it
 if TYPE_CHECKING:
     from eha_core.diagnosis import Diagnosis
+    from eha_core.recording import Recording
 
 UNUSABLE = 2
 DAMAGED = 3
@@ -72,6 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
     """All recordings are one rig."""
+    from eha_core.api import given_model, known_model, takes_motion_as_given
+    from eha_core.long_record.admission import admitted
     from eha_core.plausibility import admit
 
     if arguments.motion_given:
@@ -113,8 +113,8 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
 
 def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Progress) -> None:
     """Write what was asked for, and say on the terminal what was found."""
-    from eha_core.diagnosis.document import as_json
     from eha_core.report.account import account
+    from eha_core.report.document import as_json
 
     written: tuple[Path, ...] = ()
     if arguments.json is None or arguments.out is not None:
@@ -142,10 +142,14 @@ def _check_paths(arguments: argparse.Namespace) -> None:
     if arguments.json not in (None, "-"):
         require_file(Path(arguments.json), "--json")
     if arguments.topics is not None:
+        from eha_core.recording import load_topics_file
+
         load_topics_file(arguments.topics)
 
 
 def _read(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recording]:
+    from eha_core.recording import read_recording
+
     return [read_recording(path, arguments.topics) for path in paths]
 
 
@@ -153,9 +157,10 @@ def _run_motion_given(
     arguments: argparse.Namespace, recordings: Sequence[Recording], progress: Progress
 ) -> int:
     """A test bench or a damper: nothing drives the plant, so the law of its force is found from the motion."""
-    from eha_core.diagnosis.document import as_json
+    from eha_core.api import known_model
     from eha_core.motion_given import diagnose_motion
     from eha_core.report.account import account
+    from eha_core.report.document import as_json
     from eha_core.report.provenance import with_provenance
 
     tests = _read(arguments.test, arguments)
@@ -180,6 +185,8 @@ def _run_motion_given(
 
 def _run_each(arguments: argparse.Namespace) -> int:
     """Every recording on its own: what one cannot be used for stops none of the others."""
+    from eha_core.workers import Workers
+
     if arguments.test:
         raise EhaError("--test is predicted by one model; with --each there is one for every recording")
     if arguments.json is not None:
@@ -209,7 +216,9 @@ def diagnose_alone(
     with_report: bool = True,
 ) -> tuple[Path, int, str]:
     """Diagnose one recording into `folder`: its path, its exit status, and the verdict or what is wrong, in a line."""
+    from eha_core.api import given_model, known_model
     from eha_core.diagnosis import diagnose_together
+    from eha_core.long_record.admission import admitted
     from eha_core.long_record.judging import judged
     from eha_core.plausibility import admit
     from eha_core.report.files import write_document, write_report

@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.locate import stated, whereabouts
+from eha_core.diagnosis.locate import whereabouts
 from eha_core.diagnosis.result import Location
 from eha_core.diagnosis.sets.comparison import ModelComparison
 from eha_core.identification.fit import Fit
@@ -35,5 +35,5 @@ def attribute(
         share = float(np.clip(gain / unexplained, 0.0, 1.0))
         if share < 0.01 and found:
             continue
-        found.append(Location(site, share, where, when, stated(site, share, where, when)))
+        found.append(Location(site, share, where, when))
     return tuple(found)

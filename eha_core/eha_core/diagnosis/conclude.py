@@ -18,7 +18,6 @@ from eha_core.diagnosis.fitted_values import changed_values, fitted_parameters, 
 from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
-from eha_core.diagnosis.locate import stated
 from eha_core.diagnosis.pictures import pictures
 from eha_core.diagnosis.result import (
     Alternative,
@@ -32,7 +31,6 @@ from eha_core.diagnosis.result import (
 from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
-from eha_core.effects import SITES
 from eha_core.effects import effects as every_effect
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.intervals import with_residual
@@ -65,9 +63,10 @@ def conclude(
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     recording = recordings[evidence.lead - 1]
     steps, without = ladder(replace(evidence, decision=decision), final)
-    order = [step.added for step in steps]
+    order = list(without)
     effects = named_effects(decision.winner, final, composition)
-    effects = tuple(sorted(effects, key=lambda effect: order.index(effect.id)))
+    if order:
+        effects = tuple(sorted(effects, key=lambda effect: order.index(effect.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
         path=str(recording.path),
@@ -176,14 +175,10 @@ def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, .
     always = {member.effect.site for member in winner.hypothesis.members if not member.limited}
     limited = (member for member in winner.hypothesis.limited if member.effect.site not in always)
     spans = {member.effect.site: member.span(winner.fit.values) for member in limited}
-    location = tuple(_in_span(place, spans.get(place.site)) for place in location)
+    location = tuple(
+        place if (span := spans.get(place.site)) is None else replace(place, when=(span,)) for place in location
+    )
     return tuple(sorted(location, key=lambda place: (place.site not in sites, -place.share)))
-
-
-def _in_span(location: Location, span: tuple[float, float] | None) -> Location:
-    if span is None:
-        return location
-    return replace(location, when=(span,), statement=stated(location.site, location.share, location.where, (span,)))
 
 
 def _unknown(evidence: Evidence) -> UnknownLaw | None:
@@ -224,10 +219,8 @@ def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> De
 def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
     """The law's site first, whatever effects of other sites could make up for."""
     where, when = (location[0].where, location[0].when) if location else ("all over the states that were visited", ())
-    share = 100.0 * law.r_squared
-    statement = f"{share:.0f} % of what is missing {SITES[law.site].words} is a law over {law.function_of}"
     others = (place for place in location if place.site != law.site)
-    return (Location(law.site, law.r_squared, where, when, statement), *others)
+    return (Location(law.site, law.r_squared, where, when, law.function_of), *others)
 
 
 def _experiment(evidence: Evidence, decision: Decision) -> Experiment:

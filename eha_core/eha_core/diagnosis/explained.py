@@ -44,7 +44,7 @@ def _left_over(evidence: Evidence) -> tuple[Location, ...]:
     sites = evidence.comparison.left_over
     total = sum(sites.values())
     ranked = sorted(sites.items(), key=lambda item: -item[1])[:3]
-    return tuple(Location(site, gain / total, where, when, "") for site, gain in ranked if gain > 0.05 * total)
+    return tuple(Location(site, gain / total, where, when) for site, gain in ranked if gain > 0.05 * total)
 
 
 def predictions(observation: Observation, values: Mapping[str, float], step_size: float) -> Mapping[str, Prediction]:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from eha_core.diagnosis.characteristic_scales import Scales, scales_alone
-from eha_core.effects import SITES
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.shooting import Shooting
@@ -37,12 +36,6 @@ def whereabouts(
     return _where(alone, of_it, scales_alone(shooting, scales, recording)), _when(alone, of_it)
 
 
-def stated(site: str, share: float, where: str, when: tuple[tuple[float, float], ...]) -> str:
-    """A location in words."""
-    place = f"{SITES[site].words}, {where}{_times(when)}"
-    return f"{100 * share:.0f} % of what the calibrated model leaves unexplained sits {place}"
-
-
 def _energy(shooting: Shooting, result: Fit) -> tuple[Array, Array]:
     """Residual energy beyond the noise at every sample's time, all channels together: times and energies."""
     times = [shooting.times(sampling) for sampling in shooting.samplings]
@@ -66,16 +59,6 @@ def _when(shooting: Shooting, result: Fit) -> tuple[tuple[float, float], ...]:
     stops = np.flatnonzero(loud & ~np.concatenate([loud[1:], [False]]))
     spans = [(float(edges[first]), float(min(edges[last + 1], end))) for first, last in zip(starts, stops, strict=True)]
     return tuple(spans)
-
-
-def _times(when: tuple[tuple[float, float], ...]) -> str:
-    if not when:
-        return ""
-    if len(when) == 1 and when[0][0] == 0.0:
-        return ", through the whole record"
-    if len(when) == 1:
-        return f", from {when[0][0]:.4g} s to {when[0][1]:.4g} s"
-    return f", in {len(when)} spans of time, the first from {when[0][0]:.1f} s"
 
 
 def regions(shooting: Shooting, result: Fit, scales: Scales) -> tuple[Region, ...]:

@@ -14,13 +14,19 @@ VERDICTS = ("consistent", "parameters", "missing_physics", "ambiguous", "unknown
 @dataclass(frozen=True)
 class Location:
     """Where the nominal equations fail: site, its share of the unexplained energy, where in state space, and when
-    [s]."""
+    [s].
+
+    `law_over`: the variable of a recovered law, where the share is that law's. `all_of_stretch`: `when` is a whole
+    stretch of a longer record. `alone`: no other equation could be examined.
+    """
 
     site: str
     share: float
     where: str
     when: tuple[tuple[float, float], ...]
-    statement: str
+    law_over: str = ""
+    all_of_stretch: bool = False
+    alone: bool = False
 
 
 @dataclass(frozen=True)
@@ -92,16 +98,14 @@ class Residual:
 
 @dataclass(frozen=True)
 class Step:
-    """A model between the nominal one and the whole set, fitted on its own, and what it leaves.
-
-    `added` is what it has beyond the step before: NOMINAL, RECALIBRATED, then the id of an effect.
-    """
+    """A model and what it leaves; `added` is what it has beyond the one before: NOMINAL, RECALIBRATED, AUGMENTED."""
 
     added: str
     residual: Residual
 
 
-NOMINAL, RECALIBRATED = "nominal", "recalibrated"
+NOMINAL, RECALIBRATED, AUGMENTED = "nominal", "recalibrated", "augmented"
+"""The nominal model as given, with its parameters fitted, and with all effects that were found."""
 
 
 @dataclass(frozen=True)
@@ -273,8 +277,8 @@ class Diagnosis:
     `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
     calibrated model, less the cost of its parameters. `whiteness` is each channel's largest autocorrelation in units of
     the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
-    what, when, as text. `steps` lead from the nominal model to the whole set, which adds `effects` in their order;
-    `without` has what the set leaves when one of several effects is taken out and the rest fitted again.
+    what, when, as text. `steps` lead from the nominal model to that with all effects; `without` has what is left
+    when one of several effects is taken out and the rest fitted again, most first: the order of `effects`, too.
     `long_records` has those of which stretches were fitted; what is drawn of them is in the record's time.
     """
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from eha_core.diagnosis.locate import stated
 from eha_core.diagnosis.result import Diagnosis, Location, NamedEffect, Pictures
 from eha_core.recording import Recording
 
@@ -60,16 +59,8 @@ def _effect(effect: NamedEffect, by: float) -> NamedEffect:
 
 def _location(location: Location, by: float, duration: float) -> Location:
     when = tuple((start + by, end + by) for start, end in location.when)
-    if location.statement != stated(location.site, location.share, location.where, location.when):
-        return replace(location, when=when)
-    if len(location.when) == 1 and location.when[0][1] - location.when[0][0] > WHOLE * duration:
-        said = (
-            f"{stated(location.site, location.share, location.where, ())}, through all of the stretch from"
-            f" {when[0][0]:.0f} s on"
-        )
-    else:
-        said = stated(location.site, location.share, location.where, when)
-    return replace(location, when=when, statement=said)
+    whole = len(location.when) == 1 and location.when[0][1] - location.when[0][0] > WHOLE * duration
+    return replace(location, when=when, all_of_stretch=whole)
 
 
 def _pictures(pictures: Pictures, by: float, duration: float) -> Pictures:

@@ -76,7 +76,7 @@ def diagnose_motion(
         damaged=first.damaged,
         verdict="missing_physics" if effects else "unknown_physics",
         summary=_summary(effects, explained, fits, law, motions),
-        location=(Location("force", 1.0, "everywhere", (), "it sits in the force balance: nothing else was recorded"),),
+        location=(Location("force", 1.0, "everywhere", (), alone=True),),
         parameters=(),
         effects=effects,
         alternatives=(),
@@ -156,7 +156,7 @@ def _left_over(motions: Sequence[Motion], law: Law) -> Location:
         shares += float(slow.mean()) / len(motions)
     share = near / all_of_it if all_of_it > 0.0 else 0.0
     text = f"{100 * share:.0f} % of what is left sits near the reversals, where {100 * shares:.0f} % of the samples are"
-    return Location("force", share, text, (), text)
+    return Location("force", share, text, ())
 
 
 def _summary(
@@ -169,7 +169,7 @@ def _summary(
     noise = ", which is noise" if explained.complete else f", {explained.times_noise['force']:.3g} times the noise"
     return (
         f"Motion given, the force is explained but for {100 * law.share_left:.1f} % of its deviation: {told}."
-        f" {left}{noise}; {explained.left_over[0].statement}"
+        f" {left}{noise}; {explained.left_over[0].where}"
     )
 
 

@@ -12,6 +12,7 @@ from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.each_recording import each_recording
 from eha_core.report.finding import told_parameters
+from eha_core.report.location import location_statement
 from eha_core.report.stage import errors_told, models_told
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
@@ -81,7 +82,7 @@ def _changed(parameter: FittedParameter) -> str:
 
 def _located(location: Location) -> str:
     spans = f"; {listed([span(interval) for interval in location.when[:4]])}" if 1 < len(location.when) <= 4 else ""
-    return f"{location.statement}{spans}"
+    return f"{location_statement(location)}{spans}"
 
 
 def _improvement(diagnosis: Diagnosis) -> list[str]:

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from eha_core.diagnosis.document import as_json
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.errors import EhaError
 from eha_core.plant import dump_plant
-from eha_core.report.comparison import write_comparison
-from eha_core.report.contents import contents_of
+from eha_core.report.document import as_json
 from eha_core.report.experiment_file import FILE, experiment_file
-from eha_core.report.figures import write_figures
-from eha_core.report.html import write_page
 
 
 def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
@@ -21,6 +17,12 @@ def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
 
     Returns what was written, most readable first. Raises EhaError where the folder cannot be written to.
     """
+    # plotting loads slowly, and the document alone needs none
+    from eha_core.report.comparison import write_comparison
+    from eha_core.report.contents import contents_of
+    from eha_core.report.figures import write_figures
+    from eha_core.report.html import write_page
+
     page, document, fitted = folder / "report.html", folder / "diagnosis.json", folder / "fitted.yaml"
     comparison, experiment = folder / "comparison.mcap", folder / FILE
     try:

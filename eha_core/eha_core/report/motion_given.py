@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from eha_core.diagnosis.document import as_json
 from eha_core.errors import EhaError
 from eha_core.motion_given import Found, Motion
 from eha_core.motion_given.diagnose import curve
+from eha_core.report.document import as_json
 from eha_core.report.figures import write_figures
 from eha_core.report.picture import Dots, Group, Line, Panel, Picture
 

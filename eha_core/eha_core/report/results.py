@@ -4,21 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from eha_core.diagnosis.document import as_json, document
 from eha_core.diagnosis.result import Alternative, Diagnosis, FittedParameter, Location, NamedEffect
 from eha_core.errors import EhaError
 from eha_core.motion_given import Found
-from eha_core.report.figures import Drawn, drawn
+from eha_core.report.document import as_json, document
 from eha_core.report.first_screen import law_picture, residual_picture
-from eha_core.report.motion_given import law_picture as law_of_motion
-from eha_core.report.motion_given import write_motion_given
 from eha_core.report.picture import Picture
 from eha_core.report.stages import report_stages
 from eha_core.report.stages.model import correlations
 from eha_core.report.summary import Summary, summarise
 from eha_core.report.worth import ladder_picture
+
+if TYPE_CHECKING:
+    from eha_core.report.figures import Drawn
+
+
+def drawn(picture: Picture) -> Drawn:
+    """The picture as a figure; matplotlib loads slowly, and not every session draws."""
+    from eha_core.report.figures import drawn as as_figure
+
+    return as_figure(picture)
 
 
 class Plots:
@@ -90,7 +97,9 @@ class MotionPlots:
 
     def law(self) -> Drawn:
         """The force over speed and position, and what the law leaves."""
-        return drawn(law_of_motion(self._found))
+        from eha_core.report.motion_given import law_picture
+
+        return drawn(law_picture(self._found))
 
     def __getattr__(self, name: str) -> NoReturn:
         raise EhaError(f"there is no plot {name!r}: the motion is given and nothing was simulated; there is plot.law()")
@@ -183,4 +192,6 @@ class MotionResults(Results):
 
     def save(self, folder: str | Path) -> tuple[Path, ...]:
         """Write diagnosis.json and the figure of the law; returns their paths."""
+        from eha_core.report.motion_given import write_motion_given
+
         return write_motion_given(self._found, Path(folder))

@@ -1,4 +1,5 @@
-"""What each effect is worth: the way from the nominal model to the noise, one effect after another."""
+"""What each effect is worth: what the nominal, the recalibrated and the augmented model leave, and that without each
+effect."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eha_core.diagnosis.criteria import LEFT_IN_A_CHANNEL
-from eha_core.diagnosis.result import NOMINAL, RECALIBRATED, Diagnosis, Residual
+from eha_core.diagnosis.result import AUGMENTED, NOMINAL, RECALIBRATED, Diagnosis, Residual
 from eha_core.effects import SITES
 from eha_core.quantities import short
 from eha_core.report.finding import missing
@@ -29,36 +30,39 @@ ROW, FRAME = 30, 56
 """Pixels of a bar and of what is about the bars."""
 
 
-def step_title(added: str) -> str:
-    """A step of the way in words."""
-    return TITLES.get(added) or f"+ {effect_title(added)}"
-
-
 def ladder_picture(diagnosis: Diagnosis) -> Picture | None:
-    """What each model leaves, from the nominal one to the whole set; and the set without each of its effects."""
-    steps = [step for step in diagnosis.steps if np.isfinite(step.residual.overall)]
-    if not steps:
+    """What each model leaves, from the nominal one over the set without each of its effects to the whole set."""
+    rows = [row for row in _models(diagnosis) if np.isfinite(row[1].overall)]
+    if not rows:
         return None
-    top = max(step.residual.overall for step in steps)
-    rows = [(step_title(step.added), step.residual, ROLES.get(step.added, "after")) for step in steps]
-    groups = [Group((_bars(rows, top, "Added one by one"),))]
-    ids = [step.added for step in steps if step.added in diagnosis.without]
-    if ids:
-        whole = ("all of them", steps[-1].residual, "after")
-        rest = [(f"without {effect_title(effect)}", diagnosis.without[effect], "other") for effect in ids]
-        groups.append(Group((_bars([*rest, whole], top, "Each left out in turn"),)))
     caption = (
         "RMS of what each model leaves over the noise, all channels together. All but the nominal model are fitted. The"
         f" axis begins at the noise. Dotted: {LEFT_IN_A_CHANNEL:g} times the noise; an explanation counts as complete"
         " if every channel is below that and what is left is white."
     )
     title = "What is left, from the nominal model to the noise"
-    return Picture("0-ladder", tuple(groups), (1, 1), title, caption)
+    return Picture("0-ladder", (Group((_bars(rows),)),), title=title, caption=caption)
 
 
-def _bars(rows: Sequence[tuple[str, Residual, str]], top: float, title: str) -> Panel:
+def _models(diagnosis: Diagnosis) -> list[tuple[str, Residual, str]]:
+    """Each model's name, what it leaves and its role: those without one effect stand before the whole."""
+    rows = [(_title(diagnosis, step.added), step.residual, ROLES.get(step.added, "after")) for step in diagnosis.steps]
+    without = [(f"without {effect_title(name)}", left, "other") for name, left in diagnosis.without.items()]
+    return [*rows[:2], *without, *rows[2:]]
+
+
+def _title(diagnosis: Diagnosis, added: str) -> str:
+    """A model in words."""
+    if added in TITLES:
+        return TITLES[added]
+    if len(diagnosis.effects) > 1 or diagnosis.without:
+        return "with all of them"
+    return f"with {effect_title(diagnosis.effects[0].id)}" if diagnosis.effects else "with the recovered law"
+
+
+def _bars(rows: Sequence[tuple[str, Residual, str]]) -> Panel:
     values = np.array([residual.overall for _, residual, _ in rows])
-    decades = max(LEAST_DECADES, int(np.ceil(np.log10(top))))
+    decades = max(LEAST_DECADES, int(np.ceil(np.log10(values.max()))))
     end = 1.16 * decades
     lengths = np.maximum(np.log10(np.maximum(values, 1e-3)), STUB * end)
     # beside the dotted line, not on it
@@ -69,7 +73,6 @@ def _bars(rows: Sequence[tuple[str, Residual, str]], top: float, title: str) -> 
     return Panel(
         (threshold, bars),
         "times the noise (log scale)",
-        title=title,
         height=FRAME + ROW * len(rows),
         x_range=(0.0, end),
         x_ticks=ticks,
@@ -77,52 +80,42 @@ def _bars(rows: Sequence[tuple[str, Residual, str]], top: float, title: str) -> 
 
 
 def effect_table(diagnosis: Diagnosis) -> Table:
-    """Each effect in its order: its values, its site, and what is left with it and without it."""
-    left = {step.added: step.residual.overall for step in diagnosis.steps}
+    """Each effect in its order: its values, its site, and what is left without it."""
     rows = []
     for effect in diagnosis.effects:
         row = [capital(effect_title(effect.id)), ", ".join(missing(effect).values), SITES[effect.site].words]
         if diagnosis.without:
-            row += [short(left.get(effect.id, np.nan)), short(diagnosis.without[effect.id].overall)]
+            row.append(short(diagnosis.without[effect.id].overall))
         rows.append(tuple(row))
     headings: tuple[str, ...] = ("missing effect", "value (95 % interval)", "where")
     if diagnosis.without:
-        headings += ("left with it [×\N{NO-BREAK SPACE}noise]", "left without it [×\N{NO-BREAK SPACE}noise]")
-    return Table(headings, tuple(rows), "What is missing, what explains most first")
+        headings += ("left without it [×\N{NO-BREAK SPACE}noise]",)
+    return Table(headings, tuple(rows), "What is missing, what matters most first")
 
 
 def step_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    """What each step leaves in each channel, over its noise."""
+    """What each model leaves in each channel, over its noise."""
     if not diagnosis.steps:
         return ()
     names = list(diagnosis.steps[0].residual.times_noise)
-    rows = [_step_row(step_title(step.added), step.residual) for step in diagnosis.steps]
-    rows += [_step_row(f"all without {effect_title(name)}", residual) for name, residual in diagnosis.without.items()]
+    rows = [
+        (title, *(short(ratio) for ratio in residual.times_noise.values()), short(residual.overall))
+        for title, residual, _ in _models(diagnosis)
+    ]
     headings = ("model", *(channel_title(name) for name in names), "all channels")
     return (Table(headings, tuple(rows), "What each model leaves, times the noise"),)
 
 
-def _step_row(title: str, residual: Residual) -> tuple[str, ...]:
-    return (title, *(short(ratio) for ratio in residual.times_noise.values()), short(residual.overall))
-
-
 def worth(diagnosis: Diagnosis, effect: str) -> str:
-    """What an effect takes away where it is added, and what is left without it, in a sentence; empty if not known."""
-    order = [step.added for step in diagnosis.steps]
-    if effect not in order:
+    """What is left without an effect and with it, in a sentence; empty if not known."""
+    left = {step.added: step.residual for step in diagnosis.steps}
+    if AUGMENTED not in left:
         return ""
-    place = order.index(effect)
-    before, after = (diagnosis.steps[at].residual.overall for at in (place - 1, place))
-    change = "takes what is left from" if after < before else "changes what is left from"
-    said = f"Added to {_model(order, place - 1)}, it {change} {short(before)} to {short(after)} times the noise."
     if effect in diagnosis.without:
-        alone = short(diagnosis.without[effect].overall)
-        said += f" Without it, the others fitted again, {alone} times the noise are left."
-    return said
-
-
-def _model(order: Sequence[str], place: int) -> str:
-    effects = order[2 : place + 1]
-    if not effects:
-        return "the recalibrated model"
-    return f"the model with {effect_title(effects[0])}" if len(effects) == 1 else "the model with those above"
+        without, fitted = diagnosis.without[effect], "the others fitted again"
+    elif [one.id for one in diagnosis.effects] == [effect] and not diagnosis.without:
+        without, fitted = left[RECALIBRATED], "the parameters fitted again"
+    else:
+        return ""
+    whole = short(left[AUGMENTED].overall)
+    return f"Without it, {fitted}, {short(without.overall)} times the noise is left; with it {whole}."

@@ -46,6 +46,7 @@ class ModelComparison:
         residual_variance: of the residual in units of the assumed noise, under the best model and never below one.
         site_gains: chi^2 that the effects of each site explain, as the quadratic models predict it.
         left_over: what one more effect together with the best is predicted to gain, the most of each site.
+        smaller: fits of the best set without one of its members, by the set.
         trace: every fit of the search.
         cut_short: whether the search ended at its limit.
     """
@@ -55,6 +56,7 @@ class ModelComparison:
     residual_variance: float
     site_gains: Mapping[str, float] = field(default_factory=dict)
     left_over: Mapping[str, float] = field(default_factory=dict)
+    smaller: Mapping[Hypothesis, Fit] = field(default_factory=dict)
     trace: tuple[TraceStep, ...] = ()
     cut_short: bool = False
 

@@ -160,6 +160,7 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
         residual_variance([nominal, *found.values()]),
         _gains_by_site(model, best),
         _left_over(model, best),
+        {h: result for h, result in pool if h in {best.without(member) for member in best.members}},
         tuple(material.trace.steps),
     )
     return calibration, comparison

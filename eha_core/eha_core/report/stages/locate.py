@@ -12,6 +12,7 @@ from eha_core.identification.numbers import Array
 from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import equations_hold, judged
+from eha_core.report.location import location_statement
 from eha_core.report.picture import Band, Dots, Group, Line, Mark, Panel, Picture
 from eha_core.report.series import spread, strongest_dependence, thinned
 from eha_core.report.stage import Stage, Table, violated
@@ -42,7 +43,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
         headline = "No equation is violated" if holds else "No mismatch is left that an effect would explain"
         sentences = ["What calibration leaves is examined for structure, in time and over every state of the actuator."]
     else:
-        headline = diagnosis.location[0].statement[:1].upper() + diagnosis.location[0].statement[1:]
+        headline = capital(location_statement(diagnosis.location[0]))
         sentences = ["This is the mismatch that no choice of the nominal parameters removes."]
         sentences.append(_others(diagnosis))
         when = diagnosis.location[0].when

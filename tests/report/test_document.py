@@ -8,7 +8,6 @@ import math
 import numpy as np
 import pytest
 
-from eha_core.diagnosis.document import as_json, document
 from eha_core.diagnosis.result import (
     Alternative,
     ChannelFit,
@@ -21,7 +20,12 @@ from eha_core.diagnosis.result import (
     Pictures,
     UnknownLaw,
 )
+from eha_core.report.document import as_json, document
 
+STATEMENT = (
+    "90 % of what the calibrated model leaves unexplained sits in the force balance of the piston, near zero speed,"
+    " through the whole record"
+)
 KEYS = {
     "schema": str, "recording": dict, "verdict": str, "location": list, "parameters": list, "effects": list,
     "alternatives": list, "unknown": dict, "fit": dict, "next_experiment": dict,
@@ -41,7 +45,7 @@ def diagnosis() -> Diagnosis:
         damaged=None,
         verdict="ambiguous",
         summary="…",
-        location=(Location("force", np.float64(0.9), "near zero speed", ((0.0, 1.5),), "90% …"),),
+        location=(Location("force", np.float64(0.9), "near zero speed", ((0.0, 1.5),)),),
         parameters=(FittedParameter("moving_mass", 9.0, 9.1, math.inf, "kg", np.bool_(True)),),
         effects=(
             NamedEffect(
@@ -67,7 +71,7 @@ def test_has_every_key_of_the_schema(diagnosis: Diagnosis) -> None:
     assert found["recording"]["duration_s"] == 12.0
     assert found["recording"]["channels"] == ["voltage_command", "position"]
     assert found["location"][0] == {
-        "site": "force", "share": 0.9, "where": "near zero speed", "when": [[0.0, 1.5]], "statement": "90% …",
+        "site": "force", "share": 0.9, "where": "near zero speed", "when": [[0.0, 1.5]], "statement": STATEMENT,
     }  # fmt: skip
     assert found["effects"][0]["parameters"] == {"force": {"value": 200.0, "std": 1.0, "unit": "N"}}
     assert found["alternatives"] == [{"effects": ["stribeck_friction"], "evidence_gap": 2.5}]

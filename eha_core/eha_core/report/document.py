@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from eha_core.diagnosis.result import ChannelFit, Diagnosis, LongRecord, NamedEffect, Prediction, Residual
+from eha_core.diagnosis.result import ChannelFit, Diagnosis, Location, LongRecord, NamedEffect, Prediction, Residual
+from eha_core.report.location import location_statement
 
 SCHEMA = "eha.diagnosis/1"
 
@@ -30,7 +31,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             },
             "verdict": diagnosis.verdict,
             "summary": diagnosis.summary,
-            "location": _rows(diagnosis.location, ("site", "share", "where", "when", "statement")),
+            "location": [_location(location) for location in diagnosis.location],
             "parameters": _rows(
                 diagnosis.parameters, ("name", "nominal", "fitted", "std", "unit", "changed", "note", "at_bound")
             ),
@@ -80,6 +81,11 @@ def _rows(items: Iterable[Any], names: tuple[str, ...]) -> list[dict[str, Any]]:
 
 def _row(item: Any, names: tuple[str, ...]) -> dict[str, Any] | None:
     return None if item is None else _rows([item], names)[0]
+
+
+def _location(location: Location) -> dict[str, Any]:
+    row = _rows([location], ("site", "share", "where", "when"))[0]
+    return {**row, "statement": location_statement(location)}
 
 
 def _effect(effect: NamedEffect) -> dict[str, Any]:
