@@ -16,7 +16,7 @@ from eha_core.identification.observation import RESOLVED, SHORTEST, Observation,
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
-from eha_core.identification.short_windows import SHORT, VERY_SHORT
+from eha_core.identification.short_windows import SHORT
 from eha_core.identification.together import cut_together, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
 
@@ -38,14 +38,13 @@ could a law for it be judged on anything that it was not fitted to."""
 @dataclass(frozen=True)
 class Calibration:
     """The windows, the nominal model as given (only starts fitted), and the nominal equations at their best; `shorter`
-    windows of the same recordings, as `short_windows.SHORT` has them, and `shortest`, as VERY_SHORT has them."""
+    windows of the same recordings, as `short_windows.SHORT` has them."""
 
     shooting: Shooting
     problem: Problem
     nominal: Fit
     fitted: Fit
     shorter: tuple[Shooting, ...] = ()
-    shortest: tuple[Shooting, ...] = ()
 
 
 def calibrate(observations: Sequence[Observation], model: NominalModel, step_size: float) -> Calibration:
@@ -62,11 +61,8 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
-    shorter, shortest = (
-        tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in lengths)
-        for lengths in (SHORT, VERY_SHORT)
-    )
-    return Calibration(shooting, problem, at_nominal_values, fitted, shorter, shortest)
+    shorter = tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in SHORT)
+    return Calibration(shooting, problem, at_nominal_values, fitted, shorter)
 
 
 def calibrate_finely_enough(observations: Sequence[Observation], model: NominalModel) -> Calibration:

@@ -14,11 +14,15 @@ FAR_FROM_NOISE = 5.0
 a residual of twice the noise's size beside the noise."""
 
 NEAR_NOISE = 1.03
-"""Chi^2 a sample below which no member of a set is put up for exchange, and no leader is tried from another start.
-Tuned on development cases (seed 9001)."""
+"""Chi^2 a sample below which a set is at the noise: the search then looks only for what is significant. The noise's
+variance is known to 1.8 % (see NOISE_KNOWN)."""
 
 MOST_EFFECTS = 8
 """Members that a set may have: more than a rig of every kind of wear has at once (assumed)."""
+
+OF_EXCESS = 0.01
+"""Share of the chi^2 beyond noise that a member must gain while the search goes on, so that a set that is far off is
+not filled up with what only bends it (assumed)."""
 
 CHANCE = 25.0
 """Chi^2 that the best of many hypotheses may gain by chance. Of a thousand hypotheses of one parameter the best
@@ -45,9 +49,6 @@ NEXT_TO_NOTHING = 0.15
 """Share of its typical size below which a shape, such as the rounding of an edge, is no parameter that a law makes use
 of: no recording tells it from none (assumed; weak effects of the exam have as much of their typical size)."""
 
-WORTH_ADDING = 0.1
-"""Share of what is left over that an effect must explain to be added, or an exchange: the first of several does, and it
-ends a search that only bends what is there (assumed)."""
 
 
 LEFT_IN_A_CHANNEL = 1.2
@@ -71,14 +72,7 @@ ENOUGH = 20.0
 TIE = 10.0
 """Rivals within this of the best score are not told apart."""
 
-HARDLY = 0.1
-"""Once a hypothesis explains all but noise, or but OVER of what there was, one whose predicted gain is less than
-this share of what that gained is not tried."""
 
-OVER = 0.05
-"""Share of what is left beside noise that a model may leave when it explains nearly all: without the bounds of belief
-that it rests on, too. A value twenty times what was believed led there; in 22 development cases of the exam (seed
-70219) whose single effects rest on bounds and leave more than FAR_FROM_NOISE, none came below 0.76."""
 
 ADEQUATE = 1.05
 DEAR = 0.03
@@ -107,13 +101,7 @@ UNKNOWN_MARGIN = 50.0
 """A recovered curve must beat the best of the catalogue by this, its many knots paid for, before the catalogue is
 refused."""
 
-OUTSTANDING = 1.5
-"""An effect is taken to act for a while where its predicted gain is this many times that of any effect that always
-acts. Of effects that do always act, the best windows in a row are predicted to gain no more than the whole record."""
 
-UNTOUCHED = 0.05
-"""Share of what a set leaves a sample of the whole record, beside noise, that it may leave of the rest where an effect
-acts for a while beside it. Assumed; 0.25 let sets through that only had other parameters there (three rigs)."""
 
 LEFT_OVER = 0.05
 """A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""
@@ -124,15 +112,51 @@ NOTICEABLE = 4.0
 RELEVANT = 0.01
 """... and by this share of itself (or, where the nominal value is zero, of the scale on which it is free)."""
 
+EXPANSIONS = 8
+"""Sets about which the channels are linearised, over windows of one length, at most (assumed)."""
+
+BEAM = 10
+"""Sets of each size that are grown and shrunk in the quadratic model."""
+
+OF_SIZE, TRIED, TRIED_AT_THE_NOISE = 4, 16, 4
+"""Proposals of one size, and of all, of which the members are fitted. The true set of a development rig was fifth of
+its size by prediction, and at the noise after two iterations."""
+
+MEMBERS_FIRST, WITH_THE_PLANT, TO_THE_END = 2, 3, 12
+"""Iterations of a proposal's members alone, of the best of them with all that is free, and of a leader that nothing
+improved on."""
+
+LEADERS = 2
+"""Proposals that are fitted with all that is free."""
+
+RELATED = 3.0
+"""The search goes on from a set that is worse than the leader by this factor at most."""
+
+WORTHWHILE = 0.9
+"""Share of a smaller set's chi^2 beyond noise that a larger one may leave, by prediction, to be tried far from the
+noise (assumed)."""
+
+SHARES = (1.0, 0.5, 0.25)
+"""Shares of the predicted way at which a fit may begin: far from the optimum the whole way leads too far."""
+
+CARRIED = 2
+"""Sets that are carried from one length of the windows to the next: the best and, where it is near, the second."""
+
+OUTSTANDING = 1.5
+"""An effect is tried in an interval where it is predicted to gain so many times what any effect does that always acts.
+Of effects that do always act, the best windows in a row are predicted to gain no more than the whole record."""
+
+COMPARED_WITHIN = 300.0
+"""Chi^2, in units of the residual's variance, behind the best within which a rival is fitted to its end."""
+
+LOOKED_AT = 4.0
+"""A member is tried to be dropped where the curvature says that it costs no more than this many times what it must
+gain."""
+
 
 def chance_gain(samples: int, times_noise: float) -> float:
     """Chi^2 that one more effect must gain to be looked at, where the model leaves `times_noise` chi^2 a sample."""
     return (CHANCE + OF_SAMPLES * samples) * max(1.0, times_noise)
-
-
-def gain_to_go_on(samples: int, times_noise: float, left: float) -> float:
-    """Chi^2 that a search's next set must gain where the set before it leaves `left` beside the noise."""
-    return max(chance_gain(samples, times_noise), WORTH_ADDING * max(0.0, left))
 
 
 def parameter_cost(count: int, left_over: float) -> float:

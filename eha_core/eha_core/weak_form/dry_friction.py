@@ -2,8 +2,8 @@
 
 The balance M x'' + B x' + K x + load = A_a P_a - A_b P_b - friction is averaged with test functions that lie between
 two reversals, where friction's sign is known and a sensor's play and lag hardly matter. The form and the terms that
-stand together with it are chosen by the Bayesian information criterion over all small subsets. Whatever is wrong with the
-valve's flow does not matter. Values are within a few per cent where the motion covers the speeds that they need.
+stand together with it are chosen by the Bayesian information criterion over all small subsets. Whatever is wrong with
+the valve's flow does not matter. Values are within a few per cent where the motion covers the speeds that they need.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ HALF_WIDTH = 0.03
 
 MOVING = 0.02
 NOISE_TIMES = 4.0
-"""The piston moves where its speed exceeds this share of its usual speed, and so many times the noise of its estimate."""
+"""The piston moves where its speed exceeds this share of its usual speed, and so many times its estimate's noise."""
 
 FEWEST = 60
 """Test functions between reversals that an estimate needs; with fewer there is none."""
@@ -41,7 +41,7 @@ STRIBECK_SPEEDS = np.geomspace(0.02, 0.6, 16)
 """Stribeck velocities that are tried, in standard deviations of the speed."""
 
 MOST_OF_LOAD = 0.5
-"""Share of the piston's area up to which friction may follow the load: beyond it the term is the pressures' own force."""
+"""Share of the piston's area up to which friction may follow the load; beyond it the term is the pressures' force."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,12 @@ def dry_friction(observation: Observation, values: Mapping[str, float]) -> tuple
         return ()
     area = values["piston_area"]
     left = grid.average(area * a - values["piston_area_b"] * b)[between]
-    own = [grid.integrate(grid.curvature, x), -grid.integrate(grid.slope, x), grid.average(x), grid.average(np.ones_like(x))]
+    own = [
+        grid.integrate(grid.curvature, x),
+        -grid.integrate(grid.slope, x),
+        grid.average(x),
+        grid.average(np.ones_like(x)),
+    ]
     extra = [
         grid.average(velocity * np.abs(velocity)), grid.average(np.abs(velocity)), grid.average(x**3), grid.average(b),
         grid.integrate(grid.slope, a), grid.integrate(grid.slope, b), grid.average(velocity * (x - x.mean()) ** 2),

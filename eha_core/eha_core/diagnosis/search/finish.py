@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from statistics import fmean
 
 import numpy as np
 
-from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import (
     CHANCE,
+    COMPARED_WITHIN,
     CONVINCING,
+    LOOKED_AT,
     NOISE_KNOWN,
     OF_ITS_FORM,
     OF_SAMPLES,
     OF_SAMPLES_BESIDE_A_FORM,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
-from eha_core.diagnosis.sets.best_sets import Proposal, best_sets, objective_without
-from eha_core.diagnosis.sets.columns import Column
-from eha_core.diagnosis.sets.pool import Pool, Progress
-from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
-from eha_core.diagnosis.sets.search import cost, required
+from eha_core.diagnosis.search.best_sets import Proposal, best_sets, objective_without
+from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.expansion import cost
+from eha_core.diagnosis.search.pool import Pool, Progress
+from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
+from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name
 
 CONVERGED = 20
@@ -32,15 +33,14 @@ CONVERGED = 20
 WITHOUT = 8
 """Iterations of a fit without a member."""
 
-LOOKED_AT = 4.0
-"""A member is tried to be dropped where the curvature says that it costs no more than this many times what it must
-gain."""
+GLANCED, COMPARED = 3, 8
+"""Iterations of a rival's own parameters, and then of all that is free."""
+
+HOPEFUL = 1.0
+"""Share of the best set's chi^2 that a rival may be behind after its own parameters were fitted (assumed)."""
 
 RIVALS = 5
 """Sets near the best that are fitted in order to be compared with it."""
-
-COMPARED_WITHIN = 300.0
-"""Chi^2, in units of the residual's variance, behind the best within which a rival is fitted to its end."""
 
 
 def converge(pool: Pool, hypothesis: Hypothesis) -> Fit:
@@ -106,7 +106,7 @@ def required_of(pool: Pool, member: Member, costs: Mapping[Member, float], at: F
     forms = [other for other in costs if other != member and other.effect.approximate]
     by_chance = variance * (CHANCE + OF_SAMPLES * count)
     if costs[member] < by_chance and forms:
-        # where friction makes the objective rugged a refit may stop short: a small loss is believed if the curvature says so
+        # friction makes the objective rugged, and a refit may stop short: the curvature is believed
         by_chance = variance * (CHANCE + OF_SAMPLES_BESIDE_A_FORM * count)
     nothing = pool.found.get(NOTHING)
     explained = max(nothing.objective - at.objective, 0.0) if nothing else np.inf
@@ -138,11 +138,9 @@ def rivals(
                 near.append((proposal.predicted, hypothesis, proposal))
     for _, hypothesis, proposal in sorted(near, key=lambda item: item[0])[:RIVALS]:
         values, states = model.start(proposal.options)
-        progress(f"comparing with {' + '.join(hypothesis.ids) or 'nothing'}")
-        pool.try_set("rival", hypothesis, values, states, 4)
+        _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
     for hypothesis, values in _other_forms(pool, best, columns):
-        progress(f"comparing with {' + '.join(hypothesis.ids)}")
-        pool.try_set("form", hypothesis, values, at.states, 6)
+        _compare(pool, "form", hypothesis, values, at.states, at.objective + within, progress)
     close = [
         hypothesis for hypothesis, result in pool
         if hypothesis != best and result.objective < at.objective + within and hypothesis.members
@@ -153,6 +151,17 @@ def rivals(
     compared = [best, *close]
     leading = min(compared, key=lambda hypothesis: cost(hypothesis, pool.found[hypothesis]))
     return leading, compared, model
+
+
+def _compare(
+    pool: Pool, step: str, hypothesis: Hypothesis, values: Mapping[str, float], states: Array, within: float,
+    progress: Progress,
+) -> None:  # fmt: skip
+    """Fit a rival's own parameters, and then all that is free where it may come near."""
+    progress(f"comparing with {' + '.join(hypothesis.ids) or 'nothing'}")
+    glanced = pool.glance(step, hypothesis, values, states, GLANCED)
+    if glanced.objective < within + HOPEFUL * glanced.count:
+        pool.try_set(step, hypothesis, glanced.values, glanced.states, COMPARED, give_up_above=within)
 
 
 def _other_forms(

@@ -8,13 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from eha_core.compiled import compiled
+from eha_core.diagnosis.criteria import BEAM
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.sets.quadratic import Option, QuadraticModel
-from eha_core.identification.numbers import Array, Integers
-
-BEAM = 10
-"""Sets of each size that are grown and shrunk (the best sets that all 1.4 million of one development rig hold were found
-with five)."""
+from eha_core.diagnosis.search.quadratic import Option, QuadraticModel
+from eha_core.identification.numbers import Array, Flags, Integers
 
 
 @dataclass(frozen=True)
@@ -47,7 +44,9 @@ def best_sets(model: QuadraticModel, most: int) -> Mapping[int, list[Proposal]]:
                 allowed = np.ones(len(options), dtype=np.bool_)
                 for k in chosen:
                     allowed &= ~rivals[k]
-                gains = _extended(model.matrix, model.gradient, model.one_way, table, np.array(chosen, np.int64), allowed)
+                gains = _extended(
+                    model.matrix, model.gradient, model.one_way, table, np.array(chosen, np.int64), allowed
+                )
                 level = levels[len(chosen) + 1]
                 for k in np.argsort(gains)[::-1][:BEAM]:
                     if gains[k] > 0.0:
@@ -84,9 +83,7 @@ def one_more(model: QuadraticModel) -> list[Proposal]:
     allowed = np.array([not option.present for option in options], dtype=np.bool_)
     gains = _extended(model.matrix, model.gradient, model.one_way, table, np.array(present, np.int64), allowed)
     chosen = [options[k] for k in present]
-    return [
-        Proposal((*chosen, options[k]), model.empty - float(gain)) for k, gain in enumerate(gains) if gain > 0.0
-    ]
+    return [Proposal((*chosen, options[k]), model.empty - float(gain)) for k, gain in enumerate(gains) if gain > 0.0]
 
 
 def _table(options: tuple[Option, ...]) -> Integers:
@@ -98,12 +95,15 @@ def _table(options: tuple[Option, ...]) -> Integers:
     return table
 
 
-def _exclusive(options: tuple[Option, ...]) -> Array:
+def _exclusive(options: tuple[Option, ...]) -> Flags:
     """(options, options) which exclude each other: the same effect, or two forms of one law."""
     ids = [option.member.id for option in options]
     kinds = [option.member.effect.kind for option in options]
     return np.array(
-        [[ids[i] == ids[j] or (kinds[i] != "" and kinds[i] == kinds[j]) for j in range(len(ids))] for i in range(len(ids))],
+        [
+            [ids[i] == ids[j] or (kinds[i] != "" and kinds[i] == kinds[j]) for j in range(len(ids))]
+            for i in range(len(ids))
+        ],
         dtype=np.bool_,
     ).reshape(len(ids), len(ids))
 
@@ -119,7 +119,7 @@ def _gain(model: QuadraticModel, table: Integers, chosen: tuple[int, ...]) -> fl
 
 @compiled
 def _extended(
-    matrix: Array, gradient: Array, one_way: Integers, table: Integers, chosen: Integers, allowed: Array
+    matrix: Array, gradient: Array, one_way: Integers, table: Integers, chosen: Integers, allowed: Flags
 ) -> Array:
     """What a set gains over the empty one with each allowed option more; -1 where a coefficient has the wrong sign."""
     width = table.shape[1]

@@ -5,30 +5,25 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.criteria import CARRIED, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
-from eha_core.diagnosis.sets.best_sets import objective_without, one_more
-from eha_core.diagnosis.sets.columns import Column, columns_of
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, residual_variance
-from eha_core.diagnosis.sets.equations import Friction, friction_of
-from eha_core.diagnosis.sets.finish import finish, refit_nominal, rivals
-from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of
-from eha_core.diagnosis.sets.quadratic import QuadraticModel
-from eha_core.diagnosis.sets.search import NEAR, Search, cost, leader, required, search_sets
+from eha_core.diagnosis.search.best_sets import objective_without, one_more
+from eha_core.diagnosis.search.columns import Column, columns_of
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison, rank, residual_variance
+from eha_core.diagnosis.search.equations import Friction, friction_of
+from eha_core.diagnosis.search.expansion import Search, cost, leader, required, search_sets
+from eha_core.diagnosis.search.finish import finish, refit_nominal, rivals
+from eha_core.diagnosis.search.pool import Pool, Progress, Trace, in_noise_of
+from eha_core.diagnosis.search.quadratic import QuadraticModel
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.observation import Observation
-from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import Problem, whole
-from eha_core.identification.short_windows import held
 from eha_core.identification.shooting import Shooting
-
-CARRIED = 2
-"""Sets that are carried from one length of the windows to the next: the best and, where it is near, the second."""
+from eha_core.identification.short_windows import held
 
 OF_STATES, RELEASED, CARRIED_ON = 6, 4, 8
 """Iterations of windows' starts alone, of a set whose friction is set free, and of one carried to longer windows."""
@@ -55,14 +50,16 @@ def find_sets(
     """The comparison of the best set with what comes near it, and the calibration in the noise that was found."""
     shooting, fitted = calibration.shooting, calibration.fitted
     recordings = len(shooting.first_windows)
-    columns = [column for effect in effects for column in columns_of(effect, scales, shooting.per_recording, recordings)]
+    columns = [
+        column for effect in effects for column in columns_of(effect, scales, shooting.per_recording, recordings)
+    ]
     material = Material(effects, columns, _plant(fitted), Trace(), progress)
     progress("locating in the equations")
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
     progress("searching sets over short windows")
     pool = over_short_windows(calibration.shorter[0], calibration.nominal.values, friction, material)
     best = leader(pool)
-    if pool.found[best].data > NEAR * pool.found[best].count:
+    if pool.found[best].data > NEAR_NOISE * pool.found[best].count:
         pool = carried(pool, whole(calibration.shorter[1]), material)
         search_sets(Search(pool, columns, progress))
     progress("searching sets over long windows")
@@ -93,7 +90,7 @@ def over_short_windows(
     others = [column for column in material.columns if not column.effect.kind]
     search_sets(Search(pool, others, material.progress))
     if friction.held is None:
-        if pool.found[leader(pool)].data > NEAR * pool.found[leader(pool)].count:
+        if pool.found[leader(pool)].data > NEAR_NOISE * pool.found[leader(pool)].count:
             search_sets(Search(pool, material.columns, material.progress))
         return pool
     return _released(pool, friction, material)
@@ -106,11 +103,9 @@ def _released(pool: Pool, friction: Friction, material: Material) -> Pool:
     ahead = _ahead(pool)
     for hypothesis in ahead:
         at = pool.found[hypothesis]
-        free.try_set(
-            "friction free", hypothesis.with_effects([friction.held.effect]), at.values, at.states, RELEASED
-        )
+        free.try_set("friction free", hypothesis.with_effects([friction.held.effect]), at.values, at.states, RELEASED)
     best = leader(free)
-    if free.found[best].data < NEAR * free.found[best].count:
+    if free.found[best].data < NEAR_NOISE * free.found[best].count:
         return free
     at = pool.found[ahead[0]]
     for start in friction.forms[1:]:

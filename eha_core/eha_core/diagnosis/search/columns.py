@@ -13,7 +13,6 @@ from eha_core.identification.observation import Observation
 from eha_core.identification.per_recording import named
 from eha_core.parameter import Parameter
 
-
 SITES_OF_DRIVE = {
     "voltage": ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
     "pressures": ("force", "sensor"),
@@ -90,9 +89,7 @@ def columns_of(
     return tuple(found)
 
 
-def _starts(
-    effect: Effect, rows: Mapping[str, Parameter], scales: Scales, one_way: bool
-) -> Iterator[dict[str, float]]:
+def _starts(effect: Effect, rows: Mapping[str, Parameter], scales: Scales, one_way: bool) -> Iterator[dict[str, float]]:
     """The combinations of starting values that the effect's rows declare; of sizes none that is zero or, where the
     coefficient has a sign, differs by its sign alone."""
     choices = []

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.sets.columns import Column
+from eha_core.diagnosis.criteria import OUTSTANDING
+from eha_core.diagnosis.search.columns import Column
 from eha_core.identification.fit import Fit
 from eha_core.identification.normal_matrix import Eliminated
 from eha_core.identification.numbers import Array, Integers
@@ -23,10 +24,6 @@ answer has a number for each pair. A fit of the instants follows, so nothing han
 
 TRIED = 4
 """Effects that are tried with the interval in which they act."""
-
-OUTSTANDING = 1.5
-"""A column is tried in an interval where it is predicted to gain so many times what any column does that always acts. Of
-effects that do always act, the best windows in a row are predicted to gain no more than the whole record."""
 
 
 @dataclass(frozen=True)
@@ -100,9 +97,7 @@ def onset_of(column: Column) -> str | None:
     return None
 
 
-def restricted(
-    problem: Problem, moved: Array, shifts: Array, windows: tuple[int, int]
-) -> tuple[Array, Array]:
+def restricted(problem: Problem, moved: Array, shifts: Array, windows: tuple[int, int]) -> tuple[Array, Array]:
     """What a column changes where it acts in some windows alone."""
     inside = (problem.order[1] >= windows[0]) & (problem.order[1] < windows[1])
     ends = np.zeros_like(shifts)
@@ -189,7 +184,12 @@ def _by_span(
 
 
 def _best_interval(
-    column: Column, spans: Integers, energy: Array, along: Array, imitated: Array, recordings: Sequence[range],
+    column: Column,
+    spans: Integers,
+    energy: Array,
+    along: Array,
+    imitated: Array,
+    recordings: Sequence[range],
     to_the_end: bool,
 ) -> tuple[float, tuple[tuple[int, int], float] | None]:
     """The gain predicted of a column over all spans, and the best over some of them in a row, of one recording;

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.linalg import cho_solve_banded
 
 from eha_core.diagnosis.hypothesis import Hypothesis, Member, neutral
-from eha_core.diagnosis.sets.columns import Column
-from eha_core.diagnosis.sets.intervals import best_intervals, in_interval, onset_of, restricted
+from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.intervals import best_intervals, in_interval, restricted
 from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import FreeParameter, coordinates
 from eha_core.identification.numbers import Array, Integers
@@ -89,9 +89,9 @@ class QuadraticModel:
         moves[places] += found
         moves *= share
         nominal = share * self.nominal_move - self.nominal_by_column @ moves
-        states = self.at.states + (
-            share * self.states_move - self.carried @ np.concatenate([nominal, moves])
-        ).reshape(self.at.states.shape)
+        states = self.at.states + (share * self.states_move - self.carried @ np.concatenate([nominal, moves])).reshape(
+            self.at.states.shape
+        )
         count = len(self.nominal_places)
         q = self.at.q.copy()
         q[:count] += nominal
@@ -104,7 +104,9 @@ class QuadraticModel:
         for parameter in free:
             if parameter.above:
                 values[parameter.name] = values[parameter.above] * (1.0 + values[parameter.name])
-        return with_options(self.hypothesis, values, chosen, dict(zip(places, (share * found).tolist(), strict=True))), states
+        return with_options(
+            self.hypothesis, values, chosen, dict(zip(places, (share * found).tolist(), strict=True))
+        ), states
 
 
 def with_options(
@@ -174,8 +176,10 @@ def quadratic_model(
     count = len(nominal)
     first, rest = np.arange(count), np.arange(count, size)
     block = curvature[np.ix_(first, first)]
-    solved = np.linalg.solve(block, np.column_stack([towards[first], curvature[np.ix_(first, rest)]])) if count else (
-        np.zeros((0, 1 + len(rest)))
+    solved = (
+        np.linalg.solve(block, np.column_stack([towards[first], curvature[np.ix_(first, rest)]]))
+        if count
+        else (np.zeros((0, 1 + len(rest))))
     )
     reduced = curvature[np.ix_(rest, rest)] - curvature[np.ix_(rest, first)] @ solved[:, 1:]
     slope = towards[rest] - curvature[np.ix_(rest, first)] @ solved[:, 0]
@@ -213,7 +217,12 @@ def _with_intervals(
 
 
 def _options(
-    hypothesis: Hypothesis, free: Sequence[FreeParameter], q: Array, count: int, columns: Sequence[Column], usable: Array
+    hypothesis: Hypothesis,
+    free: Sequence[FreeParameter],
+    q: Array,
+    count: int,
+    columns: Sequence[Column],
+    usable: Array,
 ) -> tuple[tuple[Option, ...], Integers, Array]:
     """What a set can be made of, the signs that coefficients may have, and the members' moves to their neutral
     values."""

@@ -1,4 +1,4 @@
-"""One search over whole sets: propose from the quadratic model, fit what is proposed, go on from the best of all fitted."""
+"""One search over whole sets: propose from the quadratic model, fit what is proposed, go on from the best of all."""
 
 from __future__ import annotations
 
@@ -7,47 +7,43 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import MOST_EFFECTS
+from eha_core.diagnosis.criteria import (
+    EXPANSIONS,
+    LEADERS,
+    MEMBERS_FIRST,
+    MOST_EFFECTS,
+    NEAR_NOISE,
+    OF_EXCESS,
+    OF_SIZE,
+    RELATED,
+    SHARES,
+    TO_THE_END,
+    TRIED,
+    TRIED_AT_THE_NOISE,
+    WITH_THE_PLANT,
+    WORTHWHILE,
+    chance_gain,
+)
 from eha_core.diagnosis.hypothesis import Hypothesis
-from eha_core.diagnosis.sets.best_sets import Proposal, best_sets
-from eha_core.diagnosis.sets.columns import Column
-from eha_core.diagnosis.sets.pool import Pool, Progress
-from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.best_sets import Proposal, best_sets
+from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.pool import Pool, Progress
+from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import objective_of
 from eha_core.plant.lane_rows import LANES
 
-EXPANSIONS = 8
-"""Sets about which the channels are linearised, over windows of one length."""
-
-FIRST, FURTHER, CONVERGE = 2, 3, 12
-LEADERS = 2
-"""Proposals that are fitted with all that is free, the best of those of which the members alone were fitted."""
-
-OF_SIZE = 4
-FAR_TRIED, NEAR_TRIED = 16, 4
-"""Proposals of one size, and of all, of which the members are fitted, far from the noise and near it."""
-
-NEAR = 1.03
-RELATED = 3.0
-WORTHWHILE = 0.9
-SHARES = (1.0, 0.5, 0.25)
-CHANCE, OF_SAMPLES, OF_EXCESS = 25.0, 0.001, 0.01
-
 
 def required(result: Fit) -> float:
     """Chi^2 that a member has to gain together with the others of a set that leaves what `result` does."""
-    count = result.count
-    by_chance = (CHANCE + OF_SAMPLES * count) * max(1.0, result.data / count)
-    return by_chance + OF_EXCESS * max(0.0, result.objective - count)
+    by_chance = chance_gain(result.count, result.data / result.count)
+    return by_chance + OF_EXCESS * max(0.0, result.objective - result.count)
 
 
 def cost(hypothesis: Hypothesis, result: Fit) -> float:
     """What sets are compared by while the search goes on: chi^2, and what its members have to gain at least."""
-    return result.objective + len(hypothesis.members) * (CHANCE + OF_SAMPLES * result.count) * max(
-        1.0, result.data / result.count
-    )
+    return result.objective + len(hypothesis.members) * chance_gain(result.count, result.data / result.count)
 
 
 def leader(pool: Pool) -> Hypothesis:
@@ -70,9 +66,9 @@ class Search:
         if lead not in self.expanded:
             return lead
         result = self.pool.found[lead]
-        if result.objective < self.expanded[lead] - required(result) :
+        if result.objective < self.expanded[lead] - required(result):
             return lead
-        if result.data < NEAR * result.count:
+        if result.data < NEAR_NOISE * result.count:
             return None
         within = RELATED * cost(lead, result)
         rest = [h for h, at in self.pool if h not in self.expanded and cost(h, at) < within]
@@ -101,26 +97,30 @@ def _expand(search: Search, base: Hypothesis, step: str) -> None:
     begun = _begun(pool, model, _worth_a_fit(pool, base, model))
     tried: list[tuple[float, Hypothesis, Fit]] = []
     for hypothesis, values, states in begun:
-        result = pool.glance(step, hypothesis, values, states, FIRST)
+        result = pool.glance(step, hypothesis, values, states, MEMBERS_FIRST)
         tried.append((cost(hypothesis, result), hypothesis, result))
-        if result.data < NEAR * result.count:
+        if result.data < NEAR_NOISE * result.count:
             break  # what is larger is proposed from there, if it is needed
     tried.sort(key=lambda item: item[0])
     for _, hypothesis, result in tried[:LEADERS]:
-        pool.try_set(step, hypothesis, result.values, result.states, FURTHER)
+        pool.try_set(step, hypothesis, result.values, result.states, WITH_THE_PLANT)
     now = leader(pool)
-    if now == lead and base == lead and pool.found[lead].data > NEAR * at.count:
-        pool.go_on(step, lead, CONVERGE, 2)  # it may have stopped short of its optimum
-    search.say(f"{step} at {'+'.join(base.ids) or 'nothing'}, {at.data / at.count:.4g} times the noise: {len(tried)} sets tried,"
-               f" best {'+'.join(now.ids) or 'nothing'}, {pool.found[now].data / at.count:.4g}")
+    if now == lead and base == lead and pool.found[lead].data > NEAR_NOISE * at.count:
+        pool.go_on(step, lead, TO_THE_END, 2)  # it may have stopped short of its optimum
+    left = pool.found[now].data / at.count
+    search.say(f"{step}: {len(tried)} sets tried, best {_shown(now)}, {left:.4g} times the noise")
     pool.measure_noise(now)
 
 
+def _shown(hypothesis: Hypothesis) -> str:
+    return " + ".join(hypothesis.ids) or "the nominal equations"
+
+
 def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tuple[Hypothesis, Proposal]]:
-    """The proposals of a quadratic model: at the noise what is significant, else the best few of each size that explains
-    noticeably more than a smaller one."""
+    """The proposals of a quadratic model: at the noise what is significant, else the best few of each size that
+    explains noticeably more than a smaller one."""
     at = pool.found[base]
-    needed, at_noise = required(at), at.data < NEAR * at.count
+    needed, at_noise = required(at), at.data < NEAR_NOISE * at.count
     chosen: dict[Hypothesis, tuple[int, float, Proposal]] = {}
     least = np.inf
     for size, level in best_sets(model, MOST_EFFECTS).items():
@@ -142,7 +142,9 @@ def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tu
             if of_size == OF_SIZE:
                 break
     ranked = sorted(chosen.items(), key=lambda item: item[1][:2])
-    return [(hypothesis, proposal) for hypothesis, (_, _, proposal) in ranked[: NEAR_TRIED if at_noise else FAR_TRIED]]
+    return [
+        (hypothesis, proposal) for hypothesis, (_, _, proposal) in ranked[: TRIED_AT_THE_NOISE if at_noise else TRIED]
+    ]
 
 
 def _begun(
@@ -159,5 +161,6 @@ def _begun(
             objectives.append(objective_of(problem, (), np.zeros(0), states, rows[:, :, lane], ends[:, :, lane]))
     best = np.argmin(np.reshape(objectives, (-1, len(SHARES))), axis=1) if starts else []
     return [
-        (hypothesis, *starts[len(SHARES) * k + share]) for k, ((hypothesis, _), share) in enumerate(zip(proposals, best, strict=True))
+        (hypothesis, *starts[len(SHARES) * k + share])
+        for k, ((hypothesis, _), share) in enumerate(zip(proposals, best, strict=True))
     ]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.sets.columns import columns_of
+from eha_core.diagnosis.search.columns import columns_of
 from eha_core.effects import Effect
 from eha_core.identification.observation import Observation
 from eha_core.weak_form.dry_friction import CLEAR, DryFriction, dry_friction
@@ -57,7 +57,9 @@ def friction_of(
         sliding = next((form for form in frictions if form.form == "stribeck_friction"), frictions[0])
         known = {form.form for form in frictions}
         starts += [
-            FrictionStart(effect, _begun(effect, sliding, scales)) for name, effect in offered.items() if name not in known
+            FrictionStart(effect, _begun(effect, sliding, scales))
+            for name, effect in offered.items()
+            if name not in known
         ]
         return Friction(True, starts[0], tuple(starts))
     return Friction(False, None, ())

@@ -21,7 +21,6 @@ from eha_core.identification.problem import Problem
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import with_finer_slopes
 
-
 REACH = 1.0
 """s; how far a fit may move an instant from where the linear model has it."""
 
@@ -120,7 +119,9 @@ class Pool:
             return
         before = self.problem.shooting
         noise = corrected_noise(before, at)
-        if all(abs(level / sampling.noise - 1.0) < SAME_NOISE for level, sampling in zip(noise, samplings, strict=True)):
+        if all(
+            abs(level / sampling.noise - 1.0) < SAME_NOISE for level, sampling in zip(noise, samplings, strict=True)
+        ):
             return
         self.problem = replace(self.problem, shooting=with_noise(before, noise))
         for other, result in self.found.items():
