@@ -28,6 +28,10 @@ UNNOTICED = 20.0
 """Chi^2 by which the response may change as its step is halved: less than any effect must gain to be named. Of a model
 that is far off, the share WORTH of what it leaves may be more."""
 
+ENOUGH_ITERATIONS = 12
+"""Of the nominal equations. Where they are right they need fewer; where they are not, they are fitted once more from
+what is found."""
+
 NOWHERE_ELSE = 0.8
 AT_ALL = 50.0
 """Where this share of what the nominal equations leave unexplained, and so much chi^2, sits in the last window, that is
@@ -56,7 +60,7 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     ]
     farthest = max(float(np.max(np.abs(values))) for values in positions)
     free = free_nominal_parameters(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
-    first = fit_in_stages(whole(shooting), nominal, free)
+    first = fit_in_stages(whole(shooting), nominal, free, iterations=ENOUGH_ITERATIONS)
     shooting = with_noise(shooting, corrected_noise(shooting, first))
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)

@@ -19,6 +19,7 @@ from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
 from eha_core.diagnosis.pictures import pictures
+from eha_core.diagnosis.posterior import probable_sets
 from eha_core.diagnosis.result import (
     Alternative,
     ChannelFit,
@@ -64,7 +65,8 @@ def conclude(
     recording = recordings[evidence.lead - 1]
     steps, without = ladder(replace(evidence, decision=decision), final)
     order = list(without)
-    effects = named_effects(decision.winner, final, composition)
+    sets = probable_sets(evidence.comparison, decision.winner)
+    effects = named_effects(decision.winner, final, composition, sets)
     if order:
         effects = tuple(sorted(effects, key=lambda effect: order.index(effect.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
@@ -102,6 +104,8 @@ def conclude(
         without=without,
         correlation=correlation(final),
         composition=composition,
+        sets=sets,
+        trace=evidence.comparison.trace,
     )
 
 

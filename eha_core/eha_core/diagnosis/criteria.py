@@ -82,6 +82,13 @@ small gains mean little: a parameter must then pay for itself by up to this shar
 HELD_OUT = 5.0
 """A named effect must lower chi^2 on held-out windows by this."""
 
+COLLECTION = 0.95
+"""Probability that the stated collection of sets holds."""
+
+ODDS_OF_GAIN = 1.7
+"""Power with which the odds of a name rise with its gain over what is required of it: even at once that, 50 to 1 at ten
+times (assumed)."""
+
 CONTENDING = 2.0 * TIE
 """What falls behind the winner by less may still be the truth, when a rival leads by chance."""
 
@@ -112,8 +119,9 @@ NOTICEABLE = 4.0
 RELEVANT = 0.01
 """... and by this share of itself (or, where the nominal value is zero, of the scale on which it is free)."""
 
-EXPANSIONS = 8
-"""Sets about which the channels are linearised, over windows of one length, at most (assumed)."""
+EXPANSIONS, EXPANSIONS_LATER = 8, 3
+"""Sets about which the channels are linearised at most, at first, and wherever a search goes on from what another found
+(assumed)."""
 
 BEAM = 10
 """Sets of each size that are grown and shrunk in the quadratic model."""

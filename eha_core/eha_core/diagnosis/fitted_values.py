@@ -8,7 +8,8 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import has_changed, identifiable
 from eha_core.diagnosis.hypothesis import neutral
-from eha_core.diagnosis.result import FittedParameter, FittedValue, NamedEffect
+from eha_core.diagnosis.posterior import probability
+from eha_core.diagnosis.result import FittedParameter, FittedValue, NamedEffect, ProbableSet
 from eha_core.diagnosis.search.comparison import Entry
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
@@ -63,8 +64,10 @@ def fitted_parameters(
     return tuple(found)
 
 
-def named_effects(winner: Entry, final: Fit, composition: Composition) -> tuple[NamedEffect, ...]:
-    """The effects that were named, with the values, intervals and statement of each."""
+def named_effects(
+    winner: Entry, final: Fit, composition: Composition, sets: tuple[ProbableSet, ...]
+) -> tuple[NamedEffect, ...]:
+    """The effects that were named, with the values, intervals, statement and probability of each."""
     found = []
     for member in (member for member in winner.hypothesis.members if member.effect.named):
         effect = composition.as_shown(member.effect)
@@ -77,7 +80,10 @@ def named_effects(winner: Entry, final: Fit, composition: Composition) -> tuple[
         statement = effect.describe({name: value.value for name, value in values.items()})
         statement += f", from {active[0]:.4g} s to {active[1]:.4g} s only" if active else ""
         evidence = winner.score if len(winner.effects) == 1 else wald(final, effect)
-        row = NamedEffect(effect.id, effect.site, effect.equation, values, evidence, statement, active, effect.kind)
+        row = NamedEffect(
+            effect.id, effect.site, effect.equation, values, evidence, statement, active, effect.kind,
+            probability(sets, effect.id),
+        )  # fmt: skip
         found.append(row)
     return tuple(found)
 

@@ -59,7 +59,7 @@ class NamedEffect:
 
     `evidence` is what it gains in chi^2, less what its parameters cost; of one of several effects, what the fit would
     lose without it. `active` is the interval in which it acts [s], None where it always does; `kind` the kind of law
-    that it is a form of, if the catalogue has several.
+    that it is a form of, if the catalogue has several; `probability` that of the name.
     """
 
     id: str
@@ -70,6 +70,7 @@ class NamedEffect:
     statement: str
     active: tuple[float, float] | None = None
     kind: str = ""
+    probability: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -158,6 +159,14 @@ class TraceStep:
     effects: tuple[str, ...]
     chi2: float
     cpu_s: float
+
+
+@dataclass(frozen=True)
+class ProbableSet:
+    """A set of effects that may be what is missing, by their ids, and its probability."""
+
+    effects: tuple[str, ...]
+    probability: float
 
 
 @dataclass(frozen=True)
@@ -279,7 +288,8 @@ class Diagnosis:
     the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
     what, when, as text. `steps` lead from the nominal model to that with all effects; `without` has what is left
     when one of several effects is taken out and the rest fitted again, most first: the order of `effects`, too.
-    `long_records` has those of which stretches were fitted; what is drawn of them is in the record's time.
+    `sets` are those that together hold 95 % of the probability, the most probable first; `trace` has every fit of the
+    search. `long_records` has those of which stretches were fitted; what is drawn of them is in the record's time.
     """
 
     path: str
@@ -313,6 +323,8 @@ class Diagnosis:
     correlation: Correlation = Correlation()
     composition: Composition = PAPER
     long_records: tuple[LongRecord, ...] = ()
+    sets: tuple[ProbableSet, ...] = ()
+    trace: tuple[TraceStep, ...] = ()
 
     @property
     def drawn(self) -> tuple[float, float]:

@@ -42,6 +42,11 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             "next_experiment": _row(
                 diagnosis.next_experiment, ("statement", "separates", "reference", "record", "duration")
             ),
+            "sets": _rows(diagnosis.sets, ("effects", "probability")),
+            "trace": [
+                {"step": each.step, "set": each.effects, "chi2": each.chi2, "cpu_s": each.cpu_s}
+                for each in diagnosis.trace
+            ],
             "rivals": [{"effects": effects, "score": score} for effects, score in diagnosis.rivals],
             "whiteness": diagnosis.whiteness,
             "explained": {
@@ -89,7 +94,7 @@ def _location(location: Location) -> dict[str, Any]:
 
 
 def _effect(effect: NamedEffect) -> dict[str, Any]:
-    row = _rows([effect], ("id", "site", "kind", "equation", "evidence", "statement", "active"))[0]
+    row = _rows([effect], ("id", "site", "kind", "equation", "evidence", "probability", "statement", "active"))[0]
     row["parameters"] = {name: _row(value, ("value", "std", "unit")) for name, value in effect.parameters.items()}
     return row
 

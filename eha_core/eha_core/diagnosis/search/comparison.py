@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import parameter_cost
 from eha_core.diagnosis.effect_parameters import parameters_used
-from eha_core.diagnosis.hypothesis import Hypothesis
+from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.result import TraceStep
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
@@ -47,6 +47,7 @@ class ModelComparison:
         site_gains: chi^2 that the effects of each site explain, as the quadratic models predict it.
         left_over: what one more effect together with the best is predicted to gain, the most of each site.
         smaller: fits of the best set without one of its members, by the set.
+        gain_over_required: of each member of the best set, what it gains over what is required of it.
         trace: every fit of the search.
         cut_short: whether the search ended at its limit.
     """
@@ -57,6 +58,7 @@ class ModelComparison:
     site_gains: Mapping[str, float] = field(default_factory=dict)
     left_over: Mapping[str, float] = field(default_factory=dict)
     smaller: Mapping[Hypothesis, Fit] = field(default_factory=dict)
+    gain_over_required: Mapping[Member, float] = field(default_factory=dict)
     trace: tuple[TraceStep, ...] = ()
     cut_short: bool = False
 

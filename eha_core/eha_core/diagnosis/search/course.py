@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import CARRIED, NEAR_NOISE
+from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.search.best_sets import objective_without, one_more
 from eha_core.diagnosis.search.columns import Column, columns_of
@@ -85,13 +85,13 @@ def over_short_windows(
     pool.try_set("nominal", NOTHING, values, states, CARRIED_ON)
     pool.measure_noise(NOTHING)
     if not friction.known:
-        search_sets(Search(pool, material.columns, material.progress))
+        search_sets(Search(pool, material.columns, material.progress, EXPANSIONS))
         return pool
     others = [column for column in material.columns if not column.effect.kind]
-    search_sets(Search(pool, others, material.progress))
+    search_sets(Search(pool, others, material.progress, EXPANSIONS))
     if friction.held is None:
         if pool.found[leader(pool)].data > NEAR_NOISE * pool.found[leader(pool)].count:
-            search_sets(Search(pool, material.columns, material.progress))
+            search_sets(Search(pool, material.columns, material.progress, EXPANSIONS))
         return pool
     return _released(pool, friction, material)
 
@@ -139,10 +139,10 @@ def _ahead(pool: Pool) -> list[Hypothesis]:
 def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[Calibration, ModelComparison]:
     """The best set fitted to its end, without what is not significant, with its rivals and the nominal model."""
     material.progress("fitting the best set to its end")
-    best = finish(pool, leader(pool), material.progress)
+    best, gains = finish(pool, leader(pool), material.progress)
     leading, compared, model = rivals(pool, best, material.columns, material.progress)
     if leading != best:
-        best = finish(pool, leading, material.progress)
+        best, gains = finish(pool, leading, material.progress)
         _, compared, model = rivals(pool, best, material.columns, material.progress)
     found = {hypothesis: pool.found[hypothesis] for hypothesis in compared if hypothesis.members}
     nominal = refit_nominal(pool, pool.found[NOTHING], list(found.values()))
@@ -156,6 +156,7 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
         _gains_by_site(model, best),
         _left_over(model, best),
         {h: result for h, result in pool if h in {best.without(member) for member in best.members}},
+        gains,
         tuple(material.trace.steps),
     )
     return calibration, comparison

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from eha_core.diagnosis.criteria import (
-    EXPANSIONS,
+    EXPANSIONS_LATER,
     LEADERS,
     MEMBERS_FIRST,
     MOST_EFFECTS,
@@ -53,11 +53,13 @@ def leader(pool: Pool) -> Hypothesis:
 
 @dataclass
 class Search:
-    """A search over windows of one length: its pool, what can be added, and the sets that it has gone on from."""
+    """A search over windows of one length: its pool, what can be added, how many sets it goes on from at `most`, and
+    those that it has gone on from."""
 
     pool: Pool
     columns: Sequence[Column]
     say: Progress = lambda _: None
+    most: int = EXPANSIONS_LATER
     expanded: dict[Hypothesis, float] = field(default_factory=dict)
 
     def next(self) -> Hypothesis | None:
@@ -77,7 +79,7 @@ class Search:
 
 def search_sets(search: Search) -> Hypothesis:
     """The best set over the pool's windows; every set that was fitted stays in the pool."""
-    for number in range(EXPANSIONS):
+    for number in range(search.most):
         base = search.next()
         if base is None:
             break

@@ -43,22 +43,34 @@ RIVALS = 5
 """Sets near the best that are fitted in order to be compared with it."""
 
 
-def converge(pool: Pool, hypothesis: Hypothesis) -> Fit:
-    """Fit a set until nothing is gained, with derivatives at the full step."""
+def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) -> Fit:
+    """Fit a set until nothing is gained, with derivatives at the full step, unless it cannot come low enough."""
     at = pool.found[hypothesis]
-    result = fit(exact(pool.problem), at.values, at.free, at.states, iterations=CONVERGED, in_a_row=2)
+    result = fit(
+        exact(pool.problem),
+        at.values,
+        at.free,
+        at.states,
+        iterations=CONVERGED,
+        in_a_row=2,
+        give_up_above=give_up_above,
+    )
     pool.trace.add("converge", hypothesis, result)
     return pool.keep(hypothesis, result)
 
 
-def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> Hypothesis:
-    """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of
-    them."""
+def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypothesis, dict[Member, float]]:
+    """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of them;
+    and what each that stays gains over what is required."""
     at = converge(pool, hypothesis)
     refused: set[Member] = set()
+    gains: dict[Member, float] = {}
     while hypothesis.members:
         costs = predicted_costs(pool, hypothesis, at)
         needed = {member: required_of(pool, member, costs, at) for member in costs}
+        gains = {member: costs[member] / needed[member] for member in costs} | {
+            member: ratio for member, ratio in gains.items() if member in refused
+        }
         order = sorted(costs.keys() - refused, key=lambda member: costs[member] / needed[member])
         if not order or costs[order[0]] > LOOKED_AT * needed[order[0]]:
             break
@@ -69,9 +81,11 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> Hypothesis
         progress(f"without {member.id}: chi^2 rises by {lost:.4g}, {needed[member]:.4g} is required")
         if lost > needed[member]:
             refused.add(member)
+            gains[member] = lost / needed[member]
         else:
             hypothesis, at = rest, converge(pool, rest) if rest.members else simpler
-    return hypothesis
+            refused, gains = set(), {}
+    return hypothesis, {member: gains[member] for member in hypothesis.members}
 
 
 def predicted_costs(pool: Pool, hypothesis: Hypothesis, at: Fit) -> dict[Member, float]:
@@ -88,7 +102,7 @@ def _without(pool: Pool, hypothesis: Hypothesis, member: Member, at: Fit, needed
     off = neutral(member.effect)
     values = {name: off.get(base_name(name), value) for name, value in at.values.items()}
     free = tuple(parameter for parameter in at.free if base_name(parameter.name) not in off)
-    simpler = pool.try_set("without a member", rest, values, at.states, WITHOUT, free)
+    simpler = pool.try_set("without a member", rest, values, at.states, WITHOUT, free, 1, at.objective + needed)
     if simpler.objective - at.objective > needed:
         simpler = pool.go_on("without a member", rest, CONVERGED, 2, give_up_above=at.objective + needed)
     return simpler
@@ -147,7 +161,7 @@ def rivals(
         and not set(best.members) < set(hypothesis.members)
     ]  # fmt: skip
     for hypothesis in sorted(close, key=lambda h: pool.found[h].objective)[:RIVALS]:
-        converge(pool, hypothesis)
+        converge(pool, hypothesis, at.objective + within)
     compared = [best, *close]
     leading = min(compared, key=lambda hypothesis: cost(hypothesis, pool.found[hypothesis]))
     return leading, compared, model

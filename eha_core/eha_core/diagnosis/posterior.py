@@ -1,0 +1,52 @@
+"""How probable each set of effects is, and so each name: the evidence of the sets that were compared, tempered.
+
+Two things can be wrong with a name: another set explains the recording as well (its score is near), or the effect gains
+little more than chance and the form of the other laws could (its gain is near what is required of it). Both are turned
+into odds with a scale each, which development cases set; nothing else is assumed of the prior.
+"""
+
+from __future__ import annotations
+
+from math import exp, log
+
+from eha_core.diagnosis.criteria import COLLECTION, ODDS_OF_GAIN, TIE
+from eha_core.diagnosis.result import ProbableSet
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison, bounded
+
+TEMPERATURE = TIE / (2.0 * log(COLLECTION / (1.0 - COLLECTION)))
+"""Of the scores' Boltzmann factors: of two sets whose scores are TIE apart the better one holds COLLECTION."""
+
+
+def probable_sets(comparison: ModelComparison, winner: Entry) -> tuple[ProbableSet, ...]:
+    """The fewest sets that together hold COLLECTION of the probability, the most probable first.
+
+    Those of the comparison that do not merely add to the winner, and the winner without each of its members.
+    """
+    if not winner.effects:
+        return ()
+    weights: dict[tuple[str, ...], float] = {}
+    for entry in comparison.entries:
+        adds = set(winner.ids) < set(entry.ids)
+        if entry.effects and not adds and not bounded(entry):
+            weight = exp(min((entry.score - winner.score) / (2.0 * TEMPERATURE), 0.0))
+            weights[entry.ids] = max(weight, weights.get(entry.ids, 0.0))
+    weights[winner.ids] = 1.0
+    for member in winner.hypothesis.members:
+        ratio = comparison.gain_over_required.get(member, 1.0)
+        without = winner.hypothesis.without(member).ids
+        weights[without] = max(weights.get(without, 0.0), max(ratio, 1e-300) ** -ODDS_OF_GAIN)
+    total = sum(weights.values())
+    ranked = sorted(weights.items(), key=lambda item: -item[1])
+    found, held = [], 0.0
+    for ids, weight in ranked:
+        found.append(ProbableSet(ids, weight / total))
+        held += weight / total
+        if held >= COLLECTION:
+            break
+    return tuple(found)
+
+
+def probability(sets: tuple[ProbableSet, ...], effect: str) -> float:
+    """The probability of a name: of the sets in the collection that hold it."""
+    total = sum(each.probability for each in sets)
+    return sum(each.probability for each in sets if effect in each.effects) / total if total else 0.0
