@@ -203,7 +203,9 @@ def _best_law(evidence: Evidence) -> UnknownLaw | None:
         law = None  # the residuals lack what is named, too
     if curve is not None and (law is None or (curve.effect.site == law.site and curve.share > law.r_squared)):
         x, y = np.array(curve.knots, dtype=np.float64).reshape(-1, 2).T
-        text = express(x, y, curve.variable, UNITS_OF_LAWS[curve.effect.site]).text
+        over, _, times = curve.variable.partition(", times ")
+        unit = UNITS_OF_LAWS[curve.effect.site] + (" s/m" if times == "velocity" else "")
+        text = express(x, y, over, unit).text
         if not text and law is not None and law.function_of == curve.variable:
             text = law.expression
         return UnknownLaw(curve.effect.site, curve.variable, text, curve.share, curve.knots)

@@ -15,6 +15,9 @@ EFFECT_PRIOR = 30.0
 """An effect's parameter may move by this many times its starting size, or by e^3 where it moves by factors."""
 
 
+KNOT_PRIOR = 3.0
+"""Standard deviation of a knot, in units of the largest one that a fit begins with."""
+
 MOST_ABOVE = 3.0
 """Share by which friction at rest may exceed that in motion. Seals show up to twice as much (assumed); without a bound
 friction that vanishes in motion stands for Coulomb's with damping that grows with the speed."""
@@ -26,6 +29,8 @@ SHORTEST_INSTANT = 0.01
 def free_effect_parameters(effect: Effect, start: Mapping[str, float]) -> tuple[FreeParameter, ...]:
     """An effect's parameters, free about `start` (full names)."""
     free = []
+    if not effect.named:
+        return _free_knots(effect, start)
     for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
         value = start[name]
         if row.above:
@@ -39,6 +44,15 @@ def free_effect_parameters(effect: Effect, start: Mapping[str, float]) -> tuple[
             resolution = SHORTEST_INSTANT / scale if row.relative_to == "time" else 0.0
             free.append(FreeParameter(name, value, False, scale, EFFECT_PRIOR, row.lower, row.upper, resolution))
     return tuple(free)
+
+
+def _free_knots(effect: Effect, start: Mapping[str, float]) -> tuple[FreeParameter, ...]:
+    """The knots of a curve, free about `start` in units of the largest of them."""
+    rows = {f"{effect.id}.{row.name}": row for row in effect.parameters if row.switches}
+    scale = max(abs(start[name]) for name in rows) or 1.0
+    return tuple(
+        FreeParameter(name, start[name], False, scale, KNOT_PRIOR, row.lower, row.upper) for name, row in rows.items()
+    )
 
 
 def with_effects(

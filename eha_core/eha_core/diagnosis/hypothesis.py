@@ -1,4 +1,4 @@
-"""A hypothesis: the set of effects that a model holds beyond the nominal equations, and at most one recovered law.
+"""A hypothesis: the effects, named ones and laws in no catalogue, that a model holds beyond the nominal equations.
 
 It is a value, and the same hypothesis wherever it comes from: fits of it replace each other, scores of it add up over
 recordings, and nothing else tells two hypotheses apart.
@@ -15,14 +15,27 @@ from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import base_name, is_one_of
 from eha_core.parameters import NOMINAL, acting_rows
 
+LAW_SIZE = 3
+"""Members that a law in no catalogue counts as, for its curve bends to whatever is there (assumed)."""
+
 
 @dataclass(frozen=True, order=True)
 class Member:
-    """One effect of a hypothesis, by its id; `limited` where it acts in an interval only, which is then fitted."""
+    """One effect of a hypothesis, by its id.
+
+    `limited` where it acts in an interval only, which is then fitted; `variable`, of a law in no catalogue, what its
+    curve is over.
+    """
 
     id: str
     limited: bool = False
+    variable: str = ""
     effect: Effect = field(compare=False, kw_only=True)
+
+    @property
+    def size(self) -> int:
+        """What it counts as: 1, or LAW_SIZE."""
+        return LAW_SIZE if self.variable else 1
 
     def span(self, values: Mapping[str, float]) -> tuple[float, float] | None:
         """From when until when it acts [s] in a model of these values; None where it always does."""
@@ -34,10 +47,9 @@ class Member:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A set of effects, each acting always or in an interval, and the (effect id, variable) of a recovered law."""
+    """A set of effects, each acting always or in an interval, and of laws that are in no catalogue."""
 
     members: tuple[Member, ...] = ()
-    law: tuple[str, str] | None = None
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -48,6 +60,16 @@ class Hypothesis:
     def ids(self) -> tuple[str, ...]:
         """The effects' ids, sorted."""
         return tuple(member.id for member in self.members)
+
+    @property
+    def size(self) -> int:
+        """How many members it has, a law in no catalogue counted as LAW_SIZE."""
+        return sum(member.size for member in self.members)
+
+    @property
+    def law(self) -> Member | None:
+        """The law that is in no catalogue, if it holds one."""
+        return next((member for member in self.members if member.variable), None)
 
     @property
     def limited(self) -> tuple[Member, ...]:
@@ -68,18 +90,18 @@ class Hypothesis:
         """Whether an effect can be added: not there yet, and no other form of a law that is."""
         return effect.id not in self.ids and effect.kind not in self.kinds
 
-    def with_effects(self, effects: Iterable[Effect], limited: bool = False) -> Hypothesis:
+    def with_effects(self, effects: Iterable[Effect], limited: bool = False, variable: str = "") -> Hypothesis:
         """The set with more effects in it."""
-        more = (Member(effect.id, limited, effect=effect) for effect in effects)
-        return Hypothesis(tuple(sorted({*self.members, *more})), self.law)
+        more = (Member(effect.id, limited, variable, effect=effect) for effect in effects)
+        return Hypothesis(tuple(sorted({*self.members, *more})))
 
     def without(self, member: Member) -> Hypothesis:
         """The set without one of its members."""
-        return Hypothesis(tuple(other for other in self.members if other != member), self.law)
+        return Hypothesis(tuple(other for other in self.members if other != member))
 
     def holds(self, other: Hypothesis) -> bool:
         """Whether it says all that another says, or more."""
-        return set(other.members) <= set(self.members) and other.law in (None, self.law)
+        return set(other.members) <= set(self.members)
 
 
 NOTHING = Hypothesis()

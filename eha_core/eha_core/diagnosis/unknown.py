@@ -4,7 +4,7 @@ effects."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -13,6 +13,7 @@ from eha_core.curve import KNOTS
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CONVINCING, LEFT_OVER, UNFITTED, chance_gain, parameter_cost
 from eha_core.diagnosis.hypothesis import Hypothesis, without_effect
+from eha_core.diagnosis.search.columns import LAWS, range_of
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
@@ -26,14 +27,6 @@ REFITTED = 8
 
 FULLY_FITTED = 2
 """How many of the curves with the largest predicted gain are fitted in full."""
-
-VARIABLES = {
-    "recovered_force": ("position", "velocity", "pressure difference", "time"),
-    "recovered_opening": ("spool position",),
-    "recovered_leakage": ("pressure difference",),
-}
-"""What each curve can be over; a curve with several carries its choice in a parameter `variable`."""
-
 
 @dataclass(frozen=True)
 class Recovery:
@@ -63,6 +56,8 @@ def recover(
     """
     nominal = comparison.nominal.fit
     best = comparison.entries[0] if comparison.entries else comparison.nominal
+    if best.hypothesis.law is not None:
+        return _of_the_set(best, comparison)
     if best.fit.data / best.fit.count < 1.0 + LEFT_OVER or nominal.data / nominal.count < 1.0 + LEFT_OVER:
         return None
     progress("recovering an unknown law as a curve")
@@ -77,13 +72,25 @@ def recover(
     return max(stands, key=lambda recovery: recovery.score, default=None)
 
 
+def _of_the_set(best: Entry, comparison: ModelComparison) -> Recovery:
+    """The law that the best set holds."""
+    law = best.hypothesis.law
+    assert law is not None
+    without = comparison.smaller.get(best.hypothesis.without(law), comparison.nominal.fit)
+    share = (without.data - best.fit.data) / max(without.data - best.fit.count, 1.0)
+    return Recovery(
+        law.effect, law.variable, best.hypothesis, best.fit, best.score, float(np.clip(share, 0.0, 1.0)),
+        _seen(law.effect, best.fit),
+    )  # fmt: skip
+
+
 def _beside(
     problem: Problem, base: Entry, comparison: ModelComparison, scales: Scales, progress: Callable[[str], None]
 ) -> Recovery | None:
     """The best curve beside the effects of an entry, of which those go that the curve makes idle."""
     fits = []
     for effect, variable, result in _fitted_curves(problem, base, scales, progress):
-        law = replace(base.hypothesis.with_effects([effect]), law=(effect.id, variable))
+        law = base.hypothesis.with_effects([effect], variable=variable)
         fits.append((law, effect, variable, result))
     if not fits:
         return None
@@ -135,31 +142,14 @@ def _curves(
     for effect in shooting.composition.effects:
         if effect.named or (shooting.drive not in WITH_OIL and effect.site != "force"):
             continue
-        for place, variable in enumerate(VARIABLES[effect.id]):
-            covered = _range(variable, scales)
+        for place, variable in enumerate(LAWS[effect.id]):
+            covered = range_of(variable, scales)
             if covered is None:
                 continue
             chosen = {**values, f"{effect.id}.lower": covered[0], f"{effect.id}.upper": covered[1]}
             if f"{effect.id}.variable" in values:
                 chosen[f"{effect.id}.variable"] = float(place)
             yield effect, variable, chosen
-
-
-def _range(variable: str, scales: Scales) -> tuple[float, float] | None:
-    if variable == "time":
-        return 0.0, scales.by_quantity["time"][1]
-    if variable == "position":
-        centre, half = scales.by_quantity["position"]
-        return centre - half, centre + half
-    if not len(scales.rows):
-        speed = scales.by_quantity["speed"][1]
-        return (-2.5 * speed, 2.5 * speed) if variable == "velocity" else None
-    if variable == "pressure difference":
-        series = scales.column("pressure_a") - scales.column("pressure_b")
-    else:
-        series = scales.column({"velocity": "velocity", "spool position": "spool_position"}[variable])
-    low, high = np.quantile(series, [0.002, 0.998])
-    return float(low), float(high)
 
 
 def _knots_free(effect: Effect, values: Mapping[str, float], scales: Scales) -> tuple[FreeParameter, ...]:

@@ -54,6 +54,8 @@ def decide(
     calibration: Calibration, nominal: Mapping[str, float], comparison: ModelComparison, recovery: Recovery | None
 ) -> Decision:
     """Weigh the comparison's entries, the best first, and the recovered curve against them."""
+    if recovery is not None and comparison.entries and recovery.hypothesis == comparison.entries[0].hypothesis:
+        return _unnamed(calibration, comparison, recovery)
     if recovery is not None and _beats_the_catalogue(recovery, comparison):
         return _unnamed(calibration, comparison, recovery)
     standing = [entry for entry in comparison.entries if entry.score > ENOUGH and not bounded(entry)]

@@ -1,7 +1,8 @@
 """A force on the piston that no effect of the catalogue explains, as a curve over position, velocity, load or time.
 
 Signature: whatever the recording showed; the curve was recovered from it and holds over the range that it covered.
-Equation: M_p x_p'' = ... + curve(z), z the position, the velocity, the pressure difference or the time since the start.
+Equation: M_p x_p'' = ... + curve(z), z the position, the velocity, the pressure difference or the time since the start;
+or ... + curve(x_p) x_p'.
 Sign: positive values push the piston along positive position.
 Validity: inside the range of the recording; beyond it the curve's end values go on.
 Source: recovered from a recording by `eha diagnose`.
@@ -23,8 +24,8 @@ EFFECT = Effect(
             "-",
             0.0,
             0.0,
-            3.0,
-            "what the curve is over: 0 position, 1 velocity, 2 pressure difference, 3 time",
+            4.0,
+            "what the curve is over: 0 position, 1 velocity, 2 pressure difference, 3 time, 4 position, times velocity",
             SOURCE,
         ),
         *knot_parameters("F", "N", 1e7, "force"),
@@ -62,6 +63,9 @@ def contribution(
         value, slope = curve_value(velocity, lower, upper, knots)
         drag = max(0.0, -slope)
         return force + value + drag * velocity, damping + drag, stiffness, dry_friction
+    if variable > 3.5:
+        value, _ = curve_value(position, lower, upper, knots)
+        return force, damping - value, stiffness, dry_friction
     at = pressure_a - pressure_b if variable < 2.5 else memory[slot]
     value, _ = curve_value(at, lower, upper, knots)
     return force + value, damping, stiffness, dry_friction

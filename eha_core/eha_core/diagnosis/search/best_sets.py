@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,40 +23,31 @@ class Proposal:
 
 
 def best_sets(model: QuadraticModel, most: int) -> Mapping[int, list[Proposal]]:
-    """For each size up to `most` the best sets, the best first."""
+    """For each size up to `most` (see Hypothesis.size) the best sets, the best first."""
     options = model.options
     table = _table(options)
     rivals = _exclusive(options)
+    sizes = [option.member.size for option in options]
     levels: list[dict[tuple[int, ...], float]] = [{} for _ in range(most + 1)]
     levels[0][()] = 0.0
     present = tuple(k for k, option in enumerate(options) if option.present)
-    if present and len(present) <= most:
-        levels[len(present)][present] = _gain(model, table, present)
+    _add(levels, sizes, present, _gain(model, table, present))
     expanded: set[tuple[int, ...]] = set()
     while True:
-        fresh = [chosen for level in levels for chosen in sorted(level, key=level.__getitem__, reverse=True)[:BEAM]
-                 if chosen not in expanded]  # fmt: skip
+        leading = [sorted(level, key=level.__getitem__, reverse=True)[:BEAM] for level in levels]
+        fresh = [chosen for level in leading for chosen in level if chosen not in expanded]
         if not fresh:
             break
         for chosen in fresh:
             expanded.add(chosen)
-            if len(chosen) < most:
-                allowed = np.ones(len(options), dtype=np.bool_)
-                for k in chosen:
-                    allowed &= ~rivals[k]
-                gains = _extended(
-                    model.matrix, model.gradient, model.one_way, table, np.array(chosen, np.int64), allowed
-                )
-                level = levels[len(chosen) + 1]
-                for k in np.argsort(gains)[::-1][:BEAM]:
-                    if gains[k] > 0.0:
-                        level[tuple(sorted((*chosen, int(k))))] = float(gains[k])
+            allowed = ~np.any(rivals[list(chosen)], axis=0)
+            gains = _extended(model.matrix, model.gradient, model.one_way, table, np.array(chosen, np.int64), allowed)
+            for k in np.argsort(gains)[::-1][: 2 * BEAM]:
+                _add(levels, sizes, tuple(sorted((*chosen, int(k)))), float(gains[k]))
             for k in chosen:
                 smaller = tuple(other for other in chosen if other != k)
-                if smaller not in levels[len(smaller)]:
-                    gain = _gain(model, table, smaller)
-                    if gain > 0.0:
-                        levels[len(smaller)][smaller] = gain
+                if smaller not in levels[sum(sizes[other] for other in smaller)]:
+                    _add(levels, sizes, smaller, _gain(model, table, smaller))
     return {
         size: [
             Proposal(tuple(options[k] for k in chosen), model.empty - level[chosen])
@@ -65,6 +56,15 @@ def best_sets(model: QuadraticModel, most: int) -> Mapping[int, list[Proposal]]:
         for size, level in enumerate(levels)
         if level
     }
+
+
+def _add(
+    levels: Sequence[dict[tuple[int, ...], float]], sizes: Sequence[int], chosen: tuple[int, ...], gain: float
+) -> None:
+    """Add a set to those of its size, if it is not too large and gains anything."""
+    size = sum(sizes[k] for k in chosen)
+    if gain > 0.0 and size < len(levels):
+        levels[size][chosen] = gain
 
 
 def objective_without(model: QuadraticModel, members: Collection[Member]) -> float:

@@ -6,12 +6,28 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+import numpy as np
+
+from eha_core.curve import KNOTS
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.effect_parameters import MOST_ABOVE
 from eha_core.effects import Effect
 from eha_core.identification.observation import Observation
 from eha_core.identification.per_recording import named
 from eha_core.parameter import Parameter
+
+LAWS = {
+    "recovered_force": ("position", "velocity", "pressure difference", "time", "position, times velocity"),
+    "recovered_opening": ("spool position",),
+    "recovered_leakage": ("pressure difference",),
+}
+"""What each curve can be over; a curve with several carries its choice in a parameter `variable`."""
+
+HATS = 9
+"""Columns that draw a law coarsely: of every third of a curve's knots."""
+
+LAW_SIZE = 0.1
+"""Height of such a column, in units of the usual force, opening or leakage (assumed)."""
 
 SITES_OF_DRIVE = {
     "voltage": ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
@@ -43,6 +59,7 @@ class Column:
             columns with different numbers exclude each other.
         one_way: the coefficient cannot be negative.
         limited: the effect acts over an interval only, whose ends are in `values`.
+        variable: of a law that is in no catalogue, what its curve is over.
     """
 
     effect: Effect
@@ -51,6 +68,7 @@ class Column:
     alternative: int
     one_way: bool
     limited: bool = False
+    variable: str = ""
 
     def sized(self, factor: float) -> dict[str, float]:
         """The values with the sizes at so many times what they are, within their bounds."""
@@ -111,3 +129,53 @@ def _may_be(effect: Effect, values: Mapping[str, float], row: Parameter) -> bool
         return True
     share = values[f"{effect.id}.{row.name}"] / values[f"{effect.id}.{row.above}"] - 1.0
     return 0.0 <= share <= MOST_ABOVE
+
+
+def law_columns(effects: Sequence[Effect], scales: Scales) -> tuple[Column, ...]:
+    """Laws that are in no catalogue: for each variable that a curve can be over, HATS columns that together draw it."""
+    found = []
+    for effect in effects:
+        size = LAW_SIZE * _size_of(effect, scales)
+        for place, variable in enumerate(LAWS.get(effect.id, ())):
+            covered = range_of(variable, scales)
+            if covered is None:
+                continue
+            values = {f"{effect.id}.lower": covered[0], f"{effect.id}.upper": covered[1]}
+            if len(LAWS[effect.id]) > 1:
+                values[f"{effect.id}.variable"] = float(place)
+            unit = size / max(scales.by_quantity["speed"][1], 1e-9) if variable.endswith("times velocity") else size
+            centres = np.linspace(0.0, KNOTS - 1.0, HATS)
+            for centre in centres:
+                heights = unit * np.maximum(0.0, 1.0 - np.abs(np.arange(KNOTS) - centre) / (centres[1] - centres[0]))
+                knots = {f"{effect.id}.knot_{k:02d}": float(height) for k, height in enumerate(heights)}
+                sizes = tuple(name for name, height in knots.items() if height != 0.0)
+                found.append(Column(effect, {**values, **knots}, sizes, place, False, variable=variable))
+    return tuple(found)
+
+
+def _size_of(effect: Effect, scales: Scales) -> float:
+    """What a curve of an effect is large against: the usual force, opening or leakage."""
+    if effect.site == "force":
+        return scales.by_quantity["force"][1]
+    if effect.site == "orifice":
+        return scales.by_quantity["spool"][1]
+    return scales.by_quantity["leakage_flow"][1] * scales.by_quantity["pressure"][1]
+
+
+def range_of(variable: str, scales: Scales) -> tuple[float, float] | None:
+    """The range of a variable that the recording covers; None where it is not known."""
+    variable = variable.partition(",")[0]
+    if variable == "time":
+        return 0.0, scales.by_quantity["time"][1]
+    if variable == "position":
+        centre, half = scales.by_quantity["position"]
+        return centre - half, centre + half
+    if not len(scales.rows):
+        speed = scales.by_quantity["speed"][1]
+        return (-2.5 * speed, 2.5 * speed) if variable == "velocity" else None
+    if variable == "pressure difference":
+        series = scales.column("pressure_a") - scales.column("pressure_b")
+    else:
+        series = scales.column({"velocity": "velocity", "spool position": "spool_position"}[variable])
+    low, high = np.quantile(series, [0.002, 0.998])
+    return float(low), float(high)

@@ -10,7 +10,7 @@ from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.search.best_sets import objective_without, one_more
-from eha_core.diagnosis.search.columns import Column, columns_of
+from eha_core.diagnosis.search.columns import Column, columns_of, law_columns
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.search.equations import Friction, friction_of
 from eha_core.diagnosis.search.expansion import Search, cost, leader, required, search_sets
@@ -53,6 +53,7 @@ def find_sets(
     columns = [
         column for effect in effects for column in columns_of(effect, scales, shooting.per_recording, recordings)
     ]
+    columns += law_columns([effect for effect in shooting.composition.effects if not effect.named], scales)
     material = Material(effects, columns, _plant(fitted), Trace(), progress)
     progress("locating in the equations")
     friction = friction_of(observations, calibration.nominal.values, effects, scales)

@@ -43,7 +43,7 @@ def required(result: Fit) -> float:
 
 def cost(hypothesis: Hypothesis, result: Fit) -> float:
     """What sets are compared by while the search goes on: chi^2, and what its members have to gain at least."""
-    return result.objective + len(hypothesis.members) * chance_gain(result.count, result.data / result.count)
+    return result.objective + hypothesis.size * chance_gain(result.count, result.data / result.count)
 
 
 def leader(pool: Pool) -> Hypothesis:
@@ -94,6 +94,8 @@ def _expand(search: Search, base: Hypothesis, step: str) -> None:
     at = pool.found[base]
     search.expanded[base] = at.objective
     addable = [c for c in search.columns if c.effect.id not in base.ids and c.effect.kind not in base.kinds]
+    if base != lead or at.data < NEAR_NOISE * at.count:
+        addable = [c for c in addable if not c.variable]
     in_time = base == lead and not base.limited
     model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)
     begun = _begun(pool, model, _worth_a_fit(pool, base, model))
@@ -127,10 +129,10 @@ def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tu
     least = np.inf
     for size, level in best_sets(model, MOST_EFFECTS).items():
         excess = max(level[0].predicted - at.count, 0.0)
-        if not at_noise and excess > WORTHWHILE * least and size > len(base.members):
+        if not at_noise and excess > WORTHWHILE * least and size > base.size:
             continue
         least = min(least, excess)
-        more = needed * (size - len(base.members)) - 0.5 * needed * (size <= len(base.members))
+        more = needed * (size - base.size) - 0.5 * needed * (size <= base.size)
         of_size = 0
         for proposal in level:
             hypothesis = Hypothesis(tuple(sorted(option.member for option in proposal.options)))

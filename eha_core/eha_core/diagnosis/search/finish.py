@@ -12,6 +12,7 @@ from eha_core.diagnosis.criteria import (
     COMPARED_WITHIN,
     CONVINCING,
     LOOKED_AT,
+    NEAR_NOISE,
     NOISE_KNOWN,
     OF_ITS_FORM,
     OF_SAMPLES,
@@ -118,10 +119,10 @@ def required_of(pool: Pool, member: Member, costs: Mapping[Member, float], at: F
     left = max(at.data - count, 0.0)
     ratio = CONVINCING / (1.0 - CONVINCING)
     forms = [other for other in costs if other != member and other.effect.approximate]
-    by_chance = variance * (CHANCE + OF_SAMPLES * count)
+    by_chance = member.size * variance * (CHANCE + OF_SAMPLES * count)
     if costs[member] < by_chance and forms:
         # friction makes the objective rugged, and a refit may stop short: the curvature is believed
-        by_chance = variance * (CHANCE + OF_SAMPLES_BESIDE_A_FORM * count)
+        by_chance = member.size * variance * (CHANCE + OF_SAMPLES_BESIDE_A_FORM * count)
     nothing = pool.found.get(NOTHING)
     explained = max(nothing.objective - at.objective, 0.0) if nothing else np.inf
     of_forms = OF_ITS_FORM * min(sum(costs[other] for other in forms if meet(member, other)), explained)
@@ -140,12 +141,14 @@ def rivals(
 ) -> tuple[Hypothesis, list[Hypothesis], QuadraticModel]:
     """The best set, once what comes near it was fitted to its end too; all of those; and the model about the best."""
     at = pool.found[best]
+    left = at.data > NEAR_NOISE * at.count
     addable = [c for c in columns if c.effect.id not in best.ids and c.effect.kind not in best.kinds]
+    addable = [c for c in addable if left or not c.variable]
     model = quadratic_model(pool.posed(best), at, best, pool.plant, addable)
     within = COMPARED_WITHIN * max(1.0, at.data / at.count)
     near: list[tuple[float, Hypothesis, Proposal]] = []
-    for size, level in best_sets(model, len(best.members) + 1).items():
-        for proposal in level if abs(size - len(best.members)) <= 1 else ():
+    for size, level in best_sets(model, best.size + 1).items():
+        for proposal in level if abs(size - best.size) <= 1 else ():
             hypothesis = Hypothesis(tuple(sorted(option.member for option in proposal.options)))
             adds_only = set(best.members) <= set(hypothesis.members)
             if hypothesis != best and not adds_only and proposal.predicted < at.objective + within:

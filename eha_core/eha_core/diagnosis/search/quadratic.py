@@ -122,11 +122,22 @@ def with_options(
     for option in chosen:
         if option.present:
             continue
+        if option.member.variable:
+            made |= _drawn(option, factors)
+            continue
         for k, (place, column) in enumerate(zip(option.places, option.columns, strict=True)):
             factor = factors[place]
             sized = column.sized(float(np.sign(factor) or 1.0) * float(np.clip(abs(factor), SMALLEST, LARGEST)))
             made |= sized if k == 0 else {name: sized[name] for name in column.sizes}
     return made
+
+
+def _drawn(option: Option, factors: Mapping[int, float]) -> dict[str, float]:
+    """The curve that its columns draw together."""
+    sizes = {name for column in option.columns for name in column.sizes}
+    made = {name: value for name, value in option.columns[0].values.items() if name not in sizes}
+    pairs = list(zip(option.places, option.columns, strict=True))
+    return made | {name: sum(factors[place] * column.values[name] for place, column in pairs) for name in sizes}
 
 
 def quadratic_model(
@@ -248,6 +259,6 @@ def _options(
             one_way[len(free) - count + k] = int(column.one_way)
     for places in groups.values():
         chosen = tuple(columns[k] for k in places)
-        member = Member(chosen[0].effect.id, chosen[0].limited, effect=chosen[0].effect)
+        member = Member(chosen[0].effect.id, chosen[0].limited, chosen[0].variable, effect=chosen[0].effect)
         options.append(Option(member, tuple(len(free) - count + k for k in places), chosen))
     return tuple(options), one_way, to_neutral
