@@ -13,7 +13,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.identification.noise import residual_noise
+from eha_core.health.noise import residual_noise
 from eha_core.plant import Plant, Trajectory
 from eha_core.realtime import NANOSECONDS
 from eha_core.weak_form.model_errors import CHANNELS, EQUATIONS, equation_residuals

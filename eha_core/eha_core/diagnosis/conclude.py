@@ -104,6 +104,11 @@ def conclude(
         without=without,
         correlation=correlation(final),
         composition=composition,
+        health=tuple(
+            (number, fault)
+            for number, observation in enumerate(evidence.observations, 1)
+            for fault in observation.health
+        ),
     )
 
 

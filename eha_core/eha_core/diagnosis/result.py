@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from eha_core.health import Fault
 from eha_core.identification.numbers import Array
 from eha_core.plant import PAPER, Composition
 
@@ -264,6 +265,7 @@ class Diagnosis:
     the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
     what, when, as text. `steps` lead from the nominal model to the whole set, which adds `effects` in their order;
     `without` has what the set leaves when one of several effects is taken out and the rest fitted again.
+    `health` has the faults of the channels, each with the number of its recording among several (1 of a single one).
     `long_records` has those of which stretches were fitted; what is drawn of them is in the record's time.
     """
 
@@ -298,6 +300,7 @@ class Diagnosis:
     correlation: Correlation = Correlation()
     composition: Composition = PAPER
     long_records: tuple[LongRecord, ...] = ()
+    health: tuple[tuple[int, Fault], ...] = ()
 
     @property
     def drawn(self) -> tuple[float, float]:

@@ -62,6 +62,7 @@ class Shooting:
         initial_states: (windows, STATE_SIZE) from the smoothed measurement; pressures at half supply where not
         measured.
         first_windows: the first window of each recording; there all that runs through begins anew, time too.
+        restarts: windows that no link ties to the one before: what drove the plant in that one is not known.
         per_recording: the parameters that have a value in each recording.
         composition: the actuator's parts.
     """
@@ -79,6 +80,7 @@ class Shooting:
     first_windows: tuple[int, ...] = (0,)
     per_recording: tuple[str, ...] = ()
     composition: Composition = PAPER
+    restarts: tuple[int, ...] = ()
 
     @property
     def windows(self) -> int:

@@ -11,9 +11,9 @@ from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.hypothesis import Hypothesis, neutral
 from eha_core.diagnosis.search.found import MOST_FITS, Effort, Found, Progress, keep_better
 from eha_core.effects import Effect
+from eha_core.health.noise import residual_noise
 from eha_core.identification.fit import Fit, fit, fit_in_stages, with_noise
 from eha_core.identification.free_parameters import FreeParameter
-from eha_core.identification.noise import residual_noise
 from eha_core.identification.numbers import Array
 from eha_core.identification.observation import RESOLVED
 from eha_core.identification.parallel import each

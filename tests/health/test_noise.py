@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eha_core.identification.noise import estimate_noise, find_outliers, quantisation, residual_noise, usual_size
+from eha_core.health.noise import estimate_noise, find_outliers, quantisation, residual_noise, usual_size
 
 TIME = np.arange(20_000) / 1000.0
 SMOOTH = 0.02 * np.sin(2 * np.pi * 0.7 * TIME) + 0.003 * np.sin(2 * np.pi * 9.0 * TIME)

@@ -5,9 +5,12 @@ from __future__ import annotations
 from math import comb, e, pi, sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from eha_core.identification.numbers import Array, Flags
+from eha_core.recording.recording import FloatArray as Array
+
+Flags = NDArray[np.bool_]
 
 NORMAL_MEDIAN = 0.6744897501960817
 """The median of |z| for a standard normal z."""

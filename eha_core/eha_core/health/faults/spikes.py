@@ -1,0 +1,27 @@
+"""Lone samples that their neighbours contradict: a bit that flips, a spark on a cable.
+
+By `find_outliers` with a limit that no normal noise passes. Where friction lets go, a sound pressure may have such a
+sample of ten times the noise; those are excluded from fits all the same, and not called a fault.
+"""
+
+from __future__ import annotations
+
+from eha_core.health.fault import Fault, Found
+from eha_core.health.noise import find_outliers
+from eha_core.health.signal import Signal
+
+FAR = 25.0
+"""Times the noise (bags/rig_coulomb_friction.mcap has samples at 11, and nothing is wrong with its sensors)."""
+
+
+def find(signal: Signal) -> Found | None:
+    """The lone samples, as one fault from the first to the last."""
+    if signal.is_command:
+        return None
+    here = find_outliers(signal.values, signal.noise, FAR)
+    if not here.any():
+        return None
+    when, count = signal.time[here], int(here.sum())
+    seen = "1 sample that its neighbours contradict" if count == 1 else f"{count} lone samples far from their neighbours"
+    fault = Fault(signal.name, "spikes", float(when[0]), float(when[-1]), seen, "see what disturbs the cable", False)
+    return Found([fault], signal.lost(here))
