@@ -11,6 +11,7 @@ from scipy.ndimage import median_filter
 from eha_core.recording.recording import FloatArray as Array
 
 Flags = NDArray[np.bool_]
+Integers = NDArray[np.int64]
 
 NORMAL_MEDIAN = 0.6744897501960817
 """The median of |z| for a standard normal z."""

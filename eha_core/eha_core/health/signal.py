@@ -8,7 +8,7 @@ from math import comb, erf, sqrt
 
 import numpy as np
 
-from eha_core.health.noise import Flags, estimate_noise, quantisation, usual_size
+from eha_core.health.noise import Flags, Integers, estimate_noise, quantisation, usual_size
 from eha_core.recording import Channel
 from eha_core.recording.recording import FloatArray
 
@@ -29,7 +29,7 @@ class Signal:
     are (`places`)."""
 
     channel: Channel
-    places: np.ndarray
+    places: Integers
 
     @classmethod
     def of(cls, channel: Channel) -> Signal:
@@ -119,7 +119,7 @@ class Signal:
         return max(3.0 * usual, 12.0 * self.noise, 5.0 * self.step)
 
     @cached_property
-    def runs(self) -> tuple[np.ndarray, np.ndarray]:
+    def runs(self) -> tuple[Integers, Integers]:
         """The first sample and the length of each run of one value."""
         starts = np.concatenate([[0], np.flatnonzero(np.diff(self.values) != 0.0) + 1])
         return starts, np.diff(np.concatenate([starts, [len(self.values)]]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import ceil, floor
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from eha_core.nominal import NominalModel
 from eha_core.plant import PAPER, Composition
 from eha_core.plant.parts import Source
 from eha_core.recording import CHANNEL_KINDS, Channel, Recording
+
+TICK = 0.01
+"""s; windows begin and end on this grid, which every step size used here divides."""
 
 SHORTEST = 1.0
 """s; a shorter recording says too little about any parameter."""
@@ -112,7 +116,7 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
     drive, driving, not_examined = _choose_drive(where, channels, composition.source)
     health = examine(recording)
     inputs = tuple(_sound(channels[name], health) for name in driving)
-    undriven = health.unknown_of(driving, recording.duration)
+    undriven = _undriven(health, driving, recording.duration)
     remarks: list[str] = list(recording.remarks)
     measured = []
     for column, name in enumerate(FITTED):
@@ -232,6 +236,12 @@ def _given_by(where: str, channels: Mapping[str, Channel], source: Source) -> tu
     return source.given or "measured", driving, [f"what brings about {' and '.join(driving)}: it was taken as measured"]
 
 
+def _undriven(health: Health, driving: tuple[str, ...], duration: float) -> tuple[tuple[float, float], ...]:
+    """The spans in which it is not known what drove the plant, on the grid of the windows."""
+    spans = health.unknown_of(driving, duration)
+    return tuple((TICK * floor(begin / TICK), min(TICK * ceil(end / TICK), duration)) for begin, end in spans)
+
+
 def _sound(channel: Channel, health: Health) -> tuple[Array, Array]:
     """The times and values of a channel that no fault spoils."""
     usable = health.usable(channel.name, len(channel.time))
@@ -249,7 +259,7 @@ def _measured(
     time, values = _sound(channel, health)
     known = np.ones(len(time), dtype=np.bool_)
     for begin, end in undriven:
-        known &= (time <= begin) | (time >= end)
+        known &= (time < begin) | (time > end)
     if np.count_nonzero(known) * float(np.median(np.diff(channel.time))) < SHORTEST / 2.0:
         raise RecordingError(
             f"{where}: next to nothing of {channel.name} can be used ({'; '.join(in_words(health.faults))}); record the"

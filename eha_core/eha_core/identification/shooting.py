@@ -29,9 +29,6 @@ STATE_SIZE = 4
 SETTLING = 0.3
 """s at the record's start that are not compared: coil, spool and the effects' own states start there unrecorded."""
 
-TICK = 0.01
-"""s; windows begin and end on this grid, which every step size used here divides."""
-
 SLOPE_STEP = 5e-4
 """s; the step at which derivatives are taken. They are good to a few per cent, which costs a fit no accuracy."""
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from eha_core.health.fault import Fault, Found
 from eha_core.health.signal import Signal
+from eha_core.recording.recording import FloatArray
 
 CONSTANT = 3
 """Samples of one value after a leap that make it a fill value; of two such values that are the same, one is enough."""
@@ -54,6 +55,6 @@ def find(signal: Signal) -> Found | None:
     return Found(faults, signal.lost(here))
 
 
-def _more_than_once(values: np.ndarray) -> np.ndarray:
+def _more_than_once(values: FloatArray) -> FloatArray:
     distinct, counts = np.unique(values, return_counts=True)
     return np.asarray(distinct[counts > 1])

@@ -8,7 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.health.fault import Fault, Found
+from eha_core.health.noise import Integers
 from eha_core.health.signal import Signal
+from eha_core.recording.recording import FloatArray
 
 BESIDE = 4
 """Changes to either side of a leap that must be far smaller."""
@@ -40,7 +42,7 @@ def find(signal: Signal) -> Found | None:
     return Found(faults, signal.lost(here))
 
 
-def leaps_of(signal: Signal) -> np.ndarray:
+def leaps_of(signal: Signal) -> Integers:
     """After which samples a position leaps, and stays."""
     if signal.channel.unit != "m":
         return np.zeros(0, dtype=np.int64)
@@ -50,6 +52,6 @@ def leaps_of(signal: Signal) -> np.ndarray:
     return np.array(chosen, dtype=np.int64)
 
 
-def _is_alone(steps: np.ndarray, place: int) -> bool:
+def _is_alone(steps: FloatArray, place: int) -> bool:
     beside = np.concatenate([steps[max(0, place - BESIDE) : place], steps[place + 1 : place + 1 + BESIDE]])
     return bool(len(beside) == 0 or np.max(beside) < ALONE * steps[place])

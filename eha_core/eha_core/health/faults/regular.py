@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.ndimage import median_filter
 
+from eha_core.health.noise import Integers
 from eha_core.health.signal import covered
 
 IN_A_ROW = 12
@@ -14,7 +15,7 @@ LARGE = 6
 """Samples of an interval from which on it may be one more or less: a rate that is no whole part of the other."""
 
 
-def regular(places: np.ndarray, shortest: int = 2) -> list[tuple[int, int, float]]:
+def regular(places: Integers, shortest: int = 2) -> list[tuple[int, int, float]]:
     """The stretches of `places` that follow at one interval: first and last of them, and the interval [samples]."""
     intervals = np.diff(places)
     if len(intervals) < IN_A_ROW:
@@ -29,7 +30,7 @@ def regular(places: np.ndarray, shortest: int = 2) -> list[tuple[int, int, float
     return found
 
 
-def _interval(intervals: np.ndarray) -> float:
+def _interval(intervals: Integers) -> float:
     """The usual interval; one that is passed over now and then counts for nothing."""
     usual = float(np.median(intervals))
     return float(np.mean(intervals[np.abs(intervals - usual) <= 1]))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.health.fault import Fault, Found
+from eha_core.health.noise import Flags
 from eha_core.health.signal import Signal, covered
 
 IN_A_ROW = 3
@@ -42,7 +43,7 @@ def find(signal: Signal) -> Found | None:
     return Found(faults, signal.lost(here)) if faults else None
 
 
-def _is_cut_off(signal: Signal, at: np.ndarray, end: float) -> bool:
+def _is_cut_off(signal: Signal, at: Flags, end: float) -> bool:
     if np.sum(at) < OFTEN:
         return False
     runs = covered(at)
@@ -69,7 +70,7 @@ def _is_clipped(signal: Signal, runs: list[tuple[int, int]]) -> bool:
     return bool(np.median(edges) > 0.1 * usual)
 
 
-def _joined(signal: Signal, at: np.ndarray) -> list[tuple[int, int]]:
+def _joined(signal: Signal, at: Flags) -> list[tuple[int, int]]:
     """Runs at the range's end, those that only noise parts as one."""
     spans: list[tuple[int, int]] = []
     for first, last in covered(at):

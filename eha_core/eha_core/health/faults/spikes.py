@@ -22,6 +22,6 @@ def find(signal: Signal) -> Found | None:
     if not here.any():
         return None
     when, count = signal.time[here], int(here.sum())
-    seen = "1 sample that its neighbours contradict" if count == 1 else f"{count} lone samples far from their neighbours"
+    seen = "1 sample that its neighbours contradict" if count == 1 else f"{count} lone samples off their neighbours"
     fault = Fault(signal.name, "spikes", float(when[0]), float(when[-1]), seen, "see what disturbs the cable", False)
     return Found([fault], signal.lost(here))
