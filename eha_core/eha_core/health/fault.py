@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from eha_core.health.noise import Flags
+from eha_core.recording import Channel
+from eha_core.recording.recording import FloatArray
 
 FORGOTTEN = 0.1
 """s after which coil and spool no longer tell what voltage they had: ten times the time constants of the paper's valve,
@@ -45,22 +45,29 @@ class Fault:
 
 @dataclass(frozen=True)
 class Found:
-    """What one check finds in a channel: its faults, and which of the channel's samples (n,) are not to be used."""
+    """What one check finds in a channel: its faults, which of the channel's samples (n,) are not to be used, and the
+    channel's values (n,) without the fault, where it can be undone."""
 
     faults: Sequence[Fault]
     lost: Flags
+    values: FloatArray | None = None
 
 
 @dataclass(frozen=True)
 class Health:
-    """The faults of a recording in the order of their channels, and the samples (n,) of each channel that are lost."""
+    """The faults of a recording in the order of their channels, the samples (n,) of each channel that are lost, and the
+    values (n,) of those whose fault could be undone."""
 
     faults: tuple[Fault, ...] = ()
     lost: Mapping[str, Flags] = field(default_factory=dict)
+    values: Mapping[str, FloatArray] = field(default_factory=dict)
 
-    def usable(self, channel: str, count: int) -> Flags:
-        """Which of a channel's samples can be used."""
-        return ~self.lost[channel] if channel in self.lost else np.ones(count, dtype=np.bool_)
+    def sound(self, channel: Channel) -> tuple[FloatArray, FloatArray]:
+        """The times and values of a channel that no fault spoils."""
+        values = self.values.get(channel.name, channel.values)
+        if channel.name not in self.lost:
+            return channel.time, values
+        return channel.time[~self.lost[channel.name]], values[~self.lost[channel.name]]
 
     def unknown_of(self, driving: Sequence[str], end: float) -> tuple[tuple[float, float], ...]:
         """The spans [s] up to `end` in which it is not known what drove a plant by these channels, each until the plant

@@ -79,8 +79,10 @@ def quantisation(values: Array) -> float:
     whole = np.round(steps / least)
     usual = (whole > 0.0) & (np.abs(steps / least - whole) < ON_GRID)
     step = float(np.sum(steps[usual])) / float(np.sum(whole[usual]))
-    levels = (values - np.median(values)) / step
-    off = np.abs(levels - np.round(levels))
+    levels = (values - values[0]) / step
+    # the grid's own place: the median of an even number of values, or any one of them, may lie between two levels
+    place = float(np.angle(np.mean(np.exp(2j * pi * levels)))) / (2.0 * pi)
+    off = np.abs(levels - place - np.round(levels - place))
     return step if float(np.mean(off < ON_GRID)) > SHARE_ON_GRID else 0.0
 
 

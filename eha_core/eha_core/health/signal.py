@@ -89,7 +89,7 @@ class Signal:
     @cached_property
     def is_noisy(self) -> bool:
         """Whether there is noise of a sensor in it, by which neighbours differ wherever the channel lives."""
-        sizes = [_by_differences(self.values, order) for order in (3, 5)]
+        sizes = [by_differences(self.values, order) for order in (3, 5)]
         if not sizes[1] > 1e-9 * float(np.max(np.abs(self.values))):
             return False
         white = SAME_SIZE[0] < sizes[0] / sizes[1] < SAME_SIZE[1]
@@ -125,7 +125,7 @@ class Signal:
         return starts, np.diff(np.concatenate([starts, [len(self.values)]]))
 
 
-def _by_differences(values: FloatArray, order: int) -> float:
+def by_differences(values: FloatArray, order: int) -> float:
     """Standard deviation that white noise of such differences would have."""
     pieces = np.array_split(np.diff(values, n=order), max(1, min(20, len(values) // 50)))
     return float(np.quantile([usual_size(piece) for piece in pieces if len(piece)] or [0.0], 0.35)) / sqrt(

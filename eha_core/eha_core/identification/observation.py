@@ -115,7 +115,7 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
         )
     drive, driving, not_examined = _choose_drive(where, channels, composition.source)
     health = examine(recording)
-    inputs = tuple(_sound(channels[name], health) for name in driving)
+    inputs = tuple(health.sound(channels[name]) for name in driving)
     undriven = _undriven(health, driving, recording.duration)
     remarks: list[str] = list(recording.remarks)
     measured = []
@@ -242,12 +242,6 @@ def _undriven(health: Health, driving: tuple[str, ...], duration: float) -> tupl
     return tuple((TICK * floor(begin / TICK), min(TICK * ceil(end / TICK), duration)) for begin, end in spans)
 
 
-def _sound(channel: Channel, health: Health) -> tuple[Array, Array]:
-    """The times and values of a channel that no fault spoils."""
-    usable = health.usable(channel.name, len(channel.time))
-    return channel.time[usable], channel.values[usable]
-
-
 def _measured(
     where: str,
     channel: Channel,
@@ -256,7 +250,7 @@ def _measured(
     undriven: tuple[tuple[float, float], ...],
     remarks: list[str],
 ) -> Measured:
-    time, values = _sound(channel, health)
+    time, values = health.sound(channel)
     known = np.ones(len(time), dtype=np.bool_)
     for begin, end in undriven:
         known &= (time < begin) | (time > end)

@@ -38,8 +38,11 @@ def find(signal: Signal) -> Found | None:
     filled = signal.values[starts]
     short = within & (lengths < CONSTANT)
     repeated = np.isin(filled, _more_than_once(filled[within]))
-    chosen = (within & (lengths >= CONSTANT)) | (short & repeated) | (begins & at_the_end)
-    if not chosen.any() or lengths[chosen].sum() > LONGEST * len(signal.values):
+    chosen = (within & (lengths >= CONSTANT)) | (short & repeated)
+    if lengths[chosen].sum() > LONGEST * len(signal.values):
+        return None
+    chosen |= begins & at_the_end
+    if not chosen.any():
         return None
     here = np.zeros(len(signal.values), dtype=np.bool_)
     faults = []

@@ -23,7 +23,7 @@ ALIKE = 0.05
 
 def find(signal: Signal) -> Found | None:
     """The stretches of straight lines."""
-    bend = np.abs(np.diff(signal.values, n=2))
+    bend = np.abs(np.diff(np.diff(signal.values) / np.diff(signal.time)))
     corners = np.flatnonzero(bend > STRAIGHT * float(np.quantile(bend, 0.99))) + 1
     here = np.zeros(len(signal.values), dtype=np.bool_)
     faults = []

@@ -14,6 +14,8 @@ from eha_core.recording.recording import FloatArray
 
 BESIDE = 4
 """Changes to either side of a leap that must be far smaller."""
+AT_AN_EDGE = 2
+"""Samples at the start and at the end that may be anything: a node's first message may be made before any sample."""
 ALONE = 0.25
 """Share of a leap that they may have."""
 
@@ -48,7 +50,7 @@ def leaps_of(signal: Signal) -> Integers:
         return np.zeros(0, dtype=np.int64)
     steps = np.abs(signal.steps)
     leaps = np.flatnonzero(steps > signal.jump)
-    chosen = [place for place in leaps if _is_alone(steps, place)]
+    chosen = [place for place in leaps if AT_AN_EDGE < place < len(steps) - AT_AN_EDGE and _is_alone(steps, place)]
     return np.array(chosen, dtype=np.int64)
 
 
