@@ -228,11 +228,6 @@ def _blocked(arrays: Arrays, chance: np.random.Generator) -> Made:
     return {**arrays, "position": (time, values[0] + noise * chance.standard_normal(len(values)))}, WHOLE
 
 
-def _in_bar(arrays: Arrays, chance: np.random.Generator) -> Made:
-    time, values = arrays["pressure_a"]
-    return {**arrays, "pressure_a": (time, 1e-5 * values - STANDARD_ATMOSPHERE)}, WHOLE
-
-
 EVERY = ("voltage_command", "position", "pressure_a", "pressure_b")
 VACUUM = -STANDARD_ATMOSPHERE
 FAULTS = (
@@ -257,10 +252,11 @@ FAULTS = (
     FaultKind("pressure drops to zero", ("dropped",), "pressure_b", _filled("pressure_b", VACUUM)),
     FaultKind("command drops to a fill value", ("dropped",), "voltage_command", _filled("voltage_command", -10.0)),
     FaultKind("pressure sensor dies", ("dropped", "frozen"), "pressure_a", _dies("pressure_a", VACUUM)),
-    FaultKind("position wraps", ("wrapped",), "position", _wrapped),
+    FaultKind("position wraps", ("wrapped", "jump"), "position", _wrapped),
     FaultKind("zero of the position leaps", ("jump",), "position", _leaps(_by_a_quarter, "position")),
     FaultKind("position turns to mm", ("jump",), "position", _leaps(_times(1e3), "position")),
-    FaultKind("pressure turns to kPa", ("jump",), "pressure_a", _leaps(_times(1e-3, STANDARD_ATMOSPHERE), "pressure_a")),
+    FaultKind("pressure turns to kPa", ("jump",), "pressure_a",
+              _leaps(_times(1e-3, STANDARD_ATMOSPHERE), "pressure_a")),
     FaultKind("scale of a pressure leaps by 2", ("jump",), "pressure_b", _leaps(_times(2.0), "pressure_b")),
     FaultKind("spikes in the position", ("spikes",), "position", _spikes("position")),
     FaultKind("spikes in a pressure", ("spikes",), "pressure_a", _spikes("pressure_a")),
@@ -271,7 +267,6 @@ FAULTS = (
     FaultKind("pressure disturbed", ("noisy",), "pressure_b", _noisy("pressure_b")),
     FaultKind("log of 20 Hz", ("too_slow",), "voltage_command", _slow(20.0)),
     FaultKind("piston that does not move", ("still",), "position", _blocked),
-    FaultKind("a pressure in bar", ("off_scale",), "pressure_a", _in_bar),
 )  # fmt: skip
 """Faults that arise while a recording is made or exported, each in one channel."""
 

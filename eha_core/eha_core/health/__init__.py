@@ -2,6 +2,7 @@
 
 from eha_core.health.examine import examine
 from eha_core.health.fault import Fault, Health
+from eha_core.health.rate import too_slow
 from eha_core.health.words import in_words
 
-__all__ = ["Fault", "Health", "examine", "in_words"]
+__all__ = ["Fault", "Health", "examine", "in_words", "too_slow"]

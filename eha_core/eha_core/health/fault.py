@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from eha_core.health.noise import Flags
-from eha_core.recording import Channel
+from eha_core.recording import Channel, Recording
 from eha_core.recording.recording import FloatArray
 
 FORGOTTEN = 0.1
@@ -69,6 +69,14 @@ class Health:
             return channel.time, values
         return channel.time[~self.lost[channel.name]], values[~self.lost[channel.name]]
 
+    def without_faults(self, recording: Recording) -> Recording:
+        """The recording with what no fault spoils of each channel."""
+        channels = {}
+        for name, channel in recording.channels.items():
+            time, values = self.sound(channel)
+            channels[name] = replace(channel, time=time, values=values)
+        return replace(recording, channels=channels)
+
     def unknown_of(self, driving: Sequence[str], end: float) -> tuple[tuple[float, float], ...]:
         """The spans [s] up to `end` in which it is not known what drove a plant by these channels, each until the plant
         has FORGOTTEN; in their order, none of them meeting another."""
@@ -80,8 +88,3 @@ class Health:
             else:
                 spans.append((start, stop))
         return tuple(spans)
-
-    @property
-    def refused(self) -> Fault | None:
-        """The first fault with which the recording cannot be diagnosed."""
-        return next((fault for fault in self.faults if fault.refuses), None)

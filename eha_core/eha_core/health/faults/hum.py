@@ -38,7 +38,8 @@ def find(signal: Signal) -> Found | None:
         inside = away < OFF
         if mains > HIGHEST / signal.period or not len(beside):
             continue
-        if np.max(power[inside]) > FAR * np.median(beside) / np.log(2.0) and np.max(power[inside]) > 2.0 * np.max(beside):
+        highest = float(np.max(power[inside]))
+        if highest > FAR * np.median(beside) / np.log(2.0) and highest > 2.0 * np.max(beside):
             return _without(signal, float(frequency[inside][np.argmax(power[inside])]))
     return None
 

@@ -17,6 +17,8 @@ STRAIGHT = 0.02
 digits."""
 SLOWEST = 0.1
 """s from one corner to the next; straight lines that are longer may be a reference of ramps (assumed)."""
+LOST = 0.01
+"""s from one corner of a command to the next from which on a valve answers to what is lost between (assumed)."""
 ALIKE = 0.05
 """Spread of the corners, over their mean, below which they are a triangle's."""
 
@@ -39,7 +41,7 @@ def find(signal: Signal) -> Found | None:
             Fault(
                 signal.name, "interpolated", float(signal.time[begin]), float(signal.time[end]),
                 f"interpolated from {rate:.3g} Hz", "export it as it was recorded, without resampling", False,
-                signal.is_command,
+                signal.is_command and interval * signal.period > LOST,
             )
         )  # fmt: skip
     if not faults:

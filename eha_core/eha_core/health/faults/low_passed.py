@@ -12,14 +12,17 @@ import numpy as np
 
 from eha_core.health.fault import Fault, Found
 from eha_core.health.signal import Signal
-from eha_core.health.spectrum import spectrum
+from eha_core.health.spectrum import INDEPENDENT, spectrum
 
-FALLS = 0.9
-"""Power in the highest quarter of the spectrum over that in the next, from which on it falls."""
-MUCH = 0.55
-"""The same over that in the second lowest quarter."""
-SURE = 5.0
-"""Standard deviations by which it must fall: 3e-7 of sound channels."""
+FALLS = 0.87
+"""Power in the highest quarter of the spectrum over that in the next, up to which it falls: 0.72 behind a filter of a
+tenth of the highest frequency and less."""
+SURE = 3.0
+"""Standard deviations by which it must fall; that, and MUCH in the quarter below, no white noise does."""
+STEEP = 1.9
+"""Power at the start of the third quarter over that at its end: 1.5 behind such a filter. More is motion that ends."""
+MUCH = (0.1, 0.5)
+"""The power in the highest quarter over that in the second lowest: 0.3 behind such a filter. Less is motion."""
 
 
 def find(signal: Signal) -> Found | None:
@@ -30,9 +33,9 @@ def find(signal: Signal) -> Found | None:
     share = frequency * signal.period * 2.0
     quarters = [power[(share > low) & (share <= low + 0.24)] for low in (0.26, 0.5, 0.74)]
     second, third, fourth = (float(np.mean(part)) for part in quarters)
-    # a Hanning window has two thirds of the lines' independence
-    limit = 1.0 - SURE * np.sqrt(2.0 / (0.5 * len(quarters[2])))
-    if fourth / third > min(FALLS, limit) or fourth / second > MUCH:
+    begins, ends = (float(np.mean(power[(share > low) & (share <= low + 0.06)])) for low in (0.5, 0.68))
+    limit = 1.0 - SURE * np.sqrt(2.0 / (INDEPENDENT * len(quarters[2])))
+    if fourth / third > min(FALLS, limit) or not MUCH[0] < fourth / second < MUCH[1] or begins > STEEP * ends:
         return None
     corner = _corner(fourth / second, signal.period)
     fault = Fault(

@@ -40,10 +40,11 @@ def find(signal: Signal) -> Found | None:
         places = np.flatnonzero(rough)
         begin, end = begin + places[0], begin + places[-1] + 2
         here[begin : end + 1] = True
+        times = float(np.max(sizes[first : last + 1]) / np.median(sizes))
         faults.append(
             Fault(
                 signal.name, "noisy", float(signal.time[begin]), float(signal.time[min(end, len(here) - 1)]),
-                f"disturbed: its noise is {float(np.max(sizes[first : last + 1]) / np.median(sizes)):.2g} times the usual",
+                f"disturbed: its noise is {times:.2g} times the usual",
                 "see what disturbs the cable",
             )
         )  # fmt: skip

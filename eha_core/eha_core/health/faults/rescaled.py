@@ -1,8 +1,8 @@
 """A channel whose scale leaps: an amplifier that switches its range, a unit that changes, and the noise with it.
 
-The noise of a sensor is of one size as long as the sensor is the same. Where that of every block before a moment is
-less than half, or more than twice, that of every block after it, the scale is another one. Motion can only make single
-blocks noisier.
+The noise of a sensor is of one size as long as the sensor is the same. Where the blocks before a moment have less of it,
+or more, than those after it, and it is white on both sides, the scale is another one. Motion makes a channel rough, too,
+but smoothly so.
 """
 
 from __future__ import annotations
@@ -11,13 +11,17 @@ import numpy as np
 
 from eha_core.health.fault import Fault, Found
 from eha_core.health.faults.blocks import noise_by_block
-from eha_core.health.signal import Signal
+from eha_core.health.noise import Integers
+from eha_core.health.signal import SAME_SIZE, Signal, by_differences
+from eha_core.recording.recording import FloatArray
 
-APART = 1.5
-"""Times the noise of one side that the other's must be, its smallest fifth and the first side's largest taken."""
+APART = 1.6
+"""Times the noise of one side that the other's must be."""
+CLEAR = 1.2
+"""Times the larger quarter of one side's blocks that the smaller quarter of the other's must be."""
 FEWEST = 4
-"""Blocks on either side: of noise that only scatters they lie apart by chance once in 1e6 recordings, as a block's noise
-is known to a tenth."""
+"""Blocks on either side. A block's noise is known to an eighth, so that by chance the medians of four and of all others
+differ by a sixth; by as much as APART in fewer than one recording in a million."""
 
 
 def find(signal: Signal) -> Found | None:
@@ -29,12 +33,15 @@ def find(signal: Signal) -> Found | None:
     for split in range(FEWEST, len(sizes) - FEWEST + 1):
         before, after = sizes[:split], sizes[split:]
         low, high = (before, after) if np.median(before) < np.median(after) else (after, before)
-        ratio = float(np.quantile(high, 0.1) / max(np.quantile(low, 0.9), 1e-300))
-        if ratio > best[0] * 1.02:
+        ratio = float(np.median(high) / max(np.median(low), 1e-300))
+        clear = np.quantile(high, 0.25) > CLEAR * np.quantile(low, 0.75)
+        if ratio > best[0] and clear:
             best = (ratio, split)
     if not best[1]:
         return None
     moment = _moment(signal, edges, best[1])
+    if not all(_is_white(part) for part in (signal.values[:moment], signal.values[moment:])):
+        return None
     here = np.zeros(len(signal.values), dtype=np.bool_)
     shorter = slice(0, moment) if moment < len(here) / 2 else slice(moment, len(here))
     here[shorter] = True
@@ -47,7 +54,12 @@ def find(signal: Signal) -> Found | None:
     return Found([fault], signal.lost(here))
 
 
-def _moment(signal: Signal, edges: np.ndarray, split: int) -> int:
+def _is_white(values: FloatArray) -> bool:
+    third, fifth = (by_differences(values, order) for order in (3, 5))
+    return SAME_SIZE[0] < third / max(fifth, 1e-300) < SAME_SIZE[1]
+
+
+def _moment(signal: Signal, edges: Integers, split: int) -> int:
     """The sample at which the scale leaps: that of the largest change near the blocks' edge."""
     first, last = edges[max(0, split - 1)], edges[min(len(edges) - 1, split + 1)]
     return int(first + np.argmax(np.abs(signal.steps[first : last - 1]))) + 1
