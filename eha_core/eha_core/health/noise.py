@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import comb, e, pi, sqrt
 
 import numpy as np
@@ -35,8 +36,8 @@ def estimate_noise(values: Array, order: int = 4, blocks: int = 20) -> float:
     """
     differences = np.diff(values, n=order)
     pieces = np.array_split(differences, max(1, min(blocks, len(differences) // 50)))
-    deviations = [usual_size(piece) / sqrt(comb(2 * order, order)) for piece in pieces if len(piece)]
-    estimate = float(np.quantile(deviations, 0.35)) if deviations else 0.0
+    deviations = usual_sizes([piece for piece in pieces if len(piece)]) / sqrt(comb(2 * order, order))
+    estimate = float(np.quantile(deviations, 0.35)) if len(deviations) else 0.0
     return max(estimate, quantisation(values) / sqrt(12.0), 1e-12 * float(np.max(np.abs(values)) or 1.0))
 
 
@@ -52,15 +53,28 @@ def usual_size(values: Array) -> float:
     section 5.2). The median is as robust, but of values on a grid it is one of the grid's: 9 % off where the noise is
     two steps of an analogue-digital converter.
     """
-    square = values**2
-    variance = float(np.median(square)) / NORMAL_MEDIAN**2
+    return float(usual_sizes([values])[0])
+
+
+def usual_sizes(pieces: Sequence[Array]) -> Array:
+    """`usual_size` of each piece, all of them at once."""
+    if not pieces:
+        return np.zeros(0)
+    counts = np.array([len(piece) for piece in pieces])
+    square = np.zeros((len(pieces), int(counts.max())))
+    for row, piece in zip(square, pieces, strict=True):
+        row[: len(piece)] = piece**2
+    variance = np.array([np.median(row[:count]) for row, count in zip(square, counts, strict=True)]) / NORMAL_MEDIAN**2
+    # a piece that is zero more often than not has no size
+    going_on = np.flatnonzero(variance > 0.0)
     for _ in range(50):
-        if not variance > 0.0:
+        if not len(going_on):
             break
-        before, variance = variance, variance * float(np.mean(np.minimum(square / variance, 1.0))) / NORMAL_MINIMUM
-        if abs(variance / before - 1.0) < 1e-6:
-            break
-    return sqrt(variance)
+        before = variance[going_on]
+        within = np.minimum(square[going_on] / before[:, None], 1.0).sum(axis=1) / counts[going_on]
+        variance[going_on] = before * within / NORMAL_MINIMUM
+        going_on = going_on[np.abs(variance[going_on] / before - 1.0) >= 1e-6]
+    return np.sqrt(variance)
 
 
 def quantisation(values: Array) -> float:

@@ -8,7 +8,7 @@ from math import comb, erf, sqrt
 
 import numpy as np
 
-from eha_core.health.noise import Flags, Integers, estimate_noise, quantisation, usual_size
+from eha_core.health.noise import Flags, Integers, estimate_noise, quantisation, usual_sizes
 from eha_core.recording import Channel
 from eha_core.recording.recording import FloatArray
 
@@ -128,9 +128,8 @@ class Signal:
 def by_differences(values: FloatArray, order: int) -> float:
     """Standard deviation that white noise of such differences would have."""
     pieces = np.array_split(np.diff(values, n=order), max(1, min(20, len(values) // 50)))
-    return float(np.quantile([usual_size(piece) for piece in pieces if len(piece)] or [0.0], 0.35)) / sqrt(
-        comb(2 * order, order)
-    )
+    sizes = usual_sizes([piece for piece in pieces if len(piece)])
+    return float(np.quantile(sizes, 0.35)) / sqrt(comb(2 * order, order)) if len(sizes) else 0.0
 
 
 def covered(flags: Flags) -> list[tuple[int, int]]:

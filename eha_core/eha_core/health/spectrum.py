@@ -20,15 +20,26 @@ GAP = 2.5
 
 
 def spectrum(signal: Signal) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [Hz] and the periodogram there [unit^2] of the longest stretch without a gap, as even as white noise is.
+    """Frequencies [Hz] and the periodogram [unit^2], as even as white noise is, of the longest stretch without a gap.
 
     Samples whose stamps scatter are taken as evenly spaced: between them interpolated, their noise would not be white.
     """
     edges = np.concatenate([[0], np.flatnonzero(np.diff(signal.time) > GAP * signal.period) + 1, [len(signal.time)]])
     longest = int(np.argmax(np.diff(edges)))
-    rough = np.diff(signal.values[edges[longest] : edges[longest + 1]], n=ORDER)
+    return _periodogram(np.diff(signal.values[edges[longest] : edges[longest + 1]], n=ORDER), signal.period)
+
+
+def with_gaps(signal: Signal) -> tuple[FloatArray, FloatArray]:
+    """The same of all samples: its lines are as narrow as the recording is long, what lies between them is less even."""
+    places = np.round((signal.time - signal.time[0]) / signal.period).astype(np.int64)
+    values = np.full(places[-1] + 1, np.nan)
+    values[places] = signal.values
+    return _periodogram(np.nan_to_num(np.diff(values, n=ORDER)), signal.period)
+
+
+def _periodogram(rough: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:
     rough = rough * tukey(len(rough), TAPERED)
     power = np.abs(np.fft.rfft(rough)) ** 2 / len(rough)
-    frequency = np.fft.rfftfreq(len(rough), signal.period)
-    passed = (2.0 * np.sin(np.pi * frequency * signal.period)) ** (2 * ORDER)
-    return frequency, power / np.maximum(passed, 1e-300)
+    frequency = np.fft.rfftfreq(len(rough), period)
+    passed = (2.0 * np.sin(np.pi * frequency * period)) ** (2 * ORDER)
+    return frequency[1:], power[1:] / passed[1:]

@@ -89,7 +89,8 @@ def pressure_units(recording: Recording, nominal: Mapping[str, float]) -> Iterat
             yield Suspect(mistake, {name: rescaled(recording, name, factor) for name in names})
     for unit in ABOVE_THE_ATMOSPHERE:
         for names in choices if there else ():
-            mistake = f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} the atmosphere in Pa added to {unit}"
+            have = "has" if len(names) == 1 else "have"
+            mistake = f"{' and '.join(names)} {have} the atmosphere in Pa added to {unit}"
             yield Suspect(mistake, {name: _above_atmosphere(recording, name, PRESSURE_UNITS[unit]) for name in names})
 
 

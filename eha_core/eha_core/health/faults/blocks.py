@@ -6,7 +6,7 @@ from math import comb, sqrt
 
 import numpy as np
 
-from eha_core.health.noise import Integers, usual_size
+from eha_core.health.noise import Integers, usual_sizes
 from eha_core.health.signal import Signal
 from eha_core.recording.recording import FloatArray
 
@@ -22,5 +22,4 @@ def noise_by_block(signal: Signal) -> tuple[Integers, FloatArray]:
     count = max(1, len(signal.values) // length)
     edges = np.linspace(0, len(signal.values), count + 1).astype(np.int64)
     rough = np.diff(signal.values, n=ORDER) / sqrt(comb(2 * ORDER, ORDER))
-    sizes = [usual_size(rough[first : last - ORDER]) for first, last in zip(edges[:-1], edges[1:], strict=True)]
-    return edges, np.array(sizes)
+    return edges, usual_sizes([rough[first : last - ORDER] for first, last in zip(edges[:-1], edges[1:], strict=True)])

@@ -11,7 +11,7 @@ import numpy as np
 
 from eha_core.health.fault import Fault, Found
 from eha_core.health.signal import Signal
-from eha_core.health.spectrum import spectrum
+from eha_core.health.spectrum import with_gaps
 
 MAINS = (50.0, 60.0)
 """Hz."""
@@ -29,8 +29,8 @@ def find(signal: Signal) -> Found | None:
     """The line, if there is one."""
     if signal.is_command or not signal.is_noisy:
         return None
-    frequency, power = spectrum(signal)
-    if frequency[1] > OFF:
+    frequency, power = with_gaps(signal)
+    if frequency[0] > OFF:
         return None
     for mains in MAINS:
         away = np.abs(frequency - mains)
@@ -48,13 +48,14 @@ def _without(signal: Signal, frequency: float) -> Found:
     """The channel less a sine of about this frequency, fitted to its differences."""
     best = None
     rough = np.diff(signal.values, n=2)
-    for candidate in frequency + np.linspace(-1.0, 1.0, 21) / (signal.time[-1] - signal.time[0]):
+    for candidate in frequency + np.linspace(-0.5, 0.5, 11) / (signal.time[-1] - signal.time[0]):
         phase = 2.0 * np.pi * candidate * signal.time
         waves = np.stack([np.cos(phase), np.sin(phase)], axis=1)
         columns = np.diff(waves, n=2, axis=0)
-        found, rest, *_ = np.linalg.lstsq(columns, rough, rcond=None)
-        if best is None or rest[0] < best[0]:
-            best = (float(rest[0]), float(candidate), found, waves @ found)
+        found = np.linalg.solve(columns.T @ columns, columns.T @ rough)
+        rest = float(np.sum((rough - columns @ found) ** 2))
+        if best is None or rest < best[0]:
+            best = (rest, float(candidate), found, waves @ found)
     assert best is not None
     size = float(np.hypot(*best[2]))
     fault = Fault(

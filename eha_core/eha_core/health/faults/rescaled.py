@@ -1,8 +1,8 @@
 """A channel whose scale leaps: an amplifier that switches its range, a unit that changes, and the noise with it.
 
-The noise of a sensor is of one size as long as the sensor is the same. Where the blocks before a moment have less of it,
-or more, than those after it, and it is white on both sides, the scale is another one. Motion makes a channel rough, too,
-but smoothly so.
+The noise of a sensor is of one size as long as the sensor is the same. Where the blocks before a moment have less of
+it, or more, than those after it, and it is white on both sides, the scale is another one. Motion makes a channel rough,
+too, but smoothly so.
 """
 
 from __future__ import annotations
@@ -34,8 +34,7 @@ def find(signal: Signal) -> Found | None:
         before, after = sizes[:split], sizes[split:]
         low, high = (before, after) if np.median(before) < np.median(after) else (after, before)
         ratio = float(np.median(high) / max(np.median(low), 1e-300))
-        clear = np.quantile(high, 0.25) > CLEAR * np.quantile(low, 0.75)
-        if ratio > best[0] and clear:
+        if ratio > best[0] and np.quantile(high, 0.25) > CLEAR * np.quantile(low, 0.75):
             best = (ratio, split)
     if not best[1]:
         return None
