@@ -5,12 +5,14 @@ Each kind is made clearly, at twice or more of what can be detected, in recordin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.signal import lfilter
 
+from eha_core.health import Fault
+from eha_core.health.noise import Flags
 from eha_core.recording.reader import STANDARD_ATMOSPHERE
 from eha_core.recording.recording import FloatArray
 from tools.hostile.wrong_recordings import Arrays
@@ -20,6 +22,10 @@ Made = tuple[Arrays, tuple[Span, ...]]
 Make = Callable[[Arrays, np.random.Generator], Made]
 WHOLE: tuple[Span, ...] = ()
 """In place of spans: the fault is in all of the channel."""
+
+
+OVERLAP = 0.5
+"""Share of the time of either span that both have, from which on the span is right."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +43,7 @@ def _span(time: FloatArray, chance: np.random.Generator, length: float) -> Span:
     return start, start + min(length, 0.3 * float(time[-1]))
 
 
-def _within(time: FloatArray, span: Span) -> np.ndarray:
+def _within(time: FloatArray, span: Span) -> Flags:
     return (time >= span[0]) & (time <= span[1])
 
 
@@ -126,7 +132,7 @@ def _clipped(name: str, share: float) -> Make:
     return make
 
 
-def _spans_of(time: FloatArray, flags: np.ndarray) -> tuple[Span, ...]:
+def _spans_of(time: FloatArray, flags: Flags) -> tuple[Span, ...]:
     places = np.flatnonzero(flags)
     pieces = np.split(places, np.flatnonzero(np.diff(time[places]) > 0.05) + 1)
     return tuple((float(time[piece[0]]), float(time[piece[-1]])) for piece in pieces if len(piece))
@@ -286,6 +292,12 @@ def faulty(kind: FaultKind, arrays: Mapping[str, tuple[FloatArray, FloatArray]],
     return kind.make(arrays, np.random.default_rng([seed, FAULTS.index(kind)]))
 
 
-def each_fault() -> Iterator[FaultKind]:
-    """Every kind."""
-    yield from FAULTS
+def verdict(kind: FaultKind, faults: Sequence[Fault], spans: tuple[Span, ...], time: FloatArray) -> str:
+    """What came of a recording with a fault: whether it was found, with its channel and span."""
+    own = [fault for fault in faults if fault.channel == kind.channel]
+    named = [fault for fault in own if fault.fault in kind.told]
+    if not named:
+        return f"told as {own[0].fault}" if own else "not told"
+    if spans and overlap(tuple(fault.span for fault in named), spans, time) < OVERLAP:
+        return "found, with another span"
+    return "found"

@@ -9,6 +9,7 @@ import numpy as np
 from eha_core.health.fault import Fault
 from eha_core.plant import Composition
 from eha_core.recording import Recording
+from eha_core.recording.recording import FloatArray
 
 COMMAND = "voltage_command"
 
@@ -35,6 +36,6 @@ def too_slow(recording: Recording, nominal: Mapping[str, float], composition: Co
     return (fault,)
 
 
-def _is_made_of_steps(values: np.ndarray) -> bool:
+def _is_made_of_steps(values: FloatArray) -> bool:
     """Whether a command rests most of the time: then each message is a change, however seldom they come."""
     return bool(np.mean(np.diff(values) == 0.0) > 0.5)

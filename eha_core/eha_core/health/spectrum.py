@@ -30,7 +30,7 @@ def spectrum(signal: Signal) -> tuple[FloatArray, FloatArray]:
 
 
 def with_gaps(signal: Signal) -> tuple[FloatArray, FloatArray]:
-    """The same of all samples: its lines are as narrow as the recording is long, what lies between them is less even."""
+    """The same of all samples: its lines are as narrow as the recording is long, what lies between is less even."""
     places = np.round((signal.time - signal.time[0]) / signal.period).astype(np.int64)
     values = np.full(places[-1] + 1, np.nan)
     values[places] = signal.values
@@ -39,7 +39,7 @@ def with_gaps(signal: Signal) -> tuple[FloatArray, FloatArray]:
 
 def _periodogram(rough: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:
     rough = rough * tukey(len(rough), TAPERED)
-    power = np.abs(np.fft.rfft(rough)) ** 2 / len(rough)
-    frequency = np.fft.rfftfreq(len(rough), period)
+    power = np.asarray(np.abs(np.fft.rfft(rough)) ** 2 / len(rough), dtype=np.float64)
+    frequency = np.asarray(np.fft.rfftfreq(len(rough), period), dtype=np.float64)
     passed = (2.0 * np.sin(np.pi * frequency * period)) ** (2 * ORDER)
     return frequency[1:], power[1:] / passed[1:]

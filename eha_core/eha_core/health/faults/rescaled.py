@@ -29,16 +29,10 @@ def find(signal: Signal) -> Found | None:
     if signal.is_command or not signal.is_noisy:
         return None
     edges, sizes = noise_by_block(signal)
-    best = (APART, 0)
-    for split in range(FEWEST, len(sizes) - FEWEST + 1):
-        before, after = sizes[:split], sizes[split:]
-        low, high = (before, after) if np.median(before) < np.median(after) else (after, before)
-        ratio = float(np.median(high) / max(np.median(low), 1e-300))
-        if ratio > best[0] and np.quantile(high, 0.25) > CLEAR * np.quantile(low, 0.75):
-            best = (ratio, split)
-    if not best[1]:
+    split, times = _split(sizes)
+    if not split:
         return None
-    moment = _moment(signal, edges, best[1])
+    moment = _moment(signal, edges, split)
     if not all(_is_white(part) for part in (signal.values[:moment], signal.values[moment:])):
         return None
     here = np.zeros(len(signal.values), dtype=np.bool_)
@@ -47,10 +41,22 @@ def find(signal: Signal) -> Found | None:
     inside = signal.time[shorter]
     fault = Fault(
         signal.name, "jump", float(inside[0]), float(inside[-1]),
-        f"its scale is another one there: its noise is {best[0]:.2g} times as large or as small",
+        f"its scale is another one there: its noise is {times:.2g} times as large or as small",
         "see what changed the sensor's range or unit",
     )  # fmt: skip
     return Found([fault], signal.lost(here))
+
+
+def _split(sizes: FloatArray) -> tuple[int, float]:
+    """Before which block the noise becomes another, and how many times as large or as small; 0 where it does not."""
+    best, times = 0, APART
+    for split in range(FEWEST, len(sizes) - FEWEST + 1):
+        sides = (sizes[:split], sizes[split:])
+        low, high = sides if np.median(sides[0]) < np.median(sides[1]) else sides[::-1]
+        ratio = float(np.median(high)) / max(float(np.median(low)), 1e-300)
+        if ratio > times and float(np.quantile(high, 0.25)) > CLEAR * float(np.quantile(low, 0.75)):
+            best, times = split, ratio
+    return best, times
 
 
 def _is_white(values: FloatArray) -> bool:
