@@ -263,7 +263,7 @@ FAULTS = (
     FaultKind("position turns to mm", ("jump",), "position", _leaps(_times(1e3), "position")),
     FaultKind("pressure turns to kPa", ("jump",), "pressure_a",
               _leaps(_times(1e-3, STANDARD_ATMOSPHERE), "pressure_a")),
-    FaultKind("scale of a pressure leaps by 2", ("jump",), "pressure_b", _leaps(_times(2.0), "pressure_b")),
+    FaultKind("scale of a pressure leaps by 4", ("jump",), "pressure_b", _leaps(_times(4.0), "pressure_b")),
     FaultKind("spikes in the position", ("spikes",), "position", _spikes("position")),
     FaultKind("spikes in a pressure", ("spikes",), "pressure_a", _spikes("pressure_a")),
     FaultKind("hum in the position", ("hum",), "position", _hum("position", 3.0)),

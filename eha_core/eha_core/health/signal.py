@@ -119,6 +119,12 @@ class Signal:
         return max(3.0 * usual, 12.0 * self.noise, 5.0 * self.step)
 
     @cached_property
+    def extent(self) -> float:
+        """How far its values usually lie apart: from the lowest hundredth to the highest."""
+        low, high = np.quantile(self.values, (0.01, 0.99))
+        return float(high - low)
+
+    @cached_property
     def runs(self) -> tuple[Integers, Integers]:
         """The first sample and the length of each run of one value."""
         starts = np.concatenate([[0], np.flatnonzero(np.diff(self.values) != 0.0) + 1])

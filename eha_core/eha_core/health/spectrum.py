@@ -11,35 +11,38 @@ from eha_core.recording.recording import FloatArray
 ORDER = 2
 """Of the differences that are taken first and undone in the spectrum: the motion, thousands of times the noise, would
 leak into every frequency."""
-TAPERED = 0.2
-"""Share of the stretch over which it begins and ends."""
-INDEPENDENT = 0.9
-"""Share of the lines that are independent after that."""
 GAP = 2.5
 """Periods from one sample to the next from which on one is missing between them."""
+TAPERED = 0.2
+"""Share of the recording over which it begins and ends."""
+SEGMENT = 64
+"""Samples of a segment: short against the time between two reversals of the piston."""
 
 
-def spectrum(signal: Signal) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [Hz] and the periodogram [unit^2], as even as white noise is, of the longest stretch without a gap.
+def usual_spectrum(signal: Signal) -> tuple[FloatArray, FloatArray, int]:
+    """Frequencies as shares of the highest one, the power there [unit^2], as even as white noise is, and of how many
+    segments it is the median: what is rough for moments, as where friction lets go, has no part in it.
 
     Samples whose stamps scatter are taken as evenly spaced: between them interpolated, their noise would not be white.
     """
-    edges = np.concatenate([[0], np.flatnonzero(np.diff(signal.time) > GAP * signal.period) + 1, [len(signal.time)]])
-    longest = int(np.argmax(np.diff(edges)))
-    return _periodogram(np.diff(signal.values[edges[longest] : edges[longest + 1]], n=ORDER), signal.period)
+    whole = np.concatenate([[0], np.cumsum(np.diff(signal.time) > GAP * signal.period)])
+    starts = np.arange(0, len(signal.values) - SEGMENT + 1, SEGMENT // 2)
+    starts = starts[whole[starts] == whole[starts + SEGMENT - 1]]
+    segments = signal.values[starts[:, None] + np.arange(SEGMENT)]
+    rough = np.diff(segments, n=ORDER, axis=1) * np.hanning(SEGMENT - ORDER)
+    share = np.arange(1, (SEGMENT - ORDER) // 2 + 1) / ((SEGMENT - ORDER) / 2.0)
+    power = np.abs(np.fft.rfft(rough, axis=1)[:, 1:]) ** 2 / (2.0 * np.sin(0.5 * np.pi * share)) ** (2 * ORDER)
+    return share, power, len(starts)
 
 
-def with_gaps(signal: Signal) -> tuple[FloatArray, FloatArray]:
-    """The same of all samples: its lines are as narrow as the recording is long, what lies between is less even."""
+def lines(signal: Signal) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and the periodogram [unit^2]: lines as narrow as the recording is long; gaps are bridged."""
     places = np.round((signal.time - signal.time[0]) / signal.period).astype(np.int64)
     values = np.full(places[-1] + 1, np.nan)
     values[places] = signal.values
-    return _periodogram(np.nan_to_num(np.diff(values, n=ORDER)), signal.period)
-
-
-def _periodogram(rough: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:
+    rough = np.nan_to_num(np.diff(values, n=ORDER))
     rough = rough * tukey(len(rough), TAPERED)
     power = np.asarray(np.abs(np.fft.rfft(rough)) ** 2 / len(rough), dtype=np.float64)
-    frequency = np.asarray(np.fft.rfftfreq(len(rough), period), dtype=np.float64)
-    passed = (2.0 * np.sin(np.pi * frequency * period)) ** (2 * ORDER)
+    frequency = np.asarray(np.fft.rfftfreq(len(rough), signal.period), dtype=np.float64)
+    passed = (2.0 * np.sin(np.pi * frequency * signal.period)) ** (2 * ORDER)
     return frequency[1:], power[1:] / passed[1:]

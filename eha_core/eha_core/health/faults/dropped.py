@@ -17,6 +17,8 @@ CONSTANT = 3
 """Samples of one value after a leap that make it a fill value; of two such values that are the same, one is enough."""
 AT_THE_END = 10
 """Samples of one value from a leap to the recording's end."""
+FAR = 0.25
+"""Of the channel's extent that a leap to a fill value is at least; a pressure rings by less within a sample."""
 LONGEST = 0.25
 """Share of the channel that may be filled: more, and it is the rest that is wrong."""
 OF_STEPS = 0.2
@@ -32,7 +34,8 @@ def find(signal: Signal) -> Found | None:
     last = len(signal.values) - 1
     ends = starts + lengths - 1
     leaps = np.concatenate([[0.0], steps, [np.inf]])  # before each sample, and after the last
-    begins, returns = leaps[starts] > signal.jump, leaps[ends + 1] > signal.jump
+    far = max(signal.jump, FAR * signal.extent)
+    begins, returns = leaps[starts] > far, leaps[ends + 1] > far
     at_the_end = (ends == last) & (lengths >= AT_THE_END)
     within = begins & returns & (ends < last)
     filled = signal.values[starts]

@@ -11,7 +11,7 @@ import numpy as np
 
 from eha_core.health.fault import Fault, Found
 from eha_core.health.signal import Signal
-from eha_core.health.spectrum import with_gaps
+from eha_core.health.spectrum import lines
 
 MAINS = (50.0, 60.0)
 """Hz."""
@@ -29,7 +29,7 @@ def find(signal: Signal) -> Found | None:
     """The line, if there is one."""
     if signal.is_command or not signal.is_noisy:
         return None
-    frequency, power = with_gaps(signal)
+    frequency, power = lines(signal)
     if frequency[0] > OFF:
         return None
     for mains in MAINS:

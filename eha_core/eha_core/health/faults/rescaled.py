@@ -15,7 +15,7 @@ from eha_core.health.noise import Integers
 from eha_core.health.signal import SAME_SIZE, Signal, by_differences
 from eha_core.recording.recording import FloatArray
 
-APART = 1.6
+APART = 2.0
 """Times the noise of one side that the other's must be."""
 CLEAR = 1.2
 """Times the larger quarter of one side's blocks that the smaller quarter of the other's must be."""
