@@ -19,6 +19,8 @@ SAME_SIZE = (0.6, 1.7)
 smooth signal without noise 5 and more, since each difference takes more of it away."""
 COARSE = 0.5
 """Noise over the quantisation step from which on two samples of a channel at rest are often on different levels."""
+RARE, FEW = 0.005, 16
+"""Share of a channel's changes, and so many of them at least, that may be a fault's and no usual ones."""
 FALSE_ALARMS = 1e-6
 """Probability with which a check may find a fault in a sound channel."""
 
@@ -115,7 +117,8 @@ class Signal:
     @cached_property
     def jump(self) -> float:
         """A change from one sample to the next that is far larger than noise and the usual motion."""
-        usual = float(np.quantile(np.abs(self.steps), 0.995)) if len(self.steps) else 0.0
+        rare = max(RARE, FEW / max(len(self.steps), 1))
+        usual = float(np.quantile(np.abs(self.steps), max(0.0, 1.0 - rare))) if len(self.steps) else 0.0
         return max(3.0 * usual, 12.0 * self.noise, 5.0 * self.step)
 
     @cached_property

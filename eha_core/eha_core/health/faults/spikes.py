@@ -12,6 +12,10 @@ from eha_core.health.signal import Signal
 
 FAR = 25.0
 """Times the noise (bags/rig_coulomb_friction.mcap has samples at 11, and nothing is wrong with its sensors)."""
+STEPS = 5.0
+"""Quantisation steps of a channel that is at rest between two levels."""
+BESIDE = 8.0
+"""Times what is usual nearby."""
 OF_EXTENT = 0.15
 """Of the channel's extent that a spike is at least: a pressure that is sampled slowly may have less in one sample."""
 
@@ -20,7 +24,8 @@ def find(signal: Signal) -> Found | None:
     """The lone samples, as one fault from the first to the last."""
     if signal.is_command:
         return None
-    here = find_outliers(signal.values, max(signal.noise, OF_EXTENT * signal.extent / FAR), FAR)
+    least = max(FAR * signal.noise, STEPS * signal.step, OF_EXTENT * signal.extent)
+    here = find_outliers(signal.values, least / BESIDE, BESIDE)
     if not here.any():
         return None
     when, count = signal.time[here], int(here.sum())
