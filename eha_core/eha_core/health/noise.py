@@ -61,10 +61,13 @@ def usual_sizes(pieces: Sequence[Array]) -> Array:
     if not pieces:
         return np.zeros(0)
     counts = np.array([len(piece) for piece in pieces])
-    square = np.zeros((len(pieces), int(counts.max())))
+    square = np.full((len(pieces), int(counts.max())), np.inf)
     for row, piece in zip(square, pieces, strict=True):
         row[: len(piece)] = piece**2
-    variance = np.array([np.median(row[:count]) for row, count in zip(square, counts, strict=True)]) / NORMAL_MEDIAN**2
+    ordered, rows = np.sort(square, axis=1), np.arange(len(pieces))
+    middle = 0.5 * (ordered[rows, (counts - 1) // 2] + ordered[rows, counts // 2])
+    square[np.isinf(square)] = 0.0
+    variance = middle / NORMAL_MEDIAN**2
     # a piece that is zero more often than not has no size
     going_on = np.flatnonzero(variance > 0.0)
     for _ in range(50):
@@ -74,7 +77,7 @@ def usual_sizes(pieces: Sequence[Array]) -> Array:
         within = np.minimum(square[going_on] / before[:, None], 1.0).sum(axis=1) / counts[going_on]
         variance[going_on] = before * within / NORMAL_MINIMUM
         going_on = going_on[np.abs(variance[going_on] / before - 1.0) >= 1e-6]
-    return np.sqrt(variance)
+    return np.asarray(np.sqrt(variance), dtype=np.float64)
 
 
 def quantisation(values: Array) -> float:

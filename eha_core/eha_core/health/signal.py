@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import comb, erf, sqrt
 
 import numpy as np
@@ -19,6 +20,10 @@ SAME_SIZE = (0.6, 1.7)
 smooth signal without noise 5 and more, since each difference takes more of it away."""
 COARSE = 0.5
 """Noise over the quantisation step from which on two samples of a channel at rest are often on different levels."""
+BLOCK, BLOCK_SAMPLES = 0.25, 60
+"""A block has at least so many seconds and samples: its noise is then known to an eighth."""
+ORDER = 4
+"""Of the differences that show noise and not motion."""
 RARE, FEW = 0.005, 16
 """Share of a channel's changes, and so many of them at least, that may be a fault's and no usual ones."""
 FALSE_ALARMS = 1e-6
@@ -126,6 +131,15 @@ class Signal:
         """How far its values usually lie apart: from the lowest hundredth to the highest."""
         low, high = np.quantile(self.values, (0.01, 0.99))
         return float(high - low)
+
+    @cached_property
+    def blocks(self) -> tuple[Integers, FloatArray]:
+        """The edges of blocks, as places of their first samples, and the noise that each block shows."""
+        length = max(BLOCK_SAMPLES, round(BLOCK / self.period))
+        count = max(1, len(self.values) // length)
+        edges = np.linspace(0, len(self.values), count + 1).astype(np.int64)
+        rough = np.diff(self.values, n=ORDER) / sqrt(comb(2 * ORDER, ORDER))
+        return edges, usual_sizes([rough[first : last - ORDER] for first, last in pairwise(edges)])
 
     @cached_property
     def runs(self) -> tuple[Integers, Integers]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.health.fault import Fault, Found
-from eha_core.health.faults.blocks import noise_by_block
 from eha_core.health.signal import SAME_SIZE, Signal, by_differences, covered
 
 TIMES = 6.0
@@ -22,7 +21,7 @@ def find(signal: Signal) -> Found | None:
     """The spans in which the channel is disturbed."""
     if signal.is_command or not signal.is_noisy:
         return None
-    edges, sizes = noise_by_block(signal)
+    edges, sizes = signal.blocks
     loud = sizes > TIMES * float(np.median(sizes))
     if not loud.any() or np.mean(loud) > MOST:
         return None

@@ -10,13 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.health.fault import Fault, Found
-from eha_core.health.faults.blocks import noise_by_block
 from eha_core.health.noise import Integers
 from eha_core.health.signal import SAME_SIZE, Signal, by_differences
 from eha_core.recording.recording import FloatArray
 
 APART = 2.0
 """Times the noise of one side that the other's must be."""
+WORTH_A_LOOK = 1.25
+"""The same in the geometric mean, below which no split is looked at closer."""
 CLEAR = 1.2
 """Times the larger quarter of one side's blocks that the smaller quarter of the other's must be."""
 FEWEST = 4
@@ -28,7 +29,7 @@ def find(signal: Signal) -> Found | None:
     """The shorter side."""
     if signal.is_command or not signal.is_noisy:
         return None
-    edges, sizes = noise_by_block(signal)
+    edges, sizes = signal.blocks
     split, times = _split(sizes)
     if not split:
         return None
@@ -50,6 +51,11 @@ def find(signal: Signal) -> Found | None:
 def _split(sizes: FloatArray) -> tuple[int, float]:
     """Before which block the noise becomes another, and how many times as large or as small; 0 where it does not."""
     best, times = 0, APART
+    logarithms = np.log(np.maximum(sizes, 1e-300))
+    before = np.cumsum(logarithms)[:-1] / np.arange(1, len(sizes))
+    after = np.cumsum(logarithms[::-1])[:-1][::-1] / np.arange(len(sizes) - 1, 0, -1)
+    if not len(before) or np.max(np.abs(before - after)) < np.log(WORTH_A_LOOK):
+        return best, times
     for split in range(FEWEST, len(sizes) - FEWEST + 1):
         sides = (sizes[:split], sizes[split:])
         low, high = sides if np.median(sides[0]) < np.median(sides[1]) else sides[::-1]
