@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from eha_core.errors import ParameterError
+from eha_core.plant.state import COLUMNS
 from eha_core.recording.simulated import Experiment, Simulated, simulate
 from eha_core.signals import make_signal
 from eha_core.twin import Comparison, Settings, Twin
@@ -143,3 +145,44 @@ def test_the_voltage_that_the_rig_tells_is_taken_before_the_commands() -> None:
     late = Simulated(record.stamps, record.states, (record.commands[0] + 30_000_000, record.commands[1]), {}, ())
     assert len(found) == 3 and not any(comparison.departs for _, comparison in found)
     assert beside(late, Twin())[0][1].departs
+
+
+def frozen(record: Simulated, name: str, begin: float, end: float) -> Simulated:
+    """A record in which a sensor repeats its last sample from `begin` to `end` [s]."""
+    states, column = record.states.copy(), COLUMNS.index(f"measured_{name}")
+    inside = (record.stamps >= begin * NANOSECONDS) & (record.stamps < end * NANOSECONDS)
+    states[inside, column] = states[inside, column][0]
+    return replace(record, states=states)
+
+
+@pytest.mark.parametrize("name", ["position", "pressure_a"])
+def test_a_frozen_sensor_is_told_as_such_and_no_equation_departs(name: str) -> None:
+    found = beside(frozen(rig(6.0), name, 2.5, 3.6), Twin())
+    assert not any(comparison.departs for _, comparison in found)
+    unsound = [comparison.unsound for _, comparison in found if comparison.unsound]
+    assert [set(one) for one in unsound] == [{name}] * len(unsound) and len(unsound) == 2
+    what, since = unsound[0][name]
+    assert what == "frozen" and since / NANOSECONDS == pytest.approx(2.5, abs=0.01)
+
+
+def test_a_rig_without_noise_may_rest() -> None:
+    times = np.arange(2500) * PERIOD
+    record = simulate(Experiment(times, np.where(times < 2.0, 0.05 * np.sin(12.0 * times), 0.0), 5.0))
+    assert not any(comparison.unsound for _, comparison in beside(record, Twin()))
+
+
+def test_a_pressure_that_no_longer_comes_is_stale() -> None:
+    record, twin = rig(5.0), Twin()
+    commands = dict(zip(record.commands[0].tolist(), record.commands[1].tolist(), strict=True))
+    columns = [record.column(f"measured_{name}").tolist() for name in ("position", "pressure_a", "pressure_b")]
+    found = []
+    for stamp, position, pressure_a, pressure_b in zip(record.stamps.tolist(), *columns, strict=True):
+        twin.position(stamp, position, stamp)
+        twin.pressure("a", stamp, pressure_a)
+        if stamp < 2 * NANOSECONDS:
+            twin.pressure("b", stamp, pressure_b)
+        if stamp in commands:
+            twin.command(stamp, commands[stamp])
+        found += [comparison] if (comparison := twin.compare()) else []
+    assert not any(comparison.departs for comparison in found)
+    assert found[-1].unsound == {"pressure_b": ("stale", 1_998_000_000)}

@@ -13,7 +13,8 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.identification.noise import residual_noise
+from eha_core.health.noise import residual_noise
+from eha_core.health.signal import SAME_SIZE, by_differences
 from eha_core.plant import Plant, Trajectory
 from eha_core.realtime import NANOSECONDS
 from eha_core.weak_form.model_errors import CHANNELS, EQUATIONS, equation_residuals
@@ -23,6 +24,11 @@ Array = NDArray[np.float64]
 DRIFT = "position"
 """Named where the position leaves the model though no equation alone departs beyond noise: a slow error adds up."""
 
+FROZEN, STALE = "frozen", "stale"
+"""What a channel is that stands still to the last digit though it has noise, and one that brings nothing any more."""
+
+_STILL = 20  # samples of one value in a row that a channel with noise does not have
+_LIVELY = 0.95  # share of a window's samples that differ from the one before where a channel has noise
 _LEAD = 0.1  # s of command that coil and spool see before the first window
 _REACH = 0.02  # s to either side of a window's start from which its state is estimated
 _LATE = 0.1  # s that commands and samples may come after the position of their time
@@ -60,6 +66,7 @@ class Comparison:
         ratios: for each equation that could be examined, and for DRIFT, the RMS of its residual over its noise.
         departs: what departs beyond the threshold, the most first, and from which stamp on, through all windows
             since [ns]. DRIFT is among them only where no equation is.
+        unsound: the channels that are FROZEN or STALE, and since which stamp [ns]; nothing is compared with them.
     """
 
     start: int
@@ -67,6 +74,7 @@ class Comparison:
     errors: Mapping[str, float]
     ratios: Mapping[str, float]
     departs: Mapping[str, int]
+    unsound: Mapping[str, tuple[str, int]] = field(default_factory=dict)
 
 
 @dataclass
@@ -123,6 +131,8 @@ class Twin:
         self._commands = _Samples()
         self._applied = _Samples()
         self._since: dict[str, int] = {}
+        self._ended: dict[str, int] = {}  # the last stamp of each channel when samples were forgotten [ns]
+        self._lively: set[str] = set()  # channels that have noise: no sample is like the one before it
         self._start: int | None = None  # of the window to come [ns]; None before there are samples enough
         self._is_warm = False  # whether coil and spool have seen the command
 
@@ -210,6 +220,9 @@ class Twin:
 
     def _forget_before(self, stamp: int) -> None:
         """Forget what no later window needs; the latest command before it stays in force."""
+        self._ended |= {
+            name: samples.stamps[-1] for name, samples in self._channels.items() if samples.stamps
+        }
         for samples in (*self._channels.values(), self._applied):
             samples.forget(bisect_left(samples.stamps, stamp))
         first = self._channels["position"].published[0]
@@ -264,11 +277,12 @@ class Twin:
         stamps = start + self._every * self._step_ns * np.arange(1, self._rows + 1)
         least = (self._settings.position_noise, self._settings.pressure_noise, self._settings.pressure_noise)
         errors, noises = {}, {}
+        unsound = self._unsound(start, end)
         for (name, samples), floor in zip(self._channels.items(), least, strict=True):
-            if samples.stamps and samples.stamps[0] <= start and samples.stamps[-1] >= end:
+            if name not in unsound and samples.stamps and samples.stamps[0] <= start and samples.stamps[-1] >= end:
                 errors[name] = np.interp(stamps, samples.stamps, samples.values) - getattr(model, f"measured_{name}")
                 noises[name] = max(floor, residual_noise(errors[name]))
-        residuals = {DRIFT: errors[DRIFT] / noises[DRIFT]}
+        residuals = {DRIFT: errors[DRIFT] / noises[DRIFT]} if DRIFT in errors else {}
         if len(errors) == len(CHANNELS):
             period = self._every * self._plant.step_size
             residuals |= equation_residuals(errors, noises, model, self._plant.parameters, period)
@@ -282,7 +296,35 @@ class Twin:
             {name: _rms(error) for name, error in errors.items()},
             ratios,
             {name: self._since[name] for name in departing},
+            unsound,
         )
+
+    def _unsound(self, start: int, end: int) -> dict[str, tuple[str, int]]:
+        """The channels that brought nothing up to the end of a window, or stood still to the last digit in it."""
+        found: dict[str, tuple[str, int]] = {}
+        for name, samples in self._channels.items():
+            if samples.newest < end:
+                last = samples.stamps[-1] if samples.stamps else self._ended.get(name)
+                found |= {name: (STALE, last)} if last is not None else {}
+                continue
+            part = slice(bisect_left(samples.stamps, start), bisect_left(samples.stamps, end + 1))
+            values = np.array(samples.values[part])
+            frozen = self._frozen_since(name, values, samples.stamps[part])
+            if frozen is not None:
+                found[name] = (FROZEN, frozen)
+            elif _has_noise(values):
+                self._lively.add(name)
+        return found
+
+    def _frozen_since(self, name: str, values: Array, stamps: list[int]) -> int | None:
+        """Since when a channel, whose noise changes it with every sample, has had one value [ns]."""
+        changes = np.flatnonzero(np.diff(values)) + 1
+        edges = np.concatenate([[0], changes, [len(values)]]).astype(np.int64)
+        longest = int(np.argmax(np.diff(edges)))
+        first, count = int(edges[longest]), int(np.diff(edges)[longest])
+        if name not in self._lively or count < _STILL:
+            return None
+        return stamps[first]
 
     def _note(self, residuals: Mapping[str, Array], ratios: Mapping[str, float], stamps: NDArray[np.int64]) -> None:
         """Keep since when each equation departs, and forget those that no longer do."""
@@ -292,6 +334,14 @@ class Twin:
                 first = int(np.argmax(np.abs(residual) > threshold))
                 self._since[name] = int(stamps[first + (len(stamps) - len(residual)) // 2])
         self._since = {name: since for name, since in self._since.items() if ratios.get(name, 0.0) > threshold}
+
+
+def _has_noise(values: Array) -> bool:
+    """Whether no sample is like the one before, and what is rough in them is noise and no motion."""
+    if len(values) < 2 * _STILL or np.count_nonzero(np.diff(values)) < _LIVELY * (len(values) - 1):
+        return False
+    third, fifth = (by_differences(values, order) for order in (3, 5))
+    return SAME_SIZE[0] < third / max(fifth, 1e-300) < SAME_SIZE[1]
 
 
 def _rms(values: Array) -> float:

@@ -17,6 +17,7 @@ from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
 from eha_core.errors import RecordingError
 from eha_core.recording import OfferedQuality, RecordingWriter, definition_of
+from eha_sim_node.coverage import RECORD, Coverage
 from eha_sim_node.log_time import SimulatedTime, leading_stamp
 
 _ALWAYS = ("/clock", "/diagnostics", "/parameter_events")
@@ -57,6 +58,7 @@ class Recorder:
         self._qualities: dict[str, OfferedQuality] = {}
         self._writer: RecordingWriter | None = None
         self._parameters: dict[str, float] = {}
+        self._coverage = Coverage()
         self.unrecorded: dict[str, str] = {}
         self.failure: str | None = None
         self._next_attempt = 0.0
@@ -86,6 +88,7 @@ class Recorder:
             self.failure = str(error)
             raise
         self.failure = None
+        self._coverage = Coverage()
         return self._writer.path
 
     def resume(self) -> Path | None:
@@ -107,6 +110,7 @@ class Recorder:
         writer = self._open_writer()
         self._settle(everything=True)
         self._writer = None
+        self._keep_coverage(writer)
         writer.close()
         return writer.path
 
@@ -115,10 +119,16 @@ class Recorder:
         writer = self._open_writer()
         self._settle(everything=True)
         try:
+            self._keep_coverage(writer)
             return writer.split()
         except RecordingError as error:
             self._give_up(error)
             raise
+
+    def _keep_coverage(self, writer: RecordingWriter) -> None:
+        """Store in a file that is about to end what it covers."""
+        writer.add_record(RECORD, self._coverage.as_record())
+        self._coverage = Coverage()
 
     def keep_parameters(self, parameters: Mapping[str, float]) -> None:
         """Store the simulator's parameters in this recording and in those to come."""
@@ -213,6 +223,7 @@ class Recorder:
 
     def _write(self, topic: str, data: bytes, stamp: int) -> None:
         if self._writer:
+            self._coverage.add(topic, stamp)
             self._guarded(lambda writer: writer.write(topic, self._types[topic], data, stamp, self._qualities[topic]))
 
     def _guarded(self, act: Callable[[RecordingWriter], None]) -> None:

@@ -110,15 +110,15 @@ class TwinNode(rclpy.node.Node):
         comparison = self._twin.compare()
         if comparison is None:
             return
-        before = set(self._latest.departs) if self._latest else set()
+        before = _news(self._latest) if self._latest else set()
         self._latest = comparison
         self._windows += 1
         self._compared_at = time.monotonic()
-        if set(comparison.departs) == before:
+        if _news(comparison) == before:
             return
         self._diagnostics.publish()  # news does not wait for the next report
-        if comparison.departs:
-            self.get_logger().warning("; ".join(_departures(comparison)))
+        if troubles := [*_unsound(comparison), *_departures(comparison)]:
+            self.get_logger().warning("; ".join(troubles))
         else:
             self.get_logger().info("the rig follows the model again")
 
@@ -132,12 +132,24 @@ class TwinNode(rclpy.node.Node):
         values: dict[str, object] = {"windows": self._windows}
         if self._latest:
             latest = self._latest
-            troubles += _departures(latest)
+            troubles += [*_unsound(latest), *_departures(latest)]
             values |= {"window_start": _stamp(latest.start), "window_end": _stamp(latest.end)}
             values |= {f"rmse {name}": error for name, error in latest.errors.items()}
             values |= {f"times the noise: {name}": ratio for name, ratio in latest.ratios.items()}
+            values |= {f"{what} since: {name}": _stamp(since) for name, (what, since) in latest.unsound.items()}
             values |= {f"departs since: {name}": _stamp(since) for name, since in latest.departs.items()}
         return Report(values, troubles)
+
+
+def _news(comparison: Comparison) -> set[tuple[str, str]]:
+    """What is told of a comparison as soon as it changes."""
+    departing = {(name, "departs") for name in comparison.departs}
+    return departing | {(name, what) for name, (what, _) in comparison.unsound.items()}
+
+
+def _unsound(comparison: Comparison) -> list[str]:
+    """One line for each channel with which nothing can be compared."""
+    return [f"{name} is {what} since {_stamp(since)} s" for name, (what, since) in comparison.unsound.items()]
 
 
 def _departures(comparison: Comparison) -> list[str]:

@@ -20,6 +20,7 @@ def test_no_threshold_moved():
         "CONVINCING": 0.63,
         "NEXT_TO_NOTHING": 0.15,
         "WORTH_ADDING": 0.1,
+        "IDENTIFIED": 2.0,
         "LEFT_IN_A_CHANNEL": 1.2,
         "UNFITTED": 1.3,
         "LEAST_OF_A_LAW": 0.5,

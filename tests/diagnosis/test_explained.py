@@ -12,6 +12,7 @@ from made import explanation, recorded
 from eha_core.diagnosis import explained as stage
 from eha_core.diagnosis.explained import explained, predictions
 from eha_core.diagnosis.result import ChannelFit
+from eha_core.effects import effects
 from eha_core.identification.observation import observe
 from eha_core.parameters import nominal_values
 
@@ -30,7 +31,7 @@ def evidence(before: float, after: float, **sites: float):
     return SimpleNamespace(
         calibration=SimpleNamespace(shooting=SimpleNamespace(names=("position", "pressure_a"))),
         comparison=SimpleNamespace(nominal=SimpleNamespace(fit=fit(before)), left_over=sites),
-        decision=SimpleNamespace(winner=SimpleNamespace(fit=fit(after))),
+        decision=SimpleNamespace(winner=SimpleNamespace(fit=fit(after), effects=())),
         scales=None,
         lead=1,
     )
@@ -89,3 +90,17 @@ def test_the_true_model_predicts_to_the_noise_and_a_wrong_one_worse_the_further_
     clean = observe(recorded({}, duration=1.5, noise=0.0))
     short = predictions(clean, nominal_values(), 1e-4)["position"]
     assert short.ahead[0.25] < 1e-7
+
+
+@pytest.mark.parametrize(("deviation", "complete"), [(5.9e5, False), (100.0, True)])
+def test_an_effect_of_any_size_completes_no_result(deviation, complete, monkeypatch):
+    """18 kN of friction are told with 593 kN or with 100 N to either side."""
+    monkeypatch.setattr(stage, "whereabouts", lambda *_: ("near zero speed", ((1.0, 2.0),)))
+    (friction,) = [effect for effect in effects() if effect.id == "coulomb_friction"]
+    seen = evidence(20.0 * COUNT, 1.0 * COUNT, force=1.0)
+    seen.decision.winner.effects = (friction,)
+    final = fit(0.0, WHITE, WHITE)
+    final = replace(final, free=(SimpleNamespace(name="coulomb_friction.force"),))
+    final = replace(final, values={**final.values, "coulomb_friction.force": 1.8e4})
+    monkeypatch.setattr(type(final), "deviation", lambda *_: deviation)
+    assert explained(seen, final, held_out()).complete is complete

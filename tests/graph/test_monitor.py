@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Rig
+from conftest import NodeProcess, Rig
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from sensor_msgs.msg import JointState
@@ -39,7 +39,7 @@ def is_recorded(rig: Rig, topic: str) -> bool:
     return any(info.node_name == "eha_monitor" for info in rig.node.get_subscriptions_info_by_topic(topic))
 
 
-def start_monitor(rig: Rig, *parameters: str, **options: object) -> object:
+def start_monitor(rig: Rig, *parameters: str, **options: object) -> NodeProcess:
     monitor = rig.start("monitor", f"directory:={rig.folder}", *parameters, **options)
     rig.client_ready("eha_monitor/reset")
     return monitor
@@ -244,3 +244,19 @@ def assert_it_monitors(rig: Rig) -> None:
         reference.publish(joint_state(1.0 + index * 0.01, 0.25))
     rig.wait(lambda: heard, "a tracking error")
     assert heard[-1].error == pytest.approx(0.25)
+
+
+def test_the_file_says_what_it_covers_of_each_topic(rig: Rig) -> None:
+    """A command that pauses for a second is recorded with that gap."""
+    monitor = start_monitor(rig)
+    rig.wait(lambda: is_recorded(rig, f"{rig.namespace}/voltage_command"), "the monitor")
+    rig.command(1.0, 0.2)
+    rig.spin(1.0)
+    rig.command(1.0, 0.2)
+    rig.spin(0.3)
+    assert monitor.end() == 0
+    with recording_of(rig.folder).open("rb") as stream:
+        (record,) = [one for one in make_reader(stream).iter_metadata() if one.name == "eha_coverage"]
+    told = dict(part.split("=") for part in record.metadata[f"{rig.namespace}/voltage_command"].split())
+    assert int(told["count"]) == 40
+    assert (int(told["gap_end"]) - int(told["gap_start"])) / 1e9 == pytest.approx(1.0, abs=0.3)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made import recorded
@@ -140,3 +142,16 @@ def test_a_load_of_its_own_in_each_recording_is_found_and_a_third_is_predicted()
     assert friction.value == pytest.approx(120.0, abs=4.0 * friction.std)
     tested = found.tests[0].prediction
     assert tested["augmented"]["position"].ahead[0.25] < 0.5 * tested["recalibrated"]["position"].ahead[0.25]
+
+
+def test_what_begins_anew_after_a_lost_command_does_so_among_several() -> None:
+    """The second recording lost its command from 1.2 s to 1.5 s: no link leads into that span or out of it."""
+    torn = replace(SECOND, undriven=((1.2, 1.6),))
+    shooting = cut_together([FIRST, torn], nominal_values())
+    begins = [float(shooting.local_edges[window, 0]) for window in shooting.restarts]
+    assert begins == pytest.approx([1.2, 1.6])
+    first = shooting.first_windows[1]
+    assert all(window > first for window in shooting.restarts)
+    assert not np.isin(np.array(shooting.restarts) - 1, whole(shooting).links()).any()
+    assert recording_alone(shooting, 2).restarts == cut(torn, nominal_values(), every=shooting.every).restarts
+    assert recording_alone(shooting, 1).restarts == ()

@@ -15,17 +15,17 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=20.0, help="how long each trial goes on (default %(default)s)")
     parser.add_argument("--times", type=int, help="how often each trial is made instead, the same on every run")
     parser.add_argument("--seed", type=int, default=1, help="what the trials are drawn from (default %(default)s)")
-    parser.add_argument("trials", nargs="*", help="files, kills, commands, nodes, sound, mistakes (default all)")
+    parser.add_argument("trials", nargs="*", help="some of the trials (default all)")
     arguments = parser.parse_args()
     from tools.hostile.commands import try_commands
     from tools.hostile.files import try_files
     from tools.hostile.kills import try_kills
     from tools.hostile.nodes import try_nodes
-    from tools.hostile.recordings import try_mistakes, try_sound
+    from tools.hostile.recordings import try_faults, try_mistakes, try_sound
 
     trials = {
         "files": try_files, "kills": try_kills, "commands": try_commands, "nodes": try_nodes,
-        "sound": try_sound, "mistakes": try_mistakes,
+        "sound": try_sound, "mistakes": try_mistakes, "faults": try_faults,
     }  # fmt: skip
     unknown = [name for name in arguments.trials if name not in trials]
     if unknown:

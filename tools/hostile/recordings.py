@@ -1,17 +1,24 @@
-"""Recordings with a mistake, and sound ones: told, and let pass."""
+"""Recordings with a mistake or a fault, and sound ones: told, and let pass."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 
+from eha_core.health import Fault, examine, too_slow
+from eha_core.plant import PAPER
 from eha_core.plausibility import check
+from eha_core.recording import Recording
 from tools.hostile.extent import Extent
+from tools.hostile.faulty_recordings import EVERY, FAULTS, FaultKind, faulty, verdict
 from tools.hostile.row import Row
-from tools.hostile.sound_recordings import sound_recordings
-from tools.hostile.wrong_recordings import kinds, make_wrong, rigs
+from tools.hostile.sound_recordings import Sound, sound_recordings
+from tools.hostile.wrong_recordings import as_recording, kinds, make_wrong, rigs
 
 MOST_RECORDINGS = 500
 """Sound recordings that a trial checks at most where it is not told how many; of another number, they are others."""
+MADE_IN = 5
+"""Of so many sound recordings one has faults made in it."""
 MOST_RIGS = 500
 """Rigs that a trial makes mistakes in at most."""
 
@@ -48,3 +55,36 @@ def try_mistakes(extent: Extent, seed: int) -> list[Row]:
             else:
                 row.fail(f"{rig.case.name} of seed {seed}, {mistake.name} without {without}: {finding}")
     return [row]
+
+
+def try_faults(extent: Extent, seed: int) -> list[Row]:
+    """Look for faults in sound recordings, and in the same with every kind of fault; a row for each kind.
+
+    `extent.times` counts the sound recordings; one in five of them has every kind made in it, where it has every
+    channel.
+    """
+    passed = Row("sound recordings of seven kinds, every channel examined", seed)
+    rows = {kind: Row(f"{kind.name}: {kind.channel}", seed) for kind in FAULTS}
+    course = extent.begin()
+    for number, sound in enumerate(sound_recordings(seed, extent.times or MOST_RECORDINGS)):
+        if course.over(passed.times):
+            break
+        faults = _faults(sound.recording, sound.nominal)
+        if all(fault.fault == "still" for fault in faults):
+            passed.count("said not to move" if faults else "let pass")
+        else:
+            passed.fail(f"{sound.case} of seed {seed}, {sound.kind}: {faults[0].channel} {faults[0].seen}")
+        if number % MADE_IN == 0 and not faults and all(name in sound.recording.channels for name in EVERY):
+            _make_each(sound, rows, seed, number)
+    return [passed, *rows.values()]
+
+
+def _make_each(sound: Sound, rows: Mapping[FaultKind, Row], seed: int, number: int) -> None:
+    arrays = {name: (channel.time, channel.values) for name, channel in sound.recording.channels.items()}
+    for kind, row in rows.items():
+        made, spans = faulty(kind, arrays, 1000 * seed + number)
+        row.count(verdict(kind, _faults(as_recording(made), sound.nominal), spans, arrays[kind.channel][0]))
+
+
+def _faults(recording: Recording, nominal: Mapping[str, float]) -> tuple[Fault, ...]:
+    return (*examine(recording).faults, *too_slow(recording, nominal, PAPER))

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
+from eha_core.health.noise import residual_noise
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
 from eha_core.identification.free_parameters import free_nominal_parameters
-from eha_core.identification.noise import residual_noise
 from eha_core.identification.observation import RESOLVED, SHORTEST, Observation, without_end
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import Problem, whole

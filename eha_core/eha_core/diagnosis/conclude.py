@@ -106,6 +106,11 @@ def conclude(
         composition=composition,
         sets=sets,
         trace=evidence.comparison.trace,
+        health=tuple(
+            (number, fault)
+            for number, observation in enumerate(evidence.observations, 1)
+            for fault in observation.health
+        ),
     )
 
 

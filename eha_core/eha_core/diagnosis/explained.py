@@ -6,11 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import COHERENT, LEFT_IN_A_CHANNEL
+from eha_core.diagnosis.criteria import COHERENT, IDENTIFIED, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.locate import whereabouts
 from eha_core.diagnosis.result import ChannelFit, Explained, Location, Prediction
 from eha_core.diagnosis.verdict import coherence
+from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.observation import Observation
 from eha_core.identification.segments import cut
@@ -27,13 +28,25 @@ def explained(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]
     # a local minimum can pass for noise where it was fitted, and nowhere else
     left = {name: max(size, held_out[name].rmse_after / held_out[name].noise) for name, size in fitted.items()}
     white = all(coherence(residual) < COHERENT for residual in final.residuals)
-    complete = max(left.values()) < LEFT_IN_A_CHANNEL and white
+    identified = all(is_identified(effect, final) for effect in evidence.decision.winner.effects if effect.named)
+    complete = max(left.values()) < LEFT_IN_A_CHANNEL and white and identified
     before = evidence.comparison.nominal.fit
     missing = max(before.data - before.count, 0.0)
     # the same model in the final fit's noise: both are compared as shares of what was there
     rest = max(evidence.decision.winner.fit.data - before.count, 0.0)
     share = 1.0 - rest / missing if missing > 0.0 else 1.0
     return Explained(max(share, 0.0), left, complete, () if complete else _left_over(evidence))
+
+
+def is_identified(effect: Effect, final: Fit) -> bool:
+    """Whether the recording tells that an effect is there: one of its values differs from what leaves it out by more
+    than its interval. A force of 18 kN, give or take 593 kN, is no explanation, however small the residual."""
+    free = {parameter.name for parameter in final.free}
+    rows = {f"{effect.id}.{row.name}": row for row in effect.parameters}
+    fitted = {name: row for name, row in rows.items() if name in free}
+    return not fitted or any(
+        abs(final.values[name] - row.nominal) > IDENTIFIED * final.deviation(name) for name, row in fitted.items()
+    )
 
 
 def _left_over(evidence: Evidence) -> tuple[Location, ...]:

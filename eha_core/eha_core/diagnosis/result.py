@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from eha_core.health import Fault
 from eha_core.identification.numbers import Array
 from eha_core.plant import PAPER, Composition
 
@@ -289,7 +290,8 @@ class Diagnosis:
     what, when, as text. `steps` lead from the nominal model to that with all effects; `without` has what is left
     when one of several effects is taken out and the rest fitted again, most first: the order of `effects`, too.
     `sets` are those that together hold 95 % of the probability, the most probable first; `trace` has every fit of the
-    search. `long_records` has those of which stretches were fitted; what is drawn of them is in the record's time.
+    search. `health` has the faults of the channels, each with the number of its recording among several (1 of a single
+    one). `long_records` has those of which stretches were fitted; what is drawn of them is in the record's time.
     """
 
     path: str
@@ -325,6 +327,7 @@ class Diagnosis:
     long_records: tuple[LongRecord, ...] = ()
     sets: tuple[ProbableSet, ...] = ()
     trace: tuple[TraceStep, ...] = ()
+    health: tuple[tuple[int, Fault], ...] = ()
 
     @property
     def drawn(self) -> tuple[float, float]:

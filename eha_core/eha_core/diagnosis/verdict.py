@@ -29,8 +29,8 @@ from eha_core.diagnosis.criteria import (
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison, bounded
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import Effect
+from eha_core.health.noise import NORMAL_MEDIAN
 from eha_core.identification.fit import Fit
-from eha_core.identification.noise import NORMAL_MEDIAN
 from eha_core.identification.numbers import Array
 from eha_core.identification.validate import Judged, instants_of, judge
 

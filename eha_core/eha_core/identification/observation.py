@@ -5,16 +5,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import ceil, floor
 
 import numpy as np
 
 from eha_core.errors import RecordingError
-from eha_core.identification.noise import estimate_noise, find_outliers
+from eha_core.health import Fault, Health, examine, in_words
+from eha_core.health.noise import estimate_noise, find_outliers
 from eha_core.identification.numbers import Array
 from eha_core.nominal import NominalModel
 from eha_core.plant import PAPER, Composition
 from eha_core.plant.parts import Source
 from eha_core.recording import CHANNEL_KINDS, Channel, Recording
+
+TICK = 0.01
+"""s; windows begin and end on this grid, which every step size used here divides."""
 
 SHORTEST = 1.0
 """s; a shorter recording says too little about any parameter."""
@@ -66,6 +71,8 @@ class Observation:
         remarks: what was put right or left out, one line each.
         driving: names of the driving channels.
         composition: the actuator's parts.
+        health: the faults of the recording's channels; the samples that they spoil are not among `measured`.
+        undriven: spans [s] in which it is not known what drove the plant, or what it left has not died away yet.
     """
 
     path: str
@@ -79,6 +86,8 @@ class Observation:
     remarks: tuple[str, ...]
     driving: tuple[str, ...] = ("voltage_command",)
     composition: Composition = PAPER
+    health: tuple[Fault, ...] = ()
+    undriven: tuple[tuple[float, float], ...] = ()
 
     def channel(self, name: str) -> Measured | None:
         """The measured channel of that name, if there is one."""
@@ -86,7 +95,7 @@ class Observation:
 
 
 def observe(recording: Recording, composition: Composition = PAPER) -> Observation:
-    """Choose what drives the simulation and what it is compared with; estimate noise; exclude outliers.
+    """Choose what drives the simulation and what it is compared with; estimate noise; exclude what is faulty.
 
     A source that no voltage drives says itself what does.
 
@@ -105,7 +114,9 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
             " in a topics file"
         )
     drive, driving, not_examined = _choose_drive(where, channels, composition.source)
-    inputs = tuple((channels[name].time, channels[name].values) for name in driving)
+    health = examine(recording)
+    inputs = tuple(health.sound(channels[name]) for name in driving)
+    undriven = _undriven(health, driving, recording.duration)
     remarks: list[str] = list(recording.remarks)
     measured = []
     for column, name in enumerate(FITTED):
@@ -114,7 +125,7 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
         # a velocity computed from the position adds nothing and its noise is not independent
         if name == "velocity":
             continue
-        measured.append(_measured(channels[name], column, remarks))
+        measured.append(_measured(where, channels[name], column, health, undriven, remarks))
     used = {*driving, *(channel.name for channel in measured)}
     not_examined += [f"{name}: {NOT_COMPARED[name]}" for name in channels if name not in used]
     position = measured[0]
@@ -141,6 +152,8 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
         tuple(remarks),
         driving,
         composition,
+        health.faults,
+        undriven,
     )
 
 
@@ -223,10 +236,33 @@ def _given_by(where: str, channels: Mapping[str, Channel], source: Source) -> tu
     return source.given or "measured", driving, [f"what brings about {' and '.join(driving)}: it was taken as measured"]
 
 
-def _measured(channel: Channel, column: int, remarks: list[str]) -> Measured:
-    noise = max(estimate_noise(channel.values), RESOLVED[channel.unit])
-    bad = find_outliers(channel.values, noise)
+def _undriven(health: Health, driving: tuple[str, ...], duration: float) -> tuple[tuple[float, float], ...]:
+    """The spans in which it is not known what drove the plant, on the grid of the windows."""
+    spans = health.unknown_of(driving, duration)
+    return tuple((TICK * floor(begin / TICK), min(TICK * ceil(end / TICK), duration)) for begin, end in spans)
+
+
+def _measured(
+    where: str,
+    channel: Channel,
+    column: int,
+    health: Health,
+    undriven: tuple[tuple[float, float], ...],
+    remarks: list[str],
+) -> Measured:
+    time, values = health.sound(channel)
+    known = np.ones(len(time), dtype=np.bool_)
+    for begin, end in undriven:
+        known &= (time < begin) | (time > end)
+    if np.count_nonzero(known) * float(np.median(np.diff(channel.time))) < SHORTEST / 2.0:
+        raise RecordingError(
+            f"{where}: next to nothing of {channel.name} can be used ({'; '.join(in_words(health.faults))}); record the"
+            " test again"
+        )
+    noise = max(estimate_noise(values), RESOLVED[channel.unit])
+    bad = find_outliers(values, noise)
     if bad.any():
         excluded = "1 outlier was excluded" if bad.sum() == 1 else f"{bad.sum()} outliers were excluded"
         remarks.append(f"{channel.name}: {excluded}")
-    return Measured(channel.name, column, channel.time[~bad], channel.values[~bad], noise)
+    known &= ~bad
+    return Measured(channel.name, column, time[known], values[known], noise)

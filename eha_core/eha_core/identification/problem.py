@@ -58,10 +58,10 @@ class Problem:
         return sum(int(used[sampling.window].sum()) for sampling in self.shooting.samplings)
 
     def links(self) -> Integers:
-        """Windows in use whose successor is in use too, and of the same recording."""
+        """Windows in use whose successor is in use too, of the same recording, and follows from what is known."""
         used = self.used()
         follows = np.ones(self.shooting.windows, dtype=np.bool_)
-        follows[list(self.shooting.first_windows)] = False
+        follows[[*self.shooting.first_windows, *self.shooting.restarts]] = False
         return np.flatnonzero(used[:-1] & used[1:] & follows[1:])
 
     @cached_property

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.signal import savgol_filter
 
 from eha_core.identification.numbers import Array, Integers
-from eha_core.identification.observation import WITH_OIL, Measured, Observation
-from eha_core.identification.shooting import SETTLING, STATE_SIZE, TICK, Sampling, Shooting
+from eha_core.identification.observation import TICK, WITH_OIL, Measured, Observation
+from eha_core.identification.shooting import SETTLING, STATE_SIZE, Sampling, Shooting
 
 
 def cut(
@@ -31,7 +31,10 @@ def cut(
     count = max(1, round(observation.duration / window))
     ticks = int(observation.duration / TICK + 1e-6)
     changes = np.round(np.array([time for time, _ in observation.leakage]) / TICK).astype(np.int64)
-    edges = _edges(ticks, count, changes) * round(TICK / step_size)
+    begins, ends = _unknown_spans(observation)
+    edges = _edges(ticks, count, np.concatenate([changes, begins, ends]))
+    inside = np.any((edges[:, None] > begins) & (edges[:, None] < ends), axis=1)
+    edges = edges[~inside] * round(TICK / step_size)
     leakage = np.concatenate([[0.0], [change for _, change in observation.leakage]])
     in_force = leakage[np.searchsorted(changes * round(TICK / step_size), edges[:-1], side="right")]
     step_times = np.arange(edges[-1]) * step_size
@@ -57,11 +60,24 @@ def cut(
         _initial_states(observation, np.asarray(edges * step_size), values),
         STATE_SIZE if observation.drive in WITH_OIL else 2,
         composition=observation.composition,
+        restarts=_restarts(edges, np.concatenate([begins, ends]) * round(TICK / step_size)),
     )
 
 
+def _unknown_spans(observation: Observation) -> tuple[Integers, Integers]:
+    """The ticks at which spans begin and end in which it is not known what drove the plant: each is a window of its
+    own, and the piston's state after it is fitted anew."""
+    spans = np.round(np.array(observation.undriven).reshape(-1, 2) / TICK).astype(np.int64)
+    return spans[:, 0], spans[:, 1]
+
+
+def _restarts(edges: Integers, at: Integers) -> tuple[int, ...]:
+    """The windows that begin where it is no longer, or at last, known what drives the plant."""
+    return tuple(int(window) for window in np.flatnonzero(np.isin(edges[:-1], at)) if window)
+
+
 def _edges(ticks: int, count: int, changes: Integers) -> Integers:
-    """About `count` windows of one length, and a new window where something is changed on purpose."""
+    """About `count` windows of one length, and a new window where something is changed on purpose or not known."""
     even = np.round(np.linspace(0, ticks, count + 1)).astype(np.int64)
     shortest = 0.3 * ticks / count
     inner = [edge for edge in even[1:-1] if np.all(np.abs(changes - edge) > shortest)]

@@ -29,9 +29,6 @@ STATE_SIZE = 4
 SETTLING = 0.3
 """s at the record's start that are not compared: coil, spool and the effects' own states start there unrecorded."""
 
-TICK = 0.01
-"""s; windows begin and end on this grid, which every step size used here divides."""
-
 SLOPE_STEP = 5e-4
 """s; the step at which derivatives are taken. They are good to a few per cent, which costs a fit no accuracy."""
 
@@ -62,6 +59,7 @@ class Shooting:
         initial_states: (windows, STATE_SIZE) from the smoothed measurement; pressures at half supply where not
         measured.
         first_windows: the first window of each recording; there all that runs through begins anew, time too.
+        restarts: windows that no link ties to the one before: what drove the plant in that one is not known.
         per_recording: the parameters that have a value in each recording.
         composition: the actuator's parts.
     """
@@ -79,6 +77,7 @@ class Shooting:
     first_windows: tuple[int, ...] = (0,)
     per_recording: tuple[str, ...] = ()
     composition: Composition = PAPER
+    restarts: tuple[int, ...] = ()
 
     @property
     def windows(self) -> int:

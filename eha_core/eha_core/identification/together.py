@@ -71,6 +71,9 @@ def joined(each: Sequence[Shooting], per_recording: Sequence[str] = ()) -> Shoot
         initial_states=np.concatenate([shooting.initial_states for shooting in each]),
         first_windows=tuple(int(window) for window in windows[:-1]),
         per_recording=tuple(per_recording),
+        restarts=tuple(
+            int(window + first) for shooting, first in zip(each, windows, strict=False) for window in shooting.restarts
+        ),
     )
 
 
@@ -96,6 +99,7 @@ def recording_alone(shooting: Shooting, number: int) -> Shooting:
         initial_states=shooting.initial_states[windows.start : windows.stop],
         first_windows=(0,),
         per_recording=(),
+        restarts=tuple(window - windows.start for window in shooting.restarts if window in windows),
     )
 
 

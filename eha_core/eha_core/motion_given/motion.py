@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from eha_core.errors import RecordingError
-from eha_core.identification.noise import estimate_noise
+from eha_core.health.noise import estimate_noise
 from eha_core.recording import Recording
 
 Array = NDArray[np.float64]

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from eha_core.errors import RecordingError
+from eha_core.health import examine, in_words, too_slow
 from eha_core.plant import PAPER, Composition
 from eha_core.plausibility.copies import copies, noisy_copies
 from eha_core.plausibility.finding import Finding, Suspect
@@ -61,11 +62,14 @@ def admit(
     switch: how the caller's user turns that on, as an error says.
 
     Raises:
-        RecordingError: a mistake was made in the recording, or its channels speak against the plant's source; the
-            message says which, and its cure.
+        RecordingError: a mistake was made in the recording, a channel has a fault with which it tells nothing, or the
+            channels speak against the plant's source; the message says which, and its cure.
     """
-    finding = contradiction(recording, composition) or check(recording, nominal, composition)
-    if finding is None:
+    health = examine(recording)
+    ill = [fault for fault in (*health.faults, *too_slow(recording, nominal, composition)) if fault.refuses]
+    sound = health.without_faults(recording)
+    finding = "; ".join(in_words(ill)) or contradiction(sound, composition) or check(sound, nominal, composition)
+    if not finding:
         return recording
     if not as_recorded:
         raise RecordingError(f"{recording.path}: {finding}; {switch} goes on all the same")

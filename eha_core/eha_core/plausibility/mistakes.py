@@ -15,6 +15,8 @@ POSITION_UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "um": 1e-6}
 FARTHEST_ZERO = 5.0
 """Half strokes by which a sensor's zero may lie off mid-stroke: a rod longer than the cylinder (assumed). Farther off,
 a reading has another unit."""
+ABOVE_THE_ATMOSPHERE = ("bar", "MPa", "psi")
+"""Units of gauge pressures that a driver makes absolute as if they were in Pa."""
 PRESSURE_UNITS = {"bar": 1e5, "MPa": 1e6, "kPa": 1e3, "psi": 6894.757, "a tenth of Pa": 0.1, "tens of Pa": 10.0}
 
 
@@ -85,6 +87,17 @@ def pressure_units(recording: Recording, nominal: Mapping[str, float]) -> Iterat
         for names in choices if there else ():
             mistake = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} in {unit}"
             yield Suspect(mistake, {name: rescaled(recording, name, factor) for name in names})
+    for unit in ABOVE_THE_ATMOSPHERE:
+        for names in choices if there else ():
+            have = "has" if len(names) == 1 else "have"
+            mistake = f"{' and '.join(names)} {have} the atmosphere in Pa added to {unit}"
+            yield Suspect(mistake, {name: _above_atmosphere(recording, name, PRESSURE_UNITS[unit]) for name in names})
+
+
+def _above_atmosphere(recording: Recording, name: str, factor: float) -> Channel:
+    """A gauge pressure in another unit to which the atmosphere was added in Pa."""
+    values = recording.channels[name].values
+    return rescaled(recording, name, factor, float(factor * values[0] - rescaled(recording, name, factor).values[0]))
 
 
 def zero_of_position(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Suspect]:

@@ -95,8 +95,11 @@ class RecordingWriter:
     def add_parameters(self, parameters: Mapping[str, object]) -> None:
         """Keep the parameters in force (name -> SI value) in the file; also in those that a later split opens."""
         self._parameters.update(parameters)
-        kept = {name: str(value) for name, value in parameters.items()}
-        self._uninterrupted(lambda: self._writer.add_metadata(PARAMETERS_RECORD, kept))
+        self.add_record(PARAMETERS_RECORD, {name: str(value) for name, value in parameters.items()})
+
+    def add_record(self, name: str, content: Mapping[str, str]) -> None:
+        """Keep a metadata record in the file."""
+        self._uninterrupted(lambda: self._writer.add_metadata(name, dict(content)))
 
     def _uninterrupted(self, action: Callable[[], None]) -> None:
         """Have the writing thread do something to its end, and wait for it."""

@@ -12,14 +12,15 @@ from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.each_recording import each_recording
 from eha_core.report.finding import told_parameters
+from eha_core.report.health import faults_told
 from eha_core.report.location import location_statement
 from eha_core.report.stage import errors_told, models_told
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
 _INDENT = 13
 _LONGEST = {
-    "Recording": 2, "Verdict": 3, "Whole": 5, "Located": 2, "Named": 2, "Recovered": 2, "Parameters": 2, "Next test": 3,
-    "Note": 2,
+    "Recording": 2, "Health": 4, "Verdict": 3, "Whole": 5, "Located": 2, "Named": 2, "Recovered": 2, "Parameters": 2,
+    "Next test": 3, "Note": 2,
 }  # fmt: skip
 _MOST_EFFECTS = 8
 
@@ -27,7 +28,8 @@ _MOST_EFFECTS = 8
 def account(diagnosis: Diagnosis, written: Sequence[Path] = (), width: int = 100) -> str:
     """Say what was found, how sure it is, what it improves, and where the files are.
 
-    It takes 25 lines at most, four more for each effect beyond the second, and five for a long record.
+    It takes 25 lines at most, four more where channels have faults, four for each effect beyond the second, and five
+    for a long record.
     """
     lines: list[str] = []
     for label, text in _findings(diagnosis):
@@ -46,6 +48,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         "Recording",
         f"{Path(diagnosis.path).name}: {diagnosis.duration:.1f} s of {channels_listed(diagnosis.channels)}",
     )
+    yield "Health", "; ".join(faults_told(diagnosis))
     yield "Verdict", diagnosis.summary
     for record in diagnosis.long_records:
         yield "Whole", record.statement

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from eha_core.diagnosis.result import ChannelFit, Diagnosis, Location, LongRecord, NamedEffect, Prediction, Residual
+from eha_core.health import Fault
 from eha_core.report.location import location_statement
 
 SCHEMA = "eha.diagnosis/1"
@@ -29,6 +30,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
                 "remarks": diagnosis.remarks,
                 "damaged": diagnosis.damaged,
             },
+            "health": [_fault(number, fault, len(diagnosis.together)) for number, fault in diagnosis.health],
             "verdict": diagnosis.verdict,
             "summary": diagnosis.summary,
             "location": [_location(location) for location in diagnosis.location],
@@ -78,6 +80,15 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
 def as_json(diagnosis: Diagnosis) -> str:
     """The document as text, ending with a newline."""
     return json.dumps(document(diagnosis), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _fault(number: int, fault: Fault, recordings: int) -> dict[str, Any]:
+    """A fault of a channel; of several recordings also which one's."""
+    row = {
+        "channel": fault.channel, "fault": fault.fault, "from": fault.start, "to": fault.end, "seen": fault.seen,
+        "remedy": fault.remedy, "excluded": fault.excludes,
+    }  # fmt: skip
+    return row if recordings == 0 else {**row, "recording": number}
 
 
 def _rows(items: Iterable[Any], names: tuple[str, ...]) -> list[dict[str, Any]]:

@@ -12,9 +12,10 @@ from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.evidence import evidence_picture
+from eha_core.report.health import Intervals, drawn_line, excluded, shaded
 from eha_core.report.laws import Law, laws
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture, Ribbon
-from eha_core.report.series import spread, thinned
+from eha_core.report.series import spread
 from eha_core.report.stage import adds_physics
 from eha_core.report.wording import capital, channel_title
 from eha_core.report.worth import ladder_picture
@@ -103,6 +104,8 @@ def residual_picture(diagnosis: Diagnosis) -> Picture:
         "The upper and lower plots each have a scale of their own. Both models start from fitted states in each window"
         " of the fit. Grey: two standard deviations of the noise."
     )
+    if any(excluded(diagnosis, name) for name in names):
+        caption += " Shaded: excluded, since the recording has a hole or a fault there."
     columns = (1,) * max(1, len(names))
     title = "Residuals, measured less modelled: nominal model and final model"
     return Picture("0-residuals", groups, columns, title, caption)
@@ -116,16 +119,19 @@ def _residuals(diagnosis: Diagnosis, name: str) -> Group:
     above = f"{title}: {quantity(fit.rmse_before, unit)} RMS"
     below = f"{quantity(fit.rmse_after, unit)} RMS, noise {quantity(fit.noise, unit)}"
     models = ((pictures.before, "before", above), (getattr(pictures, last), last, below))
+    spans = excluded(diagnosis, name)
     return Group(
         tuple(
-            _residual(time, pictures.measured[name] - model[name], role, unit, fit.noise, text)
+            _residual(time, pictures.measured[name] - model[name], role, unit, fit.noise, text, spans)
             for model, role, text in models
         )
     )
 
 
-def _residual(time: Array, residual: Array, role: str, unit: str, noise: float, title: str) -> Panel:
+def _residual(
+    time: Array, residual: Array, role: str, unit: str, noise: float, title: str, spans: Intervals
+) -> Panel:
     scale = scale_for(unit, float(np.abs(residual).max()))
-    x, y = thinned(time, residual / scale.factor, 1500)
+    x, y = drawn_line(time, residual / scale.factor, spans, 1500)
     band = Band(-2.0 * noise / scale.factor, 2.0 * noise / scale.factor, "noise (2 standard deviations)")
-    return Panel((band, Line(x, y, role, LABELS[role], 1.0)), "time [s]", scale.unit, title, 84)
+    return Panel((*shaded(spans), band, Line(x, y, role, LABELS[role], 1.0)), "time [s]", scale.unit, title, 84)

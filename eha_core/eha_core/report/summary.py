@@ -14,6 +14,7 @@ from eha_core.quantities import scale_for, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.finding import told_parameters
+from eha_core.report.health import faults_told
 from eha_core.report.stage import SURE, Table, errors_told, models_told
 from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, plain, sentence
 
@@ -62,6 +63,7 @@ def summarise(diagnosis: Diagnosis) -> Summary:
     name, channels = Path(diagnosis.path).name, channels_listed(diagnosis.channels)
     facts = (
         ("Recording", f"{name}, {diagnosis.duration:.1f} s: {channels}"),
+        *(("Health", sentence(plain(fault))) for fault in faults_told(diagnosis)),
         ("Verdict", VERDICT_TITLES[diagnosis.verdict]),
         ("Finding", diagnosis.summary),
     )

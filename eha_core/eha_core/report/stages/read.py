@@ -8,8 +8,9 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged, noise_floor
+from eha_core.report.health import drawn_line, excluded, faults_told
 from eha_core.report.picture import Group, Line, Mark, Panel, Picture, Spans
-from eha_core.report.series import thinned
+from eha_core.report.series import DRAWN
 from eha_core.report.stage import Stage, Table
 from eha_core.report.wording import capital, channel_title, channels_listed, plain, sentence
 
@@ -21,6 +22,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
         f"{Path(diagnosis.path).name} was read and its channels were put on one clock.",
         noise_floor(diagnosis),
     ]
+    sentences += [sentence(plain(fault)) for fault in faults_told(diagnosis)]
     if diagnosis.damaged:
         sentences.append(f"The file is damaged, and the diagnosis rests on what could be read: {diagnosis.damaged}.")
     sentences += [sentence(plain(f"Not examined: {note}")) for note in diagnosis.not_examined]
@@ -45,8 +47,8 @@ def _picture(diagnosis: Diagnosis) -> Picture:
     shaded = (Spans(pictures.held_out, "held out to judge the models"),) if pictures.held_out else ()
     panels = []
     for name in _channels(diagnosis):
-        time, values = thinned(pictures.time[name], pictures.measured[name])
-        scale = scale_for(CHANNEL_KINDS[name].unit, float(abs(values).max()))
+        scale = scale_for(CHANNEL_KINDS[name].unit, float(abs(pictures.measured[name]).max()))
+        time, values = drawn_line(pictures.time[name], pictures.measured[name], excluded(diagnosis, name), DRAWN)
         marks: tuple[Mark, ...] = (*shaded, Line(time, values / scale.factor, "measured", "measured", 1.1))
         panels.append(Panel(marks, "time [s]", scale.unit, capital(channel_title(name)), 140))
     return Picture(

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import comb, e, pi, sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from eha_core.identification.numbers import Array, Flags
+from eha_core.recording.recording import FloatArray as Array
+
+Flags = NDArray[np.bool_]
+Integers = NDArray[np.int64]
 
 NORMAL_MEDIAN = 0.6744897501960817
 """The median of |z| for a standard normal z."""
@@ -31,8 +36,8 @@ def estimate_noise(values: Array, order: int = 4, blocks: int = 20) -> float:
     """
     differences = np.diff(values, n=order)
     pieces = np.array_split(differences, max(1, min(blocks, len(differences) // 50)))
-    deviations = [usual_size(piece) / sqrt(comb(2 * order, order)) for piece in pieces if len(piece)]
-    estimate = float(np.quantile(deviations, 0.35)) if deviations else 0.0
+    deviations = usual_sizes([piece for piece in pieces if len(piece)]) / sqrt(comb(2 * order, order))
+    estimate = float(np.quantile(deviations, 0.35)) if len(deviations) else 0.0
     return max(estimate, quantisation(values) / sqrt(12.0), 1e-12 * float(np.max(np.abs(values)) or 1.0))
 
 
@@ -48,15 +53,31 @@ def usual_size(values: Array) -> float:
     section 5.2). The median is as robust, but of values on a grid it is one of the grid's: 9 % off where the noise is
     two steps of an analogue-digital converter.
     """
-    square = values**2
-    variance = float(np.median(square)) / NORMAL_MEDIAN**2
+    return float(usual_sizes([values])[0])
+
+
+def usual_sizes(pieces: Sequence[Array]) -> Array:
+    """`usual_size` of each piece, all of them at once."""
+    if not pieces:
+        return np.zeros(0)
+    counts = np.array([len(piece) for piece in pieces])
+    square = np.full((len(pieces), int(counts.max())), np.inf)
+    for row, piece in zip(square, pieces, strict=True):
+        row[: len(piece)] = piece**2
+    ordered, rows = np.sort(square, axis=1), np.arange(len(pieces))
+    middle = 0.5 * (ordered[rows, (counts - 1) // 2] + ordered[rows, counts // 2])
+    square[np.isinf(square)] = 0.0
+    variance = middle / NORMAL_MEDIAN**2
+    # a piece that is zero more often than not has no size
+    going_on = np.flatnonzero(variance > 0.0)
     for _ in range(50):
-        if not variance > 0.0:
+        if not len(going_on):
             break
-        before, variance = variance, variance * float(np.mean(np.minimum(square / variance, 1.0))) / NORMAL_MINIMUM
-        if abs(variance / before - 1.0) < 1e-6:
-            break
-    return sqrt(variance)
+        before = variance[going_on]
+        within = np.minimum(square[going_on] / before[:, None], 1.0).sum(axis=1) / counts[going_on]
+        variance[going_on] = before * within / NORMAL_MINIMUM
+        going_on = going_on[np.abs(variance[going_on] / before - 1.0) >= 1e-6]
+    return np.asarray(np.sqrt(variance), dtype=np.float64)
 
 
 def quantisation(values: Array) -> float:
@@ -75,8 +96,10 @@ def quantisation(values: Array) -> float:
     whole = np.round(steps / least)
     usual = (whole > 0.0) & (np.abs(steps / least - whole) < ON_GRID)
     step = float(np.sum(steps[usual])) / float(np.sum(whole[usual]))
-    levels = (values - np.median(values)) / step
-    off = np.abs(levels - np.round(levels))
+    levels = (values - values[0]) / step
+    # the grid's own place: the median of an even number of values, or any one of them, may lie between two levels
+    place = float(np.angle(np.mean(np.exp(2j * pi * levels)))) / (2.0 * pi)
+    off = np.abs(levels - place - np.round(levels - place))
     return step if float(np.mean(off < ON_GRID)) > SHARE_ON_GRID else 0.0
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eha_core.identification.noise import estimate_noise, find_outliers, quantisation, residual_noise, usual_size
+from eha_core.health.noise import estimate_noise, find_outliers, quantisation, residual_noise, usual_size, usual_sizes
 
 TIME = np.arange(20_000) / 1000.0
 SMOOTH = 0.02 * np.sin(2 * np.pi * 0.7 * TIME) + 0.003 * np.sin(2 * np.pi * 9.0 * TIME)
@@ -71,3 +71,18 @@ def test_the_usual_size_is_that_of_normal_values_whatever_a_fifth_of_them_is():
     values[::5] = 1e6
     assert 3.0 < usual_size(values) < 4.2
     assert usual_size(np.zeros(10)) == 0.0
+
+
+def test_the_step_is_found_where_the_median_lies_between_two_levels() -> None:
+    """Of an even number of values the median may be the mean of two levels, off the grid by half a step."""
+    levels = np.array([0, 1, 2, 4, 5, 7, 8, 9, 11, 12])
+    assert np.median(levels) == 6.0 and np.median(levels[:-2]) == 4.5
+    for count in (10, 8):
+        assert quantisation(3e-5 * np.repeat(levels[:count], 3)) == pytest.approx(3e-5)
+
+
+def test_sizes_of_several_pieces_are_those_of_each() -> None:
+    generator = np.random.default_rng(5)
+    pieces = [generator.standard_normal(count) * size for count, size in ((200, 1.0), (201, 30.0), (150, 0.0))]
+    assert usual_sizes(pieces) == pytest.approx([usual_size(piece) for piece in pieces])
+    assert usual_sizes(pieces)[:2] == pytest.approx([1.0, 30.0], rel=0.15)

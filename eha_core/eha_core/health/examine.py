@@ -1,0 +1,67 @@
+"""The checks of each channel, in their order: a later one sees what the earlier ones left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from eha_core.health.coverage import holes
+from eha_core.health.fault import Fault, Found, Health
+from eha_core.health.faults import (
+    dropped,
+    frozen,
+    held,
+    hum,
+    interpolated,
+    jump,
+    low_passed,
+    noisy,
+    rescaled,
+    saturated,
+    spikes,
+    still,
+    wrapped,
+)
+from eha_core.health.signal import Signal
+from eha_core.recording import Recording
+
+CHECKS: tuple[Callable[[Signal], Found | None], ...] = (
+    dropped.find, saturated.find, held.find, interpolated.find, frozen.find, rescaled.find, wrapped.find, jump.find,
+    noisy.find, spikes.find, hum.find, low_passed.find, still.find,
+)  # fmt: skip
+"""What leaves its own mark on the values comes first: a fill value is no jump, a range's end no frozen sensor."""
+
+UNCHECKED = ("velocity",)
+"""Channels that nothing is compared with."""
+FEWEST = 100
+"""Samples from which on a channel shows what is usual in it."""
+
+
+def examine(recording: Recording) -> Health:
+    """Find the faults of every channel by itself."""
+    faults: list[Fault] = []
+    lost, values = {}, {}
+    for name, channel in recording.channels.items():
+        if name in UNCHECKED:
+            continue
+        faults += holes(channel, recording)
+        if len(channel.time) < FEWEST or not np.ptp(channel.values) > 0.0:
+            continue
+        signal, gone = Signal.of(channel), np.zeros(len(channel.time), dtype=np.bool_)
+        for check in CHECKS:
+            found = check(signal)
+            if found is None or not found.faults:
+                continue
+            faults += found.faults
+            gone |= found.lost
+            if found.values is not None:
+                values[name] = found.values
+                signal = Signal(replace(channel, values=found.values), signal.places)
+            signal = signal.without(found.lost)
+            if len(signal.time) < FEWEST:
+                break
+        if gone.any():
+            lost[name] = gone
+    return Health(tuple(faults), lost, values)

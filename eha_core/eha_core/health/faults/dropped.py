@@ -1,0 +1,66 @@
+"""A channel that drops to a fill value: an interface that has no sample gives zero, or the end of its range.
+
+Found where the value leaps away and back, and is one and the same to the last digit meanwhile; or leaps away and stays
+so to the end. The piston's position cannot leap at all, and a pressure that leaps is not constant afterwards: neither
+happens in a sound channel. A command that is made of steps is not looked at.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eha_core.health.fault import Fault, Found
+from eha_core.health.signal import Signal
+from eha_core.recording.recording import FloatArray
+
+CONSTANT = 3
+"""Samples of one value after a leap that make it a fill value; of two such values that are the same, one is enough."""
+AT_THE_END = 10
+"""Samples of one value from a leap to the recording's end."""
+FAR = 0.25
+"""Of the channel's extent that a leap to a fill value is at least; a pressure rings by less within a sample."""
+LONGEST = 0.25
+"""Share of the channel that may be filled: more, and it is the rest that is wrong."""
+OF_STEPS = 0.2
+"""Share of a command's changes that are none, from which on it is made of steps."""
+
+
+def find(signal: Signal) -> Found | None:
+    """The runs of a fill value."""
+    steps = np.abs(signal.steps)
+    if signal.is_command and np.mean(steps == 0.0) > OF_STEPS:
+        return None
+    starts, lengths = signal.runs
+    last = len(signal.values) - 1
+    ends = starts + lengths - 1
+    leaps = np.concatenate([[0.0], steps, [np.inf]])  # before each sample, and after the last
+    far = max(signal.jump, FAR * signal.extent)
+    begins, returns = leaps[starts] > far, leaps[ends + 1] > far
+    at_the_end = (ends == last) & (lengths >= AT_THE_END)
+    within = begins & returns & (ends < last)
+    filled = signal.values[starts]
+    short = within & (lengths < CONSTANT)
+    repeated = np.isin(filled, _more_than_once(filled[within]))
+    chosen = (within & (lengths >= CONSTANT)) | (short & repeated)
+    if lengths[chosen].sum() > LONGEST * len(signal.values):
+        return None
+    chosen |= begins & at_the_end
+    if not chosen.any():
+        return None
+    here = np.zeros(len(signal.values), dtype=np.bool_)
+    faults = []
+    for first, final in zip(starts[chosen], ends[chosen], strict=True):
+        here[first : final + 1] = True
+        faults.append(
+            Fault(
+                signal.name, "dropped", float(signal.time[first]), float(signal.time[final]),
+                f"drops to {signal.values[first]:.4g} {signal.channel.unit}, a fill value",
+                "see why the interface has no sample there",
+            )
+        )  # fmt: skip
+    return Found(faults, signal.lost(here))
+
+
+def _more_than_once(values: FloatArray) -> FloatArray:
+    distinct, counts = np.unique(values, return_counts=True)
+    return np.asarray(distinct[counts > 1])

@@ -1,0 +1,76 @@
+"""A channel whose scale leaps: an amplifier that switches its range, a unit that changes, and the noise with it.
+
+The noise of a sensor is of one size as long as the sensor is the same. Where the blocks before a moment have less of
+it, or more, than those after it, and it is white on both sides, the scale is another one. Motion makes a channel rough,
+too, but smoothly so.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eha_core.health.fault import Fault, Found
+from eha_core.health.noise import Integers
+from eha_core.health.signal import SAME_SIZE, Signal, by_differences
+from eha_core.recording.recording import FloatArray
+
+APART = 2.0
+"""Times the noise of one side that the other's must be."""
+WORTH_A_LOOK = 1.25
+"""The same in the geometric mean, below which no split is looked at closer."""
+CLEAR = 1.2
+"""Times the larger quarter of one side's blocks that the smaller quarter of the other's must be."""
+FEWEST = 4
+"""Blocks on either side. A block's noise is known to an eighth, so that by chance the medians of four and of all others
+differ by a sixth; by as much as APART in fewer than one recording in a million."""
+
+
+def find(signal: Signal) -> Found | None:
+    """The shorter side."""
+    if signal.is_command or not signal.is_noisy:
+        return None
+    edges, sizes = signal.blocks
+    split, times = _split(sizes)
+    if not split:
+        return None
+    moment = _moment(signal, edges, split)
+    if not all(_is_white(part) for part in (signal.values[:moment], signal.values[moment:])):
+        return None
+    here = np.zeros(len(signal.values), dtype=np.bool_)
+    shorter = slice(0, moment) if moment < len(here) / 2 else slice(moment, len(here))
+    here[shorter] = True
+    inside = signal.time[shorter]
+    fault = Fault(
+        signal.name, "jump", float(inside[0]), float(inside[-1]),
+        f"its scale is another one there: its noise is {times:.2g} times as large or as small",
+        "see what changed the sensor's range or unit",
+    )  # fmt: skip
+    return Found([fault], signal.lost(here))
+
+
+def _split(sizes: FloatArray) -> tuple[int, float]:
+    """Before which block the noise becomes another, and how many times as large or as small; 0 where it does not."""
+    best, times = 0, APART
+    logarithms = np.log(np.maximum(sizes, 1e-300))
+    before = np.cumsum(logarithms)[:-1] / np.arange(1, len(sizes))
+    after = np.cumsum(logarithms[::-1])[:-1][::-1] / np.arange(len(sizes) - 1, 0, -1)
+    if not len(before) or np.max(np.abs(before - after)) < np.log(WORTH_A_LOOK):
+        return best, times
+    for split in range(FEWEST, len(sizes) - FEWEST + 1):
+        sides = (sizes[:split], sizes[split:])
+        low, high = sides if np.median(sides[0]) < np.median(sides[1]) else sides[::-1]
+        ratio = float(np.median(high)) / max(float(np.median(low)), 1e-300)
+        if ratio > times and float(np.quantile(high, 0.25)) > CLEAR * float(np.quantile(low, 0.75)):
+            best, times = split, ratio
+    return best, times
+
+
+def _is_white(values: FloatArray) -> bool:
+    third, fifth = (by_differences(values, order) for order in (3, 5))
+    return SAME_SIZE[0] < third / max(fifth, 1e-300) < SAME_SIZE[1]
+
+
+def _moment(signal: Signal, edges: Integers, split: int) -> int:
+    """The sample at which the scale leaps: that of the largest change near the blocks' edge."""
+    first, last = edges[max(0, split - 1)], edges[min(len(edges) - 1, split + 1)]
+    return int(first + np.argmax(np.abs(signal.steps[first : last - 1]))) + 1

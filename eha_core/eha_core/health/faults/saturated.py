@@ -1,0 +1,81 @@
+"""A channel at the end of its range: what lies beyond is cut off.
+
+A noisy channel that is cut off has its extreme value again and again, and many times as often as the one next to it;
+the extreme of a sound one is reached by the tail of its noise, once or a few times.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eha_core.health.fault import Fault, Found
+from eha_core.health.noise import Flags
+from eha_core.health.signal import Signal, covered
+
+IN_A_ROW = 3
+"""Samples of the extreme value in a row, once at least."""
+OFTEN = 10
+"""Samples of the extreme value."""
+MORE = 3.0
+"""Times as many as of the next value that occurs."""
+TOGETHER = 0.05
+"""s between two samples at the range's end up to which what lies between them is taken as cut off, too."""
+
+
+def find(signal: Signal) -> Found | None:
+    """The spans at the end of the range."""
+    if not (signal.is_noisy or signal.is_command):
+        return None
+    here = np.zeros(len(signal.values), dtype=np.bool_)
+    faults = []
+    for end in (np.min(signal.values), np.max(signal.values)):
+        at = signal.values == end
+        if not _is_cut_off(signal, at, end):
+            continue
+        for first, last in _joined(signal, at):
+            here[first : last + 1] = True
+            faults.append(
+                Fault(
+                    signal.name, "saturated", float(signal.time[first]), float(signal.time[last]),
+                    f"at the end of its range, {end:.4g} {signal.channel.unit}", "give the sensor a wider range",
+                )
+            )  # fmt: skip
+    return Found(faults, signal.lost(here)) if faults else None
+
+
+def _is_cut_off(signal: Signal, at: Flags, end: float) -> bool:
+    if np.sum(at) < OFTEN:
+        return False
+    runs = covered(at)
+    longest = max(last - first + 1 for first, last in runs)
+    if longest < (IN_A_ROW if len(runs) > 1 else signal.longest_repeat):
+        return False
+    others = signal.values[~at]
+    nearest = others[np.argmin(np.abs(others - end))]
+    if np.sum(at) < MORE * np.sum(others == nearest):
+        return False
+    return not signal.is_command or _is_clipped(signal, runs)
+
+
+def _is_clipped(signal: Signal, runs: list[tuple[int, int]]) -> bool:
+    """Whether a command that moves all the time runs into its extreme and leaves it again at speed."""
+    outside = np.abs(signal.steps)
+    inside = sum(last - first for first, last in runs)
+    if np.sum(outside == 0.0) - inside > 0.05 * len(outside):
+        return False
+    usual = float(np.median(outside[outside > 0.0]))
+    edges = [outside[first - 1] for first, _ in runs if first > 0] + [
+        outside[last] for _, last in runs if last < len(outside)
+    ]
+    return bool(np.median(edges) > 0.1 * usual)
+
+
+def _joined(signal: Signal, at: Flags) -> list[tuple[int, int]]:
+    """Runs at the range's end, those that only noise parts as one."""
+    spans: list[tuple[int, int]] = []
+    for first, last in covered(at):
+        if spans and signal.time[first] - signal.time[spans[-1][1]] < TOGETHER:
+            spans[-1] = (spans[-1][0], last)
+        else:
+            spans.append((first, last))
+    return spans

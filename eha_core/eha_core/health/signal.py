@@ -1,0 +1,161 @@
+"""What every check asks of a channel, computed once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import comb, erf, sqrt
+
+import numpy as np
+
+from eha_core.health.noise import Flags, Integers, estimate_noise, quantisation, usual_sizes
+from eha_core.recording import Channel
+from eha_core.recording.recording import FloatArray
+
+COMMANDS = ("voltage_command",)
+"""Channels that a controller gives: steps, holds and constant values are as they should be."""
+SAME_SIZE = (0.6, 1.7)
+"""Ratio of the noise that third and fifth differences show, within which it is noise: of white noise it is 1, of a
+smooth signal without noise 5 and more, since each difference takes more of it away."""
+COARSE = 0.5
+"""Noise over the quantisation step from which on two samples of a channel at rest are often on different levels."""
+BLOCK, BLOCK_SAMPLES = 0.25, 60
+"""A block has at least so many seconds and samples: its noise is then known to an eighth."""
+ORDER = 4
+"""Of the differences that show noise and not motion."""
+RARE, FEW = 0.005, 16
+"""Share of a channel's changes, and so many of them at least, that may be a fault's and no usual ones."""
+FALSE_ALARMS = 1e-6
+"""Probability with which a check may find a fault in a sound channel."""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A channel's samples that no earlier check took: `time` [s] and `values`, and which of the channel's samples these
+    are (`places`)."""
+
+    channel: Channel
+    places: Integers
+
+    @classmethod
+    def of(cls, channel: Channel) -> Signal:
+        """All samples of a channel."""
+        return cls(channel, np.arange(len(channel.time)))
+
+    def without(self, lost: Flags) -> Signal:
+        """The signal less some of its channel's samples."""
+        return Signal(self.channel, self.places[~lost[self.places]])
+
+    def lost(self, here: Flags) -> Flags:
+        """Flags over this signal's samples as flags over the channel's."""
+        flags = np.zeros(len(self.channel.time), dtype=np.bool_)
+        flags[self.places[here]] = True
+        return flags
+
+    @property
+    def name(self) -> str:
+        """The channel's name."""
+        return self.channel.name
+
+    @property
+    def is_command(self) -> bool:
+        """Whether a controller gives it, and no sensor."""
+        return self.name in COMMANDS
+
+    @cached_property
+    def time(self) -> FloatArray:
+        """(n,) [s]."""
+        return np.asarray(self.channel.time[self.places])
+
+    @cached_property
+    def values(self) -> FloatArray:
+        """(n,) in the channel's unit."""
+        return np.asarray(self.channel.values[self.places])
+
+    @cached_property
+    def period(self) -> float:
+        """Usual time from one sample to the next [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    @cached_property
+    def steps(self) -> FloatArray:
+        """(n - 1,) the change from each sample to the next; none where samples are missing between the two."""
+        return np.where(np.diff(self.time) < 2.5 * self.period, np.diff(self.values), 0.0)
+
+    @cached_property
+    def noise(self) -> float:
+        """Standard deviation of its white noise, quantisation included."""
+        return estimate_noise(self.values)
+
+    @cached_property
+    def step(self) -> float:
+        """Quantisation step; 0 where its values are on no grid."""
+        return quantisation(self.values)
+
+    @cached_property
+    def is_noisy(self) -> bool:
+        """Whether there is noise of a sensor in it, by which neighbours differ wherever the channel lives."""
+        sizes = [by_differences(self.values, order) for order in (3, 5)]
+        if not sizes[1] > 1e-9 * float(np.max(np.abs(self.values))):
+            return False
+        white = SAME_SIZE[0] < sizes[0] / sizes[1] < SAME_SIZE[1]
+        return white and self.own_noise > COARSE * self.step
+
+    @cached_property
+    def own_noise(self) -> float:
+        """Standard deviation of the noise without what quantisation adds to it."""
+        return sqrt(max(self.noise**2 - self.step**2 / 12.0, 0.0))
+
+    @cached_property
+    def repeats(self) -> float:
+        """Largest probability that a sample of a noisy channel has the value of the one before."""
+        if not self.step > 0.0:
+            return 1e-3
+        return max(1e-3, erf(self.step / (2.0 * sqrt(2.0) * max(self.own_noise, 1e-300))))
+
+    @cached_property
+    def longest_repeat(self) -> int:
+        """Samples of one value in a row that a noisy channel has with the probability FALSE_ALARMS at most."""
+        return max(4, int(np.log(FALSE_ALARMS / len(self.values)) / np.log(self.repeats)) + 2)
+
+    @cached_property
+    def jump(self) -> float:
+        """A change from one sample to the next that is far larger than noise and the usual motion."""
+        rare = max(RARE, FEW / max(len(self.steps), 1))
+        usual = float(np.quantile(np.abs(self.steps), max(0.0, 1.0 - rare))) if len(self.steps) else 0.0
+        return max(3.0 * usual, 12.0 * self.noise, 5.0 * self.step)
+
+    @cached_property
+    def extent(self) -> float:
+        """How far its values usually lie apart: from the lowest hundredth to the highest."""
+        low, high = np.quantile(self.values, (0.01, 0.99))
+        return float(high - low)
+
+    @cached_property
+    def blocks(self) -> tuple[Integers, FloatArray]:
+        """The edges of blocks, as places of their first samples, and the noise that each block shows."""
+        length = max(BLOCK_SAMPLES, round(BLOCK / self.period))
+        count = max(1, len(self.values) // length)
+        edges = np.linspace(0, len(self.values), count + 1).astype(np.int64)
+        rough = np.diff(self.values, n=ORDER) / sqrt(comb(2 * ORDER, ORDER))
+        return edges, usual_sizes([rough[first : last - ORDER] for first, last in pairwise(edges)])
+
+    @cached_property
+    def runs(self) -> tuple[Integers, Integers]:
+        """The first sample and the length of each run of one value."""
+        starts = np.concatenate([[0], np.flatnonzero(np.diff(self.values) != 0.0) + 1])
+        return starts, np.diff(np.concatenate([starts, [len(self.values)]]))
+
+
+def by_differences(values: FloatArray, order: int) -> float:
+    """Standard deviation that white noise of such differences would have."""
+    pieces = np.array_split(np.diff(values, n=order), max(1, min(20, len(values) // 50)))
+    sizes = usual_sizes([piece for piece in pieces if len(piece)])
+    return float(np.quantile(sizes, 0.35)) / sqrt(comb(2 * order, order)) if len(sizes) else 0.0
+
+
+def covered(flags: Flags) -> list[tuple[int, int]]:
+    """The runs of set flags, as first and last place."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    return [(int(first), int(end) - 1) for first, end in zip(edges[::2], edges[1::2], strict=True)]

@@ -1,0 +1,114 @@
+"""Every kind of fault is found with its channel and span, and what is sound has none."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eha_core as eha
+from eha_core.health import examine, too_slow
+from eha_core.parameters import nominal_values
+from eha_core.plant import PAPER
+from eha_core.recording import Recording, read_recording
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+from tools.hostile.faulty_recordings import EVERY, FAULTS, FaultKind, faulty, verdict  # noqa: E402
+from tools.hostile.wrong_recordings import as_recording  # noqa: E402
+
+TIME = np.arange(4000) / 500.0
+CHANCE = np.random.default_rng(7)
+
+
+@pytest.mark.parametrize("kind", FAULTS, ids=lambda kind: kind.name)
+def test_a_fault_is_found_with_its_channel_and_span(kind: FaultKind, as_modelled: Recording) -> None:
+    arrays = {name: (as_modelled.channels[name].time, as_modelled.channels[name].values) for name in EVERY}
+    made, spans = faulty(kind, arrays, 5)
+    recording = as_recording(made)
+    faults = (*examine(recording).faults, *too_slow(recording, nominal_values(), PAPER))
+    assert verdict(kind, faults, spans, arrays[kind.channel][0]) == "found"
+    of_all = kind.name in ("hole of all channels", "log of 20 Hz")
+    assert of_all or {fault.channel for fault in faults} == {kind.channel}
+
+
+@pytest.mark.parametrize("bag", sorted((ROOT / "bags").glob("*.mcap")), ids=lambda path: path.stem)
+def test_no_recording_of_the_repository_has_a_fault(bag: Path) -> None:
+    recording = read_recording(bag)
+    assert examine(recording).faults == ()
+    assert not too_slow(recording, nominal_values(), PAPER)
+
+
+def position(motion: np.ndarray, noise: float, step: float = 0.0) -> Recording:
+    """A recording of a motion [m] by a sensor with that noise and quantisation [m]."""
+    values = motion + noise * CHANCE.standard_normal(len(motion))
+    if step:
+        values = np.round(values / step) * step
+    return eha.Recording.from_arrays(time=np.arange(len(motion)) / 500.0, position=values)
+
+
+WAVE = 0.02 * np.sin(2.0 * np.pi * 0.7 * TIME)
+STILL = 0.02 * np.sin(2.0 * np.pi * 0.7 * (TIME - np.clip(TIME - 2.0, 0.0, 3.0)))
+RAMP = 0.01 * np.abs((TIME + 1.0) % 4.0 - 2.0)
+STOP = np.clip(WAVE, -0.015, 0.015)
+SOUND = {
+    "in motion": position(WAVE, 1e-5),
+    "with an encoder of its noise": position(WAVE, 1e-5, 1e-5),
+    "with a coarse encoder": position(WAVE, 1e-6, 1e-4),
+    "with an encoder and no noise": position(WAVE, 0.0, 2e-5),
+    "a rest": position(STILL, 1e-5),
+    "a rest with a coarse encoder": position(STILL, 1e-6, 1e-4),
+    "a rest with an encoder finer than its noise": position(STILL, 1e-5, 5e-6),
+    "a rest without noise": position(STILL, 0.0),
+    "ramps with an encoder and no noise": position(RAMP, 0.0, 1e-5),
+    "ramps with an encoder": position(RAMP, 2e-6, 2e-5),
+    "at a stop": position(STOP, 1e-5),
+    "at a stop with a coarse encoder": position(STOP, 1e-6, 1e-4),
+    "a tiny motion": position(0.002 * WAVE, 1e-5),
+    "a creep": position(1e-5 * TIME + 1e-5 * np.sin(TIME), 1e-5, 5e-6),
+}
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_a_sound_position_has_no_fault(name: str) -> None:
+    assert examine(SOUND[name]).faults == ()
+
+
+STEPS = np.repeat(CHANCE.choice((-1.0, 1.0), 80), 50)
+COMMANDS = {
+    "a binary sequence": STEPS,
+    "a staircase": np.repeat(CHANCE.standard_normal(400), 10),
+    "a triangle": np.abs((TIME * 5.0) % 2.0 - 1.0),
+    "a trapezoid": np.clip(2.0 * np.sin(2.0 * np.pi * TIME), -1.0, 1.0).round(1),
+    "one step": np.where(TIME > 3.0, 1.0, 0.0),
+    "a sine": np.sin(2.0 * np.pi * TIME),
+    "of a loop with noise": WAVE + 0.001 * CHANCE.standard_normal(len(TIME)),
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_sound_command_has_no_fault(name: str) -> None:
+    beside = SOUND["a rest"].channels["position"].values
+    recording = eha.Recording.from_arrays(time=TIME, voltage_command=COMMANDS[name], position=beside)
+    assert examine(recording).faults == ()
+
+
+def test_a_command_that_is_sent_only_where_it_changes_has_no_hole() -> None:
+    moments = np.cumsum(CHANCE.exponential(0.1, 100))
+    sent = eha.Recording.from_arrays(time=moments, voltage_command=CHANCE.standard_normal(100))
+    assert examine(sent).faults == ()
+
+
+@pytest.mark.parametrize("step", [0.0, 0.5, 1.0, 2.0, 5.0])
+def test_noise_alone_is_no_fault(step: float) -> None:
+    """Two hundred channels of 4 s at each resolution, where each check may find a fault in one of a million."""
+    found = []
+    for seed in range(20):
+        noise = np.random.default_rng([seed, 3]).standard_normal((10, 2000)) + 5.0 * np.sin(TIME[:2000])
+        noise = np.round(noise / step) * step if step else noise
+        for values in noise:
+            recording = eha.Recording.from_arrays(time=TIME[:2000], pressures="gauge", pressure_a=1e5 * values)
+            found += examine(recording).faults
+    assert found == []
