@@ -14,7 +14,7 @@ from eha_core.cli._paths import require_file, require_folder, require_recordings
 from eha_core.cli._progress import Progress
 from eha_core.errors import EhaError
 from eha_core.long_record.admission import admitted
-from eha_core.recording import Recording, load_topics_file, read_recording
+from eha_core.recording import Recording, TopicsFile, load_topics_file, read_recording
 from eha_core.workers import Workers
 
 if TYPE_CHECKING:
@@ -41,6 +41,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help="a bag or a table: .mcap, .csv, .mat ...")
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
+    add(
+        "--assume",
+        action="store_true",
+        help="take the likely answers to what the topics file still asks, and list them",
+    )
     add("--test", action="append", default=[], type=Path, metavar="FILE", help="a recording that is only predicted")
     add("--motion-given", action="store_true", help="find the force's law from the motion, whatever else was recorded")
     add("--as-recorded", action="store_true", help="go on where a recording cannot be right, and warn of it")
@@ -142,16 +147,15 @@ def _check_paths(arguments: argparse.Namespace) -> None:
     if arguments.json not in (None, "-"):
         require_file(Path(arguments.json), "--json")
     if arguments.topics is not None:
-        load_topics_file(arguments.topics)
+        # Read once, before anything slow: what is still asked there ends the command at once.
+        arguments.topics = load_topics_file(arguments.topics, assume=arguments.assume)
 
 
 def _read(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recording]:
     return [read_recording(path, arguments.topics) for path in paths]
 
 
-def _run_motion_given(
-    arguments: argparse.Namespace, recordings: Sequence[Recording], progress: Progress
-) -> int:
+def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Recording], progress: Progress) -> int:
     """A test bench or a damper: nothing drives the plant, so the law of its force is found from the motion."""
     from eha_core.diagnosis.document import as_json
     from eha_core.motion_given import diagnose_motion
@@ -203,7 +207,7 @@ def _run_each(arguments: argparse.Namespace) -> int:
 def diagnose_alone(
     path: Path,
     nominal: Path | None,
-    topics: Path | None,
+    topics: TopicsFile | None,
     folder: Path,
     as_recorded: bool = False,
     with_report: bool = True,

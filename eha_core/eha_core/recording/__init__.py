@@ -1,6 +1,6 @@
 """Recordings: written crash-safe as MCAP, read from MCAP, rosbag2 folders and tables into channels in SI units."""
 
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
+from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file, topics_of
 from eha_core.recording.mcap_summary import is_finished
 from eha_core.recording.message_types import definition_of, encode
 from eha_core.recording.reader import read_recording
@@ -22,4 +22,5 @@ __all__ = [
     "is_finished",
     "load_topics_file",
     "read_recording",
+    "topics_of",
 ]

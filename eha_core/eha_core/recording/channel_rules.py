@@ -1,19 +1,27 @@
-"""Where each channel is found: the default topics, and the topics file that says otherwise."""
+"""Where each channel is found: the default topics, and the topics file that says otherwise, or still asks."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from eha_core.errors import RecordingError, remedy
-from eha_core.recording.recording import CHANNEL_KINDS
+from eha_core.recording.recording import CHANNEL_KINDS, FloatArray
 from eha_core.unit_names import UNITS, Unit, unit_named
 from eha_core.yaml_file import load_yaml
 
 ABSOLUTE, GAUGE = "absolute", "gauge"
+MOST_CANDIDATES = 3
+"""Answers to an open question that are shown in a message; the file has them all."""
+_BENT = 2
+"""Points up to which what a sensor gives is a straight line."""
+
+Points = tuple[tuple[float, "float | None"], ...]
 
 
 @dataclass(frozen=True)
@@ -28,6 +36,11 @@ class ChannelRule:
         offset: added after scaling [SI unit].
         reference: for pressures, "absolute" or "gauge"; None where nothing was said, which counts as absolute.
         unit: the unit that was named, which `scale` and `reference` already stand for.
+        points: (raw, value) pairs of a sensor, in the file's numbers and in `unit`; a line through two, a smooth monotone
+            curve through more; empty where raw numbers are values. A value that is open is None.
+        minus: a second column, taken from the first: of two one-sided commands.
+        time: the column of the channel's own times; None where the table's time, or that which the file states, serves.
+        rate: of the time, rows in a second where the table has no instants [Hz]; None where it has, NaN where it is open.
     """
 
     topic: str | None = None
@@ -37,15 +50,57 @@ class ChannelRule:
     offset: float = 0.0
     reference: str | None = None
     unit: str | None = None
+    points: Points = ()
+    minus: str | None = None
+    time: str | None = None
+    rate: float | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a number of the rule is still to be said."""
+        return any(value is None for _, value in self.points) or (self.rate is not None and not isfinite(self.rate))
+
+    def in_si(self, raw: FloatArray) -> FloatArray:
+        """The values [SI] of what was recorded."""
+        return np.asarray(self.scale * (self._through_points(raw) if self.points else raw) + self.offset)
+
+    def _through_points(self, raw: FloatArray) -> FloatArray:
+        places, values = (np.array([pair[k] for pair in self.points], dtype=np.float64) for k in (0, 1))
+        slopes = np.diff(values) / np.diff(places)
+        if len(places) <= _BENT:
+            return np.asarray(values[0] + slopes[0] * (raw - places[0]))
+        from scipy.interpolate import PchipInterpolator
+
+        inside = PchipInterpolator(places, values)(np.clip(raw, places[0], places[-1]))
+        beyond = slopes[0] * np.minimum(raw - places[0], 0.0) + slopes[-1] * np.maximum(raw - places[-1], 0.0)
+        return np.asarray(inside + beyond)
+
+
+@dataclass(frozen=True)
+class OpenQuestion:
+    """What a topics file still asks of a channel: the words, and the possible answers, None for no such channel."""
+
+    text: str
+    candidates: tuple[ChannelRule | None, ...]
+
+    @property
+    def likely(self) -> ChannelRule | None:
+        """The first answer that needs no further number; None where there is none."""
+        return next((one for one in self.candidates if one is not None and not one.is_open), None)
 
 
 @dataclass(frozen=True)
 class TopicsFile:
-    """A topics file as read: rules by channel name (None leaves a channel out) and the namespace to look in."""
+    """A topics file as read: rules by channel name (None leaves a channel out) and the namespace to look in.
+
+    `remarks` say what was assumed where the file still asks.
+    """
 
     channels: Mapping[str, ChannelRule | None]
     namespace: str | None = None
     time: ChannelRule = ChannelRule()
+    remarks: tuple[str, ...] = ()
+    path: Path | None = field(default=None, compare=False)
 
 
 DEFAULT_RULES: dict[str, ChannelRule] = {
@@ -68,24 +123,119 @@ STATE_RULES: dict[str, ChannelRule] = {
 """Taken from the simulator's logging topic where nothing else was recorded: its sensors' values, not its truth."""
 
 
-def load_topics_file(path: str | Path) -> TopicsFile:
+def load_topics_file(path: str | Path, assume: bool = False) -> TopicsFile:
     """Read a topics file.
 
+    Args:
+        path: the file.
+        assume: take the likely answer where the file still asks, and say so in the remarks.
+
     Raises:
-        RecordingError: the file is missing, is no YAML, or names an unknown channel or key.
+        RecordingError: the file is missing, is no YAML, names an unknown channel or key, or asks what is not answered.
     """
     content = load_yaml(path, RecordingError, f"topics file {path}")
     if not isinstance(content, dict) or not isinstance(content.get("channels"), dict):
         raise RecordingError(f"topics file {path}: needs `channels:` with one entry for each channel")
     _refuse_unknown(path, "key", content, ("channels", "namespace"))
     _refuse_unknown(path, "channel", content["channels"], (*CHANNEL_KINDS, "time"))
-    rules = {name: _rule(path, name, entry) for name, entry in content["channels"].items()}
+    entries = content["channels"]
+    asked = {name: _question(path, name, entry) for name, entry in entries.items() if _asks(entry)}
+    rules = {name: _rule(path, name, entry) for name, entry in entries.items() if name not in asked}
+    answers, remarks = _answered(path, asked, assume)
+    rules |= answers
     namespace = content.get("namespace")
     return TopicsFile(
-        {name: rule for name, rule in rules.items() if name != "time"},
+        {name: rules[name] for name in entries if name != "time" and name in rules},
         None if namespace is None else str(namespace).strip("/"),
         rules.get("time") or ChannelRule(),
+        remarks,
+        Path(path),
     )
+
+
+def topics_of(given: str | Path | TopicsFile | None) -> TopicsFile | None:
+    """A topics file, read where a path was given. Raises RecordingError as `load_topics_file`."""
+    return given if isinstance(given, TopicsFile) or given is None else load_topics_file(given)
+
+
+def _asks(entry: Any) -> bool:
+    return isinstance(entry, dict) and "ask" in entry
+
+
+def _question(path: str | Path, channel: str, entry: Mapping[str, Any]) -> OpenQuestion:
+    _refuse_unknown(path, f"key of {channel}", entry, ("ask", "question"))
+    candidates = entry["ask"]
+    if not isinstance(candidates, list):
+        raise RecordingError(f"topics file {path}: channel {channel}: `ask` needs a list of possible answers")
+    rules = tuple(_rule(path, channel, one, may_be_open=True) for one in candidates)
+    return OpenQuestion(str(entry.get("question") or f"which is {channel}?"), rules)
+
+
+def _answered(
+    path: str | Path, asked: Mapping[str, OpenQuestion], assume: bool
+) -> tuple[dict[str, ChannelRule | None], tuple[str, ...]]:
+    """The likely answers to open questions, and remarks on them.
+
+    Raises:
+        RecordingError: nothing is to be assumed, or nothing is likely.
+    """
+    answers: dict[str, ChannelRule | None] = {}
+    remarks = []
+    for channel, question in asked.items():
+        likely = question.likely
+        taken = [rule.column for rule in answers.values() if rule is not None]
+        if likely is not None and likely.column in taken:
+            others = (
+                one for one in question.candidates if one is not None and not one.is_open and one.column not in taken
+            )
+            likely = next(others, None)
+            if likely is None and None in question.candidates:
+                answers[channel] = None
+                continue
+        if not assume or (likely is None and None not in question.candidates):
+            several = f", and {len(asked) - 1} questions more" if len(asked) > 1 else ""
+            shown = (
+                " or ".join(entry_text(one) for one in question.candidates[:MOST_CANDIDATES]) or "an entry of its own"
+            )
+            likely_too = "" if likely is None else "; --assume takes the likely answers"
+            raise RecordingError(
+                f"topics file {path}: {question.text} Write {channel}: {shown} in place of its `ask`{several}; `eha inspect"
+                f" RECORDING` asks one by one on a terminal{likely_too}"
+            )
+        answers[channel] = likely
+        if likely is not None:
+            remarks.append(f"assumed: {channel}: {entry_text(likely)} ({question.text})")
+    return answers, tuple(remarks)
+
+
+def entry_text(rule: ChannelRule | None) -> str:
+    """A rule as a topics file's entry on one line; numbers that are open are `null`."""
+    if rule is None:
+        return "null"
+    parts = []
+    for name in ("topic", "field", "column", "minus", "time"):
+        value = getattr(rule, name)
+        if value is not None:
+            parts.append(f"{name}: {quoted(value)}")
+    if rule.points:
+        pairs = ", ".join(f"[{raw:g}, {'null' if value is None else f'{value:g}'}]" for raw, value in rule.points)
+        parts.append(f"points: [{pairs}]")
+    if rule.rate is not None:
+        parts.append(f"rate: {f'{rule.rate:g}' if isfinite(rule.rate) else 'null'}")
+    if rule.unit is not None:
+        parts.append(f"unit: {quoted(rule.unit) if not rule.unit.isalpha() else rule.unit}")
+    elif rule.scale != 1.0:
+        parts.append(f"scale: {rule.scale:g}")
+    if rule.reference is not None:
+        parts.append(f"reference: {rule.reference}")
+    return f"{{{', '.join(parts)}}}"
+
+
+def quoted(text: str) -> str:
+    """A text in YAML's quotes on one line, whatever a file calls its columns."""
+    import yaml
+
+    return str(yaml.safe_dump(text, default_style='"', allow_unicode=True, width=2**20)).strip()
 
 
 def _refuse_unknown(path: str | Path, what: str, given: Mapping[Any, Any], known: tuple[str, ...]) -> None:
@@ -94,27 +244,31 @@ def _refuse_unknown(path: str | Path, what: str, given: Mapping[Any, Any], known
             raise RecordingError(f"topics file {path}: unknown {what} {name!r}; known are {', '.join(known)}")
 
 
-def _rule(path: str | Path, channel: str, entry: Any) -> ChannelRule | None:
+def _rule(path: str | Path, channel: str, entry: Any, may_be_open: bool = False) -> ChannelRule | None:
     if entry is None:
         return None
     where = f"topics file {path}: channel {channel}"
     if not isinstance(entry, dict):
         raise RecordingError(f"{where}: needs keys such as {{topic: /name, field: data}}")
-    _refuse_unknown(path, f"key of {channel}", entry, tuple(row.name for row in fields(ChannelRule)))
+    known = [row.name for row in fields(ChannelRule) if (row.name == "rate") <= (channel == "time")]
+    _refuse_unknown(path, f"key of {channel}", entry, tuple(known))
     values = dict(entry)
     for name in ("scale", "offset"):
         if name in values:
-            try:
-                values[name] = float(values[name])
-            except (TypeError, ValueError, OverflowError):
-                raise RecordingError(f"{where}: {name} {values[name]!r} is no number") from None
-            if not isfinite(values[name]) or (name == "scale" and values[name] == 0.0):
+            values[name] = _number(where, name, values[name])
+            if name == "scale" and values[name] == 0.0:
                 raise RecordingError(f"{where}: {name} {values[name]:g} makes no numbers of what was recorded")
     if values.get("reference") not in (None, ABSOLUTE, GAUGE):
         raise RecordingError(f"{where}: reference {values['reference']!r}; say {ABSOLUTE} or {GAUGE}")
-    for name in ("topic", "field", "column", "unit"):
+    for name in ("topic", "field", "column", "unit", "minus", "time"):
         if values.get(name) is not None:
             values[name] = str(values[name])
+    if "points" in values:
+        values["points"] = _points(where, values["points"], may_be_open)
+    if "rate" in values:
+        values["rate"] = _rate(where, values["rate"], may_be_open)
+    if values.get("minus") is not None and values.get("column") is None:
+        raise RecordingError(f"{where}: `minus` names a column that is taken from another; name that as `column` too")
     if "unit" in values and "scale" in values:
         raise RecordingError(f"{where}: unit and scale say the same thing; keep one")
     if values.get("unit") is not None:
@@ -122,6 +276,53 @@ def _rule(path: str | Path, channel: str, entry: Any) -> ChannelRule | None:
         values["scale"] = unit.scale
         values.setdefault("reference", unit.reference)
     return ChannelRule(**values)
+
+
+def _number(where: str, name: str, value: Any) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise RecordingError(f"{where}: {name} {value!r} is no number") from None
+    if not isfinite(number):
+        raise RecordingError(f"{where}: {name} {number:g} makes no numbers of what was recorded")
+    return number
+
+
+def _points(where: str, given: Any, may_be_open: bool) -> Points:
+    """The points of a sensor in the order of their raw numbers.
+
+    Raises:
+        RecordingError: they are no pairs of numbers, fewer than two, or one raw number has two values.
+    """
+    example = "write for example `points: [[4, 0], [20, 250]]`"
+    if (
+        not isinstance(given, list)
+        or len(given) < 2
+        or not all(isinstance(one, list) and len(one) == 2 for one in given)
+    ):
+        raise RecordingError(f"{where}: `points` needs pairs of what was recorded and what it means; {example}")
+    pairs = []
+    for raw, value in given:
+        if value is None and not may_be_open:
+            raise RecordingError(f"{where}: `points` has no value at {raw}; {example}")
+        pairs.append((_number(where, "points", raw), None if value is None else _number(where, "points", value)))
+    pairs.sort(key=lambda pair: pair[0])
+    if len({raw for raw, _ in pairs}) < len(pairs):
+        raise RecordingError(f"{where}: `points` has two values for one number; {example}")
+    if all(value is not None for _, value in pairs) and len({value for _, value in pairs}) < 2:
+        raise RecordingError(f"{where}: `points` has one value for all numbers; {example}")
+    return tuple(pairs)
+
+
+def _rate(where: str, given: Any, may_be_open: bool) -> float:
+    if given is None and may_be_open:
+        return float("nan")
+    if given is None:
+        raise RecordingError(f"{where}: `rate` has no value; write how many rows there are in a second, as `rate: 500`")
+    rate = _number(where, "rate", given)
+    if rate <= 0.0:
+        raise RecordingError(f"{where}: rate {rate:g} is no number of rows in a second")
+    return rate
 
 
 def _unit_of(where: str, channel: str, text: str) -> Unit:
@@ -136,5 +337,8 @@ def _unit_of(where: str, channel: str, text: str) -> Unit:
     if unit is None:
         raise RecordingError(f"{where}: unit {text!r} is not known; {remedy(text, fitting)}")
     if unit.si != si:
-        raise RecordingError(f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}")
+        raise RecordingError(
+            f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}, and where a sensor gave {text}"
+            " say what its numbers mean with `points`"
+        )
     return unit

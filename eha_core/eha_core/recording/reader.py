@@ -10,7 +10,7 @@ import numpy as np
 
 from eha_core.errors import RecordingError, printable
 from eha_core.recording.bag import bag_topics, read_bag
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
+from eha_core.recording.channel_rules import ChannelRule, TopicsFile, topics_of
 from eha_core.recording.clocks import on_one_clock, without_leaps
 from eha_core.recording.discovery import LEAKAGE_TOPIC, find_rules, leakage_topic
 from eha_core.recording.introspection import value_names
@@ -44,15 +44,16 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
         RecordingError: nothing usable is there, or it is open what is meant; the message says what to do.
     """
     path = Path(path)
-    topics_file = topics if isinstance(topics, TopicsFile) or topics is None else load_topics_file(topics)
+    topics_file = topics_of(topics)
     if not path.exists():
         raise RecordingError(f"{path}: there is no such file or folder")
     if not (path.is_file() or path.is_dir()):
         raise RecordingError(f"{path}: is neither a file nor a folder; name a recording")
     if is_table(path):
         table = read_table(path)
-        samples, rules, remarks = channels_of(path, table, topics_file)
-        return assemble(path, samples, rules, dict.fromkeys(rules, table.kind), RawRecording(), list(remarks))
+        samples, rules, found = channels_of(path, table, topics_file)
+        remarks = [*(topics_file.remarks if topics_file else ()), *found]
+        return assemble(path, samples, rules, dict.fromkeys(rules, table.kind), RawRecording(), remarks)
     return _from_messages(path, topics_file)
 
 
@@ -98,7 +99,8 @@ def open_messages(path: Path, topics_file: TopicsFile | None) -> MessageFile:
         sinks[topic] = TopicColumns(topics[topic], fields, value_names(path, topics, topic), optional)
     types = {name: topics[str(rule.topic)].type_name for name, rule in rules.items()}
     asked = topics_file.channels.keys() if topics_file is not None else ()
-    return MessageFile(path, rules, types, sinks, tuple(remarks), asked)
+    remarks = (*(topics_file.remarks if topics_file is not None else ()), *remarks)
+    return MessageFile(path, rules, types, sinks, remarks, asked)
 
 
 def _from_messages(path: Path, topics_file: TopicsFile | None) -> Recording:

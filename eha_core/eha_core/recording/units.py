@@ -32,7 +32,7 @@ def in_model_units(
         RecordingError: the numbers cannot be in the unit that was said.
     """
     kind = CHANNEL_KINDS[name]
-    values = samples.values * rule.scale + rule.offset
+    values = rule.in_si(samples.values)
     reference = rule.reference or ABSOLUTE
     impossible = np.abs(values) > kind.largest
     largest = float(np.max(np.abs(values)))

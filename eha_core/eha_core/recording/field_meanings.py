@@ -1,0 +1,49 @@
+"""Joins what a field's name and its unit say."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from eha_core.recording.column_names import Meaning, meaning_of
+from eha_core.recording.inspection import Field, Inspection
+
+
+@dataclass(frozen=True)
+class MeantField:
+    """A field, and what its name says."""
+
+    field: Field
+    meaning: Meaning
+
+
+def meant(field: Field, common: frozenset[str] = frozenset()) -> MeantField:
+    """What a field's name says, without its unit; `common` are words that most names of its file begin with."""
+    if "command_interface" in field.path:
+        return MeantField(field, Meaning(frozenset({"voltage_command"}), "command", True, True))
+    return MeantField(field, meaning_of(plain_name(field), field.unit, common))
+
+
+def plain_name(field: Field) -> str:
+    """A field's name without its unit; a message's only number is called by its topic."""
+    # `data` says nothing.
+    path = re.sub(r"(^|[./])(data|fluid_pressure|value|values)(\[\d+\])?$", "", field.path)
+    name = path if path and not field.path.startswith("data") else f"{field.topic}/{path}"
+    if field.topic:
+        return name
+    if field.unit:
+        name = re.sub(rf"\s*[\[(<{{]\s*{re.escape(field.unit)}\s*[\])>}}]", " ", name).strip()
+    name = re.sub(r"\s*[\[(][^\[\]()]*[\])]\s*$", "", name)
+    if field.unit and name.lower().endswith(field.unit.lower()) and name.lower() != field.unit.lower():
+        name = name[: -len(field.unit)]
+    return re.sub(r"[\s_]+in\s*$", "", re.sub(r"\s+-\s+[A-Za-z]+\s*\d+\s*$", "", name))
+
+
+def is_doubled(field: Field, inspection: Inspection) -> bool:
+    """Whether a field of ros2_control's introspection is in the file a second time, in the smaller messages."""
+    start, _, last = field.topic.rpartition("/")
+    return (
+        last == "full"
+        and inspection.topics.get(f"{start}/values", "").endswith("/StatisticsValues")
+        and any(copy.topic == f"{start}/values" and not re.search(r"\[\d+\]", copy.path) for copy in inspection.fields)
+    )
