@@ -62,7 +62,8 @@ _ALSO = {
     "ml/min": "cm^3/min cc/min", "gpm": "usgpm gal/min", "cm^3": "cc cm3", "m^3": "m3",
     "rpm": "1/min min^-1 u/min rev/min r/min", "ohm": "\u03c9 ohms", "Ns/m": "n|s/m n*s/m",
     "rad": "radian radians", "deg": "\u00b0 degree degrees grad", "Nm": "n*m n|m n-m", "rad/s": "rads rad/sec",
-    "deg/s": "\u00b0/s", "%": "percent pct prozent %fs %|fs", "m/s^2": "m/s2", "degC": "\u00b0c celsius", "degF": "\u00b0f",
+    "deg/s": "\u00b0/s", "%": "percent pct prozent %fs %|fs", "m/s^2": "m/s2",
+    "degC": "\u00b0c celsius", "degF": "\u00b0f",
     "counts": "count cts digit digits lsb inc incr increments inkremente pulse pulses ticks bits adc raw",
 }  # fmt: skip
 """What else loggers write for a unit, in small letters, | for a blank."""

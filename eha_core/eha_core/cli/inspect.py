@@ -22,7 +22,8 @@ WIDEST = 60
 """Characters of a name in the list; the topics file has it in full."""
 _KINDS = {
     "csv": "text table", "lvm": "LabVIEW measurement file", "mat": "MAT file", "parquet": "Parquet file",
-    "json": "JSON records", "xlsx": "workbook", "tdms": "TDMS file", "mdf": "MDF file", "bag": "recording of ROS 2 messages",
+    "json": "JSON records", "xlsx": "workbook", "tdms": "TDMS file", "mdf": "MDF file",
+    "bag": "recording of ROS 2 messages",
 }  # fmt: skip
 
 
@@ -33,8 +34,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="list what is in a log file and write a topics file for it",
         description=__doc__,
         epilog="A channel is certain where one column or topic alone is called so and its unit is stated; everything"
-        " else is a question. On a terminal the questions are asked one by one; else they stand in the topics file, with"
-        " their possible answers.",
+        " else is a question. On a terminal the questions are asked one by one; else they are in the topics file,"
+        " with their possible answers.",
     )
     add = parser.add_argument
     add("file", type=Path, metavar="FILE", help=READABLE)
@@ -50,7 +51,8 @@ def run(arguments: argparse.Namespace) -> int:
     inspection = inspect_file(arguments.file)
     suggestions = suggest(inspection)
     print("\n".join(_listing(inspection, suggestions)))
-    if not any(one.channel != "time" for one in (*suggestions.certain, *suggestions.questions)):
+    found = {reading.channel for reading in suggestions.certain} | {asked.channel for asked in suggestions.questions}
+    if not found - {"time"}:
         print(f"eha inspect: {arguments.file}: holds nothing that can be a channel; {_WANTED}", file=sys.stderr)
         return UNUSABLE
     topics = arguments.topics

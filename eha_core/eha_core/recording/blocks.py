@@ -227,9 +227,7 @@ class _Cutter:
         stamps, values = series.stamps[later], series.values[later]
         if len(stamps):
             self._last[name] = int(stamps[-1])
-        self._pending[name] = Samples(
-            np.concatenate([before.stamps, stamps]), np.concatenate([before.values, values])
-        )
+        self._pending[name] = Samples(np.concatenate([before.stamps, stamps]), np.concatenate([before.values, values]))
 
     def _emit(self) -> None:
         assert self.start is not None

@@ -36,11 +36,12 @@ class ChannelRule:
         offset: added after scaling [SI unit].
         reference: for pressures, "absolute" or "gauge"; None where nothing was said, which counts as absolute.
         unit: the unit that was named, which `scale` and `reference` already stand for.
-        points: (raw, value) pairs of a sensor, in the file's numbers and in `unit`; a line through two, a smooth monotone
-            curve through more; empty where raw numbers are values. A value that is open is None.
+        points: (raw, value) pairs of a sensor, in the file's numbers and in `unit`; a line through two, a smooth
+            monotone curve through more; empty where raw numbers are values. A value that is open is None.
         minus: a second column, taken from the first: of two one-sided commands.
         time: the column of the channel's own times; None where the table's time, or that which the file states, serves.
-        rate: of the time, rows in a second where the table has no instants [Hz]; None where it has, NaN where it is open.
+        rate: of the time, rows in a second where the table has no instants [Hz]; None where it has, NaN where it is
+            open.
     """
 
     topic: str | None = None
@@ -199,8 +200,8 @@ def _answered(
             )
             likely_too = "" if likely is None else "; --assume takes the likely answers"
             raise RecordingError(
-                f"topics file {path}: {question.text} Write {channel}: {shown} in place of its `ask`{several}; `eha inspect"
-                f" RECORDING` asks one by one on a terminal{likely_too}"
+                f"topics file {path}: {question.text} Write {channel}: {shown} in place of its `ask`{several}; `eha"
+                f" inspect RECORDING` asks one by one on a terminal{likely_too}"
             )
         answers[channel] = likely
         if likely is not None:
@@ -338,7 +339,7 @@ def _unit_of(where: str, channel: str, text: str) -> Unit:
         raise RecordingError(f"{where}: unit {text!r} is not known; {remedy(text, fitting)}")
     if unit.si != si:
         raise RecordingError(
-            f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}, and where a sensor gave {text}"
-            " say what its numbers mean with `points`"
+            f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}, and where a sensor gave"
+            f" {text} say what its numbers mean with `points`"
         )
     return unit

@@ -1,4 +1,4 @@
-"""What a column's name says: which quantity, of which side, measured or wanted; in English, German, French and Spanish.
+"""What a column's name says: which quantity, of which side, measured or wanted.
 
 A name is divided into words. Each word that is known says something; one that is not makes the whole less than sure.
 """
@@ -9,253 +9,28 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
-from eha_core.unit_names import unit_named
-
-
-def _of(**words: str) -> dict[str, str]:
-    return {word: meaning for meaning, several in words.items() for word in several.split()}
-
-
-_QUANTITIES = _of(
-    time="time timestamp stamp zeit zeitstempel uhrzeit clock epoch date datum datetime temps tiempo elapsed seconds second"
-    " sekunden xvalue",
-    pressure="pressure press pres prs pressures druck druecke pression presion pressione fluidpressure chamberpressure",
-    position="position pos posn stroke displacement disp displ weg hub laser lvdt extension travel posicion course hubweg"
-    " kolbenweg elongation lage ltr",
-    velocity="velocity vel speed geschwindigkeit geschw vitesse velocidad xdot xd",
-    force="force kraft effort forza fuerza loadcell kraftmessdose fx",
-    flow="flow flowrate volumenstrom durchfluss debit caudal",
-    voltage="voltage volt volts spannung tension uvalve ucmd",
-    current="current strom courant corriente amps amperage",
-    spool="spool schieber tiroir xv",
-    command="cmd cmds command commands ctrl ansteuerung stellgroesse stellsignal duty pwm",
-    angle="angle winkel theta phi angulo alpha rotation",
-    torque="torque drehmoment couple",
-    turning="rpm drehzahl turns",
-    other="temp temperature temperatur acc accel acceleration beschleunigung power leistung level fuellstand humidity"
-    " viscosity vibration status state mode error err fehler alarm flag enable enabled",
-)  # fmt: skip
-_LETTERS = {
-    "t": "time", "p": "pressure", "x": "position", "v": "velocity", "f": "force", "q": "flow", "u": "voltage",
-    "i": "current", "n": "turning",
-}  # fmt: skip
-"""Symbols; they say less than a word, and yield to one."""
-_OBJECTS = _of(
-    valve="valve ventil valves servo servovalve servoventil proportional solenoid coil spule magnet vanne valvula prop",
-    cylinder="cylinder zylinder zyl cyl actuator aktor ram jack verin cilindro piston kolben",
-    pump="pump pumpe pumps pompe motor",
-    supply="supply versorgung battery batterie sys system source netz feed speise",
-    tank="tank return ruecklauf reservoir drain sump",
-)
-_SIDES = _of(
-    a="a 1 head headside cap capend blind bore boden bodenseite kolbenseite kolbenseitig bottom",
-    b="b 2 rod rodside rodend annulus ring ringseite stange stangenseite kolbenstange stangenseitig gap",
-    supply="s 0",
-)
-_WANTED = frozenset(
-    [
-        "ref",
-        "reference",
-        "des",
-        "desired",
-        "target",
-        "set",
-        "setpoint",
-        "soll",
-        "sollwert",
-        "demand",
-        "demanded",
-        "consigne",
-        "goal",
-        "planned",
-        "wanted",
-    ]
-)
-"""What is asked for is not what is measured."""
-_DENIED = frozenset(
-    [
-        "err",
-        "error",
-        "fehler",
-        "abweichung",
-        "deviation",
-        "diff",
-        "difference",
-        "delta",
-        "dp",
-        "max",
-        "min",
-        "limit",
-        "limits",
-        "alarm",
-        "status",
-        "flag",
-        "enable",
-        "sim",
-        "simulated",
-        "model",
-        "modelled",
-        "est",
-        "estimated",
-        "predicted",
-        "temp",
-        "temperature",
-        "temperatur",
-        "pilot",
-        "accumulator",
-        "speicher",
-    ]
-)
-"""What is derived, or of another part than the cylinder."""
-_MEASURED = frozenset(("position", "velocity", "force", "pressure", "flow", "angle", "torque"))
-_FILLERS = frozenset(
-    [
-        "main",
-        "plot",
-        "data",
-        "value",
-        "sensor",
-        "measured",
-        "meas",
-        "messwert",
-        "ist",
-        "istwert",
-        "actual",
-        "act",
-        "fbk",
-        "feedback",
-        "signal",
-        "sig",
-        "ch",
-        "chan",
-        "channel",
-        "ai",
-        "ain",
-        "analog",
-        "in",
-        "input",
-        "io",
-        "out",
-        "output",
-        "hyd",
-        "hydraulic",
-        "rig",
-        "run",
-        "test",
-        "log",
-        "gvl",
-        "plc",
-        "global",
-        "var",
-        "st",
-        "model",
-        "root",
-        "chamber",
-        "kammer",
-        "side",
-        "seite",
-        "port",
-        "line",
-        "axis",
-        "ax",
-        "axial",
-        "exp",
-        "x1",
-        "no",
-        "nr",
-        "raw",
-        "filt",
-        "filtered",
-        "filter",
-        "the",
-        "of",
-        "at",
-        "on",
-        "daq",
-        "dev",
-        "device",
-        "mod",
-        "module",
-        "group",
-        "untitled",
-        "abs",
-        "rel",
-        "gauge",
-        "absolute",
-        "zyl1",
-        "state",
-        "interface",
-        "interfaces",
-        "controller",
-        "lbl",
-        "y",
-        "z",
-        "d",
-        "r",
-        "lr",
-        "fl",
-        "l",
-        "j",
-        "joint",
-        "states",
-    ]
-) | frozenset("oel oil pressures")
-_FIRST = frozenset(
-    [
-        "up",
-        "extend",
-        "extending",
-        "a",
-        "1",
-        "out",
-        "open",
-        "plus",
-        "pos",
-        "positive",
-        "forward",
-        "fwd",
-        "heben",
-        "ausfahren",
-        "auf",
-        "raise",
-        "lift",
-        "vor",
-    ]
-)
-_SECOND = frozenset(
-    [
-        "down",
-        "retract",
-        "retracting",
-        "b",
-        "2",
-        "in",
-        "close",
-        "closed",
-        "minus",
-        "neg",
-        "negative",
-        "backward",
-        "back",
-        "bwd",
-        "rev",
-        "reverse",
-        "senken",
-        "einfahren",
-        "ab",
-        "lower",
-        "zurueck",
-    ]
-)
-"""What the two one-sided commands of a valve are called; the first moves the piston out."""
+from eha_core.recording import name_words as words_known
+from eha_core.recording.name_words import LETTERS, OBJECTS, QUANTITIES, SIDES, WANTED
+from eha_core.unit_names import Unit, unit_named
 
 _CHANNELS_OF_SIDES = {
-    "pressure": {"a": "pressure_a", "b": "pressure_b", "supply": "supply_pressure"},
-    "flow": {"a": "flow_a", "b": "flow_b"},
+    "pressure": ("Pa", {"a": "pressure_a", "b": "pressure_b", "supply": "supply_pressure"}),
+    "flow": ("m^3/s", {"a": "flow_a", "b": "flow_b"}),
 }
+_USUAL_UNITS = {
+    "time": "s", "pressure": "Pa", "position": "m", "velocity": "m/s", "force": "N", "flow": "m^3/s", "voltage": "V",
+    "current": "A", "turning": "rad/s",
+}  # fmt: skip
 _ASCII = str.maketrans(
-    {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "é": "e", "è": "e", "ê": "e", "ó": "o", "í": "i", "á": "a", "ñ": "n"}
-)
+    {
+        "ä": "ae", "ö": "oe", "ü": "ue", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue", "ß": "ss", "é": "e", "è": "e", "ê": "e",
+        "ó": "o", "í": "i", "á": "a", "ñ": "n",
+    }
+)  # fmt: skip
+_MOST_LEVELS = 3
+"""Levels of a name that are read together."""
+_COMMON = 0.6
+"""Share of the names of a file that begin with a word which then says nothing of each."""
 
 
 @dataclass(frozen=True)
@@ -286,8 +61,7 @@ NOTHING = Meaning()
 
 def words_of(name: str) -> list[str]:
     """A name's words in small ASCII letters; digits are words of their own."""
-    text = name.translate(_ASCII).translate({ord(k) - 32: v for k, v in (("ä", "Ae"), ("ö", "Oe"), ("ü", "Ue"))})
-    text = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", text)
+    text = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name.translate(_ASCII))
     text = re.sub(r"(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", "_", text)
     return [word for word in re.split(r"[^a-z0-9]+", text.lower()) if word]
 
@@ -303,143 +77,111 @@ def meaning_of(name: str, unit: str = "", common: frozenset[str] = frozenset()) 
     """
     levels = [level for level in re.split(r"[./\[\]{}()|\\:]+", name) if words_of(level)]
     best = NOTHING
-    for count in range(1, min(len(levels), 3) + 1):
+    for count in range(1, min(len(levels), _MOST_LEVELS) + 1):
         found = _of_words([word for level in levels[-count:] for word in words_of(level)], unit, common)
-        if found.is_other or found.is_wanted and not found.channels:
-            return found
-        if len(found.channels) == 1:
+        if len(found.channels) == 1 or found.is_other or (found.is_wanted and not found.channels):
             return found
         best = best if best.channels else found
     return best
 
 
+def names_a_side(name: str) -> bool:
+    """Whether a name is of a quantity that has two sides, a pressure or a flow; a letter behind it is then the side."""
+    said = {QUANTITIES.get(word, LETTERS.get(word, "")) for word in _joined(words_of(name))}
+    return bool(said & {"pressure", "flow"})
+
+
+def common_words(names: list[str]) -> frozenset[str]:
+    """Words that most names of a file begin with: they name the rig, and say nothing of the column."""
+    counts: dict[str, int] = {}
+    for name in names:
+        for word in words_of(name)[:1]:
+            counts[word] = counts.get(word, 0) + 1
+    often = (word for word, count in counts.items() if count >= max(3, _COMMON * len(names)))
+    return frozenset(word for word in often if word not in QUANTITIES and word not in LETTERS)
+
+
 def _of_words(words: list[str], unit: str, common: frozenset[str]) -> Meaning:
-    words = [word for word in words if word not in common or len(words) == 1] or words
-    words = _joined(words)
-    known = unit_named(unit)
-    quantities = [_QUANTITIES[word] for word in words if word in _QUANTITIES]
-    objects = {_OBJECTS[word] for word in words if word in _OBJECTS}
-    sides = _sides(words)
-    letters = (
-        [] if quantities else [_LETTERS[word] for word in words if word in _LETTERS and _agrees(_LETTERS[word], known)]
-    )
-    is_wanted, is_denied = bool(set(words) & _WANTED), bool(set(words) & _DENIED)
+    words = _joined([word for word in words if word not in common] or words)
+    known, said = unit_named(unit), set(words)
+    quantities = [QUANTITIES[word] for word in words if word in QUANTITIES]
+    objects = {OBJECTS[word] for word in words if word in OBJECTS}
+    letters = [LETTERS[word] for word in words if word in LETTERS and _agrees(LETTERS[word], known)]
+    named = quantities or letters[:1]
+    is_wanted = bool(said & WANTED)
     # A commanded position is none that was measured; a commanded valve is the command.
-    is_wanted |= "command" in quantities and bool(set(quantities) & _MEASURED) and "valve" not in objects
-    if "flow" in quantities or letters[:1] == ["flow"]:
-        sides |= {{"in": "a", "out": "b"}[word] for word in words if word in ("in", "out")}
-    channels = _channels(quantities or letters[:1], objects, sides, known.si if known else "", is_wanted)
-    unknown = [word for word in words if not _is_known(word)]
-    if is_denied or "other" in quantities:
+    is_wanted |= "command" in quantities and bool(set(quantities) & words_known.MEASURED) and "valve" not in objects
+    if said & words_known.DENIED or "other" in quantities:
         return Meaning(quantity="other", is_other=True)
+    sides = {SIDES[word] for word in words if word in SIDES}
+    if "flow" in named:
+        sides |= {{"in": "a", "out": "b"}[word] for word in words if word in ("in", "out")}
+    channels = _channels(named, objects, sides, known.si if known else "", is_wanted)
     if is_wanted and "voltage_command" not in channels:
         return Meaning(is_wanted=True)
-    side = (1 if set(words) & _FIRST else 0) - (1 if set(words) & _SECOND else 0)
-    quantity = (quantities or letters[:1] or [""])[0]
-    sure = not unknown and not is_wanted and len(set(quantities) - {"command"}) < 2
-    return Meaning(
-        frozenset(channels), quantity, bool(quantities), sure, is_wanted, not channels and "tank" in objects, side
-    )
+    side = bool(said & words_known.FIRST) - bool(said & words_known.SECOND)
+    understood = all(_is_known(word) for word in words)
+    sure = understood and not is_wanted and len(set(quantities) - {"command"}) < 2
+    is_other = not channels and bool(objects & {"tank", "pump", "supply"})
+    return Meaning(frozenset(channels), (*named, "")[0], bool(quantities), sure, is_wanted, is_other, side)
 
 
 def _joined(words: list[str]) -> list[str]:
-    """Words of which two make one, as `load cell` and `x dot`."""
+    """The words with those joined of which two make one, as `load cell`, and compounds divided."""
     made: list[str] = []
     for word in words:
-        if made and made[-1] + word in (
-            "loadcell",
-            "xdot",
-            "xvalue",
-            "xv",
-            "flowrate",
-            "headside",
-            "rodside",
-            "rodend",
-            "capend",
-        ):
+        if made and word.isdigit() and made[-1] in words_known.NUMBERED:
+            continue  # the number of an input is none of a side
+        if made and made[-1] + word in words_known.PAIRS:
             made[-1] += word
-        elif made and made[-1] == "x" and word in ("spool", "schieber"):
+        elif made and made[-1] == "x" and QUANTITIES.get(word) == "spool":
             made[-1] = word
         else:
             made.append(word)
-    made = [part for word in made for part in _parts(word)]
-    # pA, pb, pressurea: a symbol and its side in one word.
-    split: list[str] = []
-    for word in made:
-        match = re.fullmatch(r"(p|q|pressure|druck|press)(a|b|s)", word)
-        split += [match[1], match[2]] if match and word not in _QUANTITIES else [word]
-    return split
+    return [part for word in made for part in _parts(word)]
 
 
 def _parts(word: str) -> list[str]:
-    """A compound such as `kolbendruck` or `rodpressure` as its two words; any other word as it is."""
-    if _is_known(word):
+    """A compound such as `kolbendruck`, `rodpressure` or `pb` as its two words; any other word as it is."""
+    if _is_known(word) or word in words_known.DENIED:
         return [word]
+    if match := re.fullmatch(r"(p|q|pressure|druck|press)(a|b|s)", word):
+        return [match[1], match[2]]
     for k in range(len(word) - 3, 2, -1):
         left, right = word[:k], word[k:]
-        if any(right in words for words in (_QUANTITIES, _OBJECTS, _SIDES)):
+        if any(right in several for several in words_known.COMPOUNDED):
             for stem in (left, left.removesuffix("s"), left.removesuffix("n")):
-                if any(stem in words for words in (_QUANTITIES, _OBJECTS, _SIDES, _WANTED, _DENIED)):
+                if any(stem in several for several in words_known.STEMS):
                     return [stem, right]
     return [word]
 
 
 def _is_known(word: str) -> bool:
-    named = (_QUANTITIES, _LETTERS, _OBJECTS, _SIDES, _WANTED, _FILLERS, _FIRST, _SECOND)
-    return any(word in words for words in named) or word.isdigit()
+    return word.isdigit() or any(word in several for several in words_known.EVERY)
 
 
-def _agrees(quantity: str, known: object) -> bool:
-    """Whether a symbol's quantity may be in a unit; one in which anything may be recorded says nothing against it."""
-    si = getattr(known, "si", None)
-    usual = {
-        "time": "s", "pressure": "Pa", "position": "m", "velocity": "m/s", "force": "N", "flow": "m^3/s", "voltage": "V",
-        "current": "A", "turning": "rad/s",
-    }  # fmt: skip
-    return (
-        si is None
-        or si in (usual[quantity], "%", "counts", "A")
-        or (si == "V" and quantity in ("pressure", "position"))
-    )
+def _agrees(quantity: str, known: Unit | None) -> bool:
+    """Whether a symbol's quantity may be in a unit; what any sensor may give says nothing against it."""
+    if known is None or known.si in (_USUAL_UNITS[quantity], "%", "counts", "A"):
+        return True
+    return known.si == "V" and quantity in ("pressure", "position")
 
 
-def _sides(words: list[str]) -> set[str]:
-    return {_SIDES[word] for word in words if word in _SIDES}
-
-
-def _channels(quantities: list[str], objects: set[str], sides: set[str], si: str, is_wanted: bool) -> set[str]:
+def _channels(named: list[str], objects: set[str], sides: set[str], si: str, is_wanted: bool) -> set[str]:
     """The channels of what the words of a name say together."""
-    said = set(quantities)
+    said = set(named)
     if "time" in said:
         return {"time"}
-    if "tank" in objects or (objects & {"supply"} and said & {"voltage", "current"}):
+    if "tank" in objects or ("supply" in objects and said & {"voltage", "current"}):
         return set()
-    if "valve" in objects and (is_wanted or "command" in said) or (is_wanted and "voltage" in said):
+    if ("valve" in objects and (is_wanted or "command" in said)) or (is_wanted and "voltage" in said):
         return {"voltage_command"}
-    if "spool" in said or (said & {"position"} and "valve" in objects):
-        return {"spool"} if not is_wanted else {"voltage_command"}
-    for quantity, channels in _CHANNELS_OF_SIDES.items():
-        if quantity in said or (
-            not said and sides & {"a", "b"} and si == {"pressure": "Pa", "flow": "m^3/s"}[quantity]
-        ):
+    if "spool" in said or ("position" in said and "valve" in objects):
+        return {"voltage_command"} if is_wanted else {"spool"}
+    for quantity, (own, channels) in _CHANNELS_OF_SIDES.items():
+        if quantity in said or (not said and sides & {"a", "b"} and si == own):
             return _of_side(quantity, channels, objects, sides)
-    if "turning" in said or (said & {"velocity"} and "pump" in objects) or ("pump" in objects and si == "rad/s"):
-        return {"pump_speed"}
-    if said & {"torque", "force"}:
-        return {"force"}
-    if said & {"position", "angle"}:
-        return {"position"}
-    if "velocity" in said:
-        return {"velocity"}
-    if "current" in said:
-        return set() if "pump" in objects else {"current"}
-    if said & {"voltage", "command"}:
-        return set() if "pump" in objects else {"voltage_command"}
-    if "valve" in objects:
-        return {"current"} if si == "A" else {"voltage_command"}
-    if "cylinder" in objects:
-        return {"m": {"position"}, "m/s": {"velocity"}, "N": {"force"}, "": {"position"}}.get(si, set())
-    return set()
+    return _without_side(said, objects, si)
 
 
 def _of_side(quantity: str, channels: dict[str, str], objects: set[str], sides: set[str]) -> set[str]:
@@ -448,24 +190,24 @@ def _of_side(quantity: str, channels: dict[str, str], objects: set[str], sides: 
         return {"supply_pressure"}
     found = {channels[side] for side in sides if side in channels}
     if not found and "cylinder" in objects and quantity == "pressure":
-        return {"pressure_a"}  # of the piston's side, as `Kolbendruck`; not sure where the other is called likewise
+        return {"pressure_a"}  # of the piston's side, as in `Kolbendruck`
     return found if len(found) == 1 else set(channels.values())
 
 
-def names_a_side(name: str) -> bool:
-    """Whether a name is of a quantity that has two sides, a pressure or a flow, so that a letter behind it is the side."""
-    said = {_QUANTITIES.get(word, _LETTERS.get(word, "")) for word in _joined(words_of(name))}
-    return bool(said & {"pressure", "flow"})
-
-
-def common_words(names: list[str]) -> frozenset[str]:
-    """Words that nearly all names of a file begin with: they name the rig, and say nothing of the column."""
-    first = [words_of(name)[:1] for name in names]
-    counts: dict[str, int] = {}
-    for words in first:
-        for word in words:
-            counts[word] = counts.get(word, 0) + 1
-    return frozenset(
-        word for word, count in counts.items()
-        if count >= 3 and count >= 0.6 * len(names) and word not in _QUANTITIES and word not in _LETTERS
-    )  # fmt: skip
+def _without_side(said: set[str], objects: set[str], si: str) -> set[str]:
+    """The channels of a quantity that a rig has once."""
+    is_pump = "pump" in objects
+    if "turning" in said or (is_pump and ("velocity" in said or si == "rad/s")):
+        return {"pump_speed"}
+    for quantities, channel in (
+        ({"torque", "force"}, "force"), ({"position", "angle"}, "position"), ({"velocity"}, "velocity"),
+    ):  # fmt: skip
+        if said & quantities:
+            return {channel}
+    if said & {"current", "voltage", "command"}:
+        return set() if is_pump else {"current"} if "current" in said else {"voltage_command"}
+    if "valve" in objects:
+        return {"current"} if si == "A" else {"voltage_command"}
+    if "cylinder" in objects:
+        return {"m": {"position"}, "m/s": {"velocity"}, "N": {"force"}, "": {"position"}}.get(si, set())
+    return set()

@@ -31,11 +31,13 @@ def plain_name(field: Field) -> str:
     name = path if path and not field.path.startswith("data") else f"{field.topic}/{path}"
     if field.topic:
         return name
+    if re.fullmatch(r"[A-Za-z]{1,2}\d?\[\d+\]", name):
+        return ""  # a row of a matrix, whose symbol says nothing of its rows
     if field.unit:
-        name = re.sub(rf"\s*[\[(<{{]\s*{re.escape(field.unit)}\s*[\])>}}]", " ", name).strip()
+        unit = re.escape(field.unit)
+        bare = re.sub(rf"\s*[\[(<{{]\s*{unit}\s*[\])>}}]", " ", name).strip()
+        name = bare if bare != name else re.sub(rf"(?:[\s_/,:;|-]+|(?<=[a-z])(?=[A-Z]))(?i:{unit})$", "", name)
     name = re.sub(r"\s*[\[(][^\[\]()]*[\])]\s*$", "", name)
-    if field.unit and name.lower().endswith(field.unit.lower()) and name.lower() != field.unit.lower():
-        name = name[: -len(field.unit)]
     return re.sub(r"[\s_]+in\s*$", "", re.sub(r"\s+-\s+[A-Za-z]+\s*\d+\s*$", "", name))
 
 

@@ -139,8 +139,9 @@ def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
     unit = table.units.get(name) or unit_of_name(name, tuple(table.columns))
     loss = table.losses.get(name)
     return Field(
-        "", name, len(numbers), float(numbers.min()), float(numbers.max()), nan, unit, float(numbers[0]), usual_step(times),
-        repeated=(len(times) - 1) / float(times[-1] - times[0]) if repeats(times) else 0.0, time=table.times.get(name, ""),
+        "", name, len(numbers), float(numbers.min()), float(numbers.max()), nan, unit, float(numbers[0]),
+        usual_step(times), repeated=(len(times) - 1) / float(times[-1] - times[0]) if repeats(times) else 0.0,
+        time=table.times.get(name, ""),
         problem=str(loss) if loss is not None and loss.by_value else "",
     )  # fmt: skip
 
@@ -227,8 +228,8 @@ class _Watch:
                 return False
             if long := long_arrays(layout):
                 self.remarks.append(
-                    f"{topic.name}: {', '.join(long)} of more than {LONGEST_ARRAY} numbers not listed; a topics file can"
-                    f" name an element, as {long[0]}[0]"
+                    f"{topic.name}: {', '.join(long)} of more than {LONGEST_ARRAY} numbers not listed; a topics file"
+                    f" can name an element, as {long[0]}[0]"
                 )
             if len(paths) > MOST_FIELDS:
                 self.remarks.append(f"{topic.name}: {len(paths) - MOST_FIELDS} numbers more are not listed")
@@ -297,7 +298,8 @@ def long_arrays(layout: Layout) -> list[str]:
     return [
         path for path, run in layout.runs.items()
         if run.count is not None and LONGEST_ARRAY < run.count <= MOST_FIELDS and run.size >= 4
-        and not path.startswith(_HEADS) and not path.endswith("covariance") and not _element_names(path, run.count, layout, {})
+        and not path.startswith(_HEADS) and not path.endswith("covariance")
+        and not _element_names(path, run.count, layout, {})
     ]  # fmt: skip
 
 

@@ -141,7 +141,7 @@ def _other_reference(reading: Reading) -> list[Reading]:
 
 
 def _is_loop(channel: str, one: MeantField, unit: Unit | None) -> bool:
-    """Whether a field in the channel's own unit is more likely a loop current: of a coil's current, only where it is so called."""
+    """Whether a field in the channel's own unit is more likely a loop current, its name being of no coil's."""
     if unit is None or unit.si != "A" or channel not in ("current", "spool"):
         return False
     low, high = one.field.low * unit.scale, one.field.high * unit.scale
@@ -149,7 +149,7 @@ def _is_loop(channel: str, one: MeantField, unit: Unit | None) -> bool:
 
 
 def _through_points(channel: str, one: MeantField, unit: Unit) -> list[Reading] | None:
-    """The readings of what a sensor or a card gave, whose meaning is asked for; None for a unit that no sensor gives."""
+    """The readings of what a sensor or a card gave, whose meaning is asked for; None for other units."""
     field, si = one.field, si_of(channel)
     value = _VALUE_UNITS[si]
     reference = GAUGE if CHANNEL_KINDS[channel].is_pressure else None

@@ -124,9 +124,7 @@ def simulate(experiment: Experiment) -> Simulated:
     Raises:
         ParameterError: a parameter, a change or the rate does not fit.
     """
-    plant = Plant(
-        experiment.parameters, experiment.step_size, experiment.initial_position, experiment.composition
-    )
+    plant = Plant(experiment.parameters, experiment.step_size, experiment.initial_position, experiment.composition)
     every, periods = experiment.steps_per_period, experiment.periods
     parameters = dict(plant.parameters)
     driving = _driving(experiment)

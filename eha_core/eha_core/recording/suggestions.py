@@ -18,8 +18,8 @@ from eha_core.recording.time_suggestions import suggest_time
 from eha_core.unit_names import unit_named
 
 _CHANNELS = (
-    "voltage_command", "current", "spool", "flow_a", "flow_b", "pressure_a", "pressure_b", "pump_speed", "supply_pressure",
-    "position", "velocity", "force",
+    "voltage_command", "current", "spool", "flow_a", "flow_b", "pressure_a", "pressure_b", "pump_speed",
+    "supply_pressure", "position", "velocity", "force",
 )  # fmt: skip
 _USUAL_CHANNELS = ("voltage_command", "position", "pressure_a", "pressure_b")
 """What a column without a telling name is asked to be, where no other column is it."""
@@ -82,13 +82,18 @@ def suggest(inspection: Inspection) -> Suggestions:
     for channel in _CHANNELS:
         if channel in known:
             certain.append(known[channel])
-        elif claims[channel] and not (channel == "force" and both and known):
+        elif claims[channel] and not (channel == "force" and both and (known or _are_torques(claims[channel]))):
             found = _of_channel(channel, claims, both)
             certain += [found] if isinstance(found, Reading) else []
             questions += [found] if isinstance(found, Question) else []
     if not (inspection.topics and known):
         questions += _open_questions(fields, certain, questions)
     return Suggestions(tuple(certain), tuple(questions))
+
+
+def _are_torques(fields: Sequence[MeantField]) -> bool:
+    """Whether fields are of a force only by a lever: nothing to ask where both pressures tell it."""
+    return all((unit := unit_named(one.field.unit)) is not None and unit.si == "N m" for one in fields)
 
 
 def _by_contract(inspection: Inspection) -> dict[str, Reading]:
@@ -116,8 +121,8 @@ def _by_contract(inspection: Inspection) -> dict[str, Reading]:
 
 
 def _claims(fields: Sequence[MeantField]) -> dict[str, list[MeantField]]:
-    """The fields that may be each channel: those called so, or where none is, those in its unit without any such name."""
-    claims = {}
+    """The fields that may be each channel: those called so, or where none is, those in its unit that no name tells."""
+    claims: dict[str, list[MeantField]] = {}
     for channel in _CHANNELS:
         called = [one for one in fields if channel in one.meaning.channels]
         single = [one for one in called if one.meaning.channels == {channel}]
@@ -164,8 +169,8 @@ def _one_sided(fields: Sequence[MeantField]) -> Question | None:
     for plus, minus in ((first, second), (second, first)):
         ways += [replace(reading, minus=minus.field) for reading in readings_of("voltage_command", plus)]
     text = (
-        f"{_names((first, second))}: one command of two sides? {first.field.path!r} less {second.field.path!r} is the first"
-        f" answer, the other way round the second; {_calibration('voltage_command', first.field, ways)}"
+        f"{_names((first, second))}: one command of two sides? {first.field.path!r} less {second.field.path!r} is the"
+        f" first answer, the other way round the second; {_calibration('voltage_command', first.field, ways)}"
     )
     return Question("voltage_command", text, (*ways, None))
 
@@ -261,6 +266,7 @@ def rule_of(reading: Reading) -> ChannelRule:
         topic=field.topic or None, field=field.path if field.topic else None,
         column=None if field.topic or not field.path else field.path,
         scale=1.0, reference=reading.reference, unit=reading.unit, points=reading.points,
-        minus=reading.minus.path if reading.minus else None, time=field.time or None if reading.channel != "time" else None,
+        minus=reading.minus.path if reading.minus else None,
+        time=field.time or None if reading.channel != "time" else None,
         rate=reading.rate,
     )  # fmt: skip

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from eha_core.errors import RecordingError
 from eha_core.recording.channel_rules import ChannelRule, TopicsFile
-from eha_core.recording.recording import CHANNEL_KINDS
+from eha_core.recording.recording import CHANNEL_KINDS, FloatArray
 from eha_core.recording.samples import Samples
 from eha_core.recording.time_units import TimeUnit, time_unit, unwrapped, usual_step
 from eha_core.tables import Column, Table
@@ -19,6 +19,8 @@ from eha_core.unit_names import UNITS
 
 FEWEST = 20
 """Times below which nothing is said of their unit."""
+FINE = 2.0**60
+"""ns from which on a float holds no times finer than 0.1 us, so that even steps come out uneven."""
 FARTHEST = 2**62
 """ns from 1970 that a stamp may lie: 146 years."""
 
@@ -32,8 +34,8 @@ def channels_of(
     have, are recognised.
 
     Raises:
-        RecordingError: no time, a column that the topics file names is not there or has another length, or one loses its
-            largest or smallest values.
+        RecordingError: no time, a column that the topics file names is not there or has another length, or one loses
+            its largest or smallest values.
     """
     given: Mapping[str, ChannelRule | None] = topics_file.channels if topics_file else {}
     clocks = _Clocks(path, table, topics_file.time if topics_file else ChannelRule())
@@ -142,8 +144,8 @@ def _lost(path: Path, table: Table, channel: str, rule: ChannelRule) -> list[str
             continue
         if loss.by_value:
             raise RecordingError(
-                f"{path}: {column!r} for channel {channel}: {loss}; what is left is no fair sample: export it anew, or leave"
-                f" the channel out with `{channel}: null` in a topics file"
+                f"{path}: {column!r} for channel {channel}: {loss}; what is left is no fair sample: export it anew, or"
+                f" leave the channel out with `{channel}: null` in a topics file"
             )
         said.append(f"{channel} ({column}): {loss}")
     return said
@@ -172,8 +174,11 @@ def stamps_of(
     times, wrapped = unwrapped(times)
     remarks = (f"{where} {wrapped}",) if wrapped else ()
     scale = rule.scale
+    if rule.rate is not None and usual_step(times) <= 0.0:
+        # Times that stand are coarser than the samples, which only their number tells apart.
+        return np.round(np.arange(len(times)) * (1e9 / rule.rate)).astype(np.int64), remarks
     if rule.rate is not None:
-        scale = _scale_of_rate(times, rule.rate)
+        scale = 1.0 / (rule.rate * usual_step(times))
     elif (rule.scale, rule.offset, rule.unit) == (1.0, 0.0, None):
         scale, said = _scale(where, times, stated, rate)
         remarks = (*remarks, *said)
@@ -183,6 +188,7 @@ def stamps_of(
     first = float(times[0]) * scale + rule.offset
     with np.errstate(over="ignore"):
         since = (times - times[0]).astype(np.float64) * scale * 1e9
+    since = _even(since, abs(float(times[0])) * scale * 1e9)
     if abs(first) * 1e9 > FARTHEST and scale in (UNITS["day"].scale, UNITS["100ns"].scale):
         first = 0.0  # since the year 0, 1 or 1601; only how far they lie apart matters
     if not (abs(first) * 1e9 <= FARTHEST and float(np.max(np.abs(since))) <= FARTHEST):
@@ -190,10 +196,15 @@ def stamps_of(
     return round(first * 1e9) + np.round(since).astype(np.int64), remarks
 
 
-def _scale_of_rate(times: Column, rate: float) -> float:
-    """What makes seconds of sample numbers at a rate; of times that stand, where their clock is coarser, likewise."""
-    step = usual_step(times)
-    return 1.0 / (rate * step) if step > 0.0 else 1.0 / rate
+def _even(since: FloatArray, size: float) -> FloatArray:
+    """Times [ns] since the first at even steps, where they differ from those by no more than a float of their size can
+    tell: a day's number holds 10 us."""
+    if len(since) < FEWEST or size < FINE:
+        return since
+    count = np.arange(len(since), dtype=np.float64)
+    slope, start = np.polyfit(count, since, 1)
+    even = start + slope * count
+    return even - start if float(np.max(np.abs(since - even))) <= 2.0 * float(np.spacing(size)) else since
 
 
 def _scale(where: str, times: Column, stated: str, rate: float | None) -> tuple[float, tuple[str, ...]]:

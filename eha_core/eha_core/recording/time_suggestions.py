@@ -9,43 +9,11 @@ from math import nan
 from eha_core.recording.column_names import words_of
 from eha_core.recording.field_meanings import meant
 from eha_core.recording.inspection import Field, Inspection
+from eha_core.recording.name_words import INDEX
 from eha_core.recording.readings import Reading
 from eha_core.recording.time_units import FASTEST, time_unit
 from eha_core.unit_names import UNITS, unit_named
 
-_INDEX = frozenset(
-    [
-        "sample",
-        "samples",
-        "index",
-        "idx",
-        "nr",
-        "no",
-        "num",
-        "number",
-        "count",
-        "counter",
-        "row",
-        "rows",
-        "point",
-        "points",
-        "scan",
-        "record",
-        "lfd",
-        "nummer",
-        "seq",
-        "sequence",
-        "n",
-        "k",
-        "i",
-        "line",
-        "zeile",
-        "messpunkt",
-        "tick",
-        "ticks",
-    ]
-)
-"""Words of columns that count rows."""
 _ROWS = "how many samples a second? the file has no times"
 
 
@@ -124,7 +92,7 @@ def _is_index(field: Field) -> bool:
         ["n"] if field.path.strip() == "#" else []
     )
     return (
-        bool(set(words) & _INDEX) and all(word in _INDEX or word in ("time", "of") for word in words) and _counts(field)
+        bool(set(words) & INDEX) and all(word in INDEX or word in ("time", "of") for word in words) and _counts(field)
     )
 
 

@@ -48,7 +48,7 @@ _PERIODS = (
     *(2.0**bits for bits in (8, 15, 16, 31, 32)), *(2.0**32 * scale for scale in (1e-3, 1e-6)), 2.0**16 * 1e-3,
     60.0, 1e3, 3600.0, 43_200.0, 86_400.0, 1e6, 86_400e3, 86_400e6, 3600e9, 43_200e9, 86_400e9, 604_800.0,
 )  # fmt: skip
-"""Where counters begin anew: at whole bytes, of ms and us in s too, and clocks at the minute, hour, noon, midnight, week."""
+"""Where counters begin anew: at whole bytes, of ms and us in s too; clocks at the minute, hour, noon, midnight."""
 
 
 @dataclass(frozen=True)

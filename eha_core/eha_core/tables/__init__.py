@@ -50,8 +50,8 @@ def read_table(path: Path) -> Table:
     """Read a file of columns by the reader of its name's ending; of any other ending as text.
 
     Raises:
-        RecordingError: the file is of a kind that holds no columns, cannot be read as what its ending says, or a library
-            for it is missing.
+        RecordingError: the file is of a kind that holds no columns, cannot be read as what its ending says, or a
+            library for it is missing.
     """
     ending = path.suffix.lower()
     try:

@@ -18,7 +18,8 @@ from eha_core.tables.table import Column, Loss, Table, distinct
 from eha_core.tables.time_cells import DAY
 
 _TIME = re.compile(
-    r"(t|time|zeit|timestamp|time_?stamp|x_?value|zeitstempel|uhrzeit|date|datum|date ?time|abs(olute)? ?time|rel(ative)? ?time)"
+    r"(t|time|zeit|timestamp|time_?stamp|x_?value|zeitstempel|uhrzeit|date|datum|date ?time"
+    r"|(abs|rel)(olute|ative)? ?time)"
 )
 _FRACTIONS = {
     10**6: re.compile(r"(ms|msec|millis|milli ?seconds?|millisekunden?|millisec|time ?ms)", re.IGNORECASE),

@@ -20,8 +20,10 @@ _MOST_OTHERWISE = 1e-3
 """Numbers written another way than the rest of their column, in number and share, up to which they are slips."""
 _AT_THE_EDGE = 0.1
 """Share of a column's range that counts as its largest, or smallest, values ..."""
-_FEWEST_RUNS, _MOST_RUNS_ELSEWHERE = 3, 0.1
-"""... and how many runs of lost cells there must be, and which share of them may lie elsewhere, for a loss by value."""
+_FEWEST_RUNS, _FEWEST_CELLS = 3, 20
+"""... how many gaps there must be for a loss by value, one less where so many cells are lost ..."""
+_MOST_ELSEWHERE, _MOST_OFTEN = 0.1, 0.5
+"""... which share of what stands around them may lie elsewhere, and of all values at that edge."""
 
 
 class GatheredColumn:
@@ -133,8 +135,9 @@ class GatheredColumn:
     def _in_ns(self, parts: Sequence[NDArray[Any]]) -> NDArray[Any]:
         """The parts in one unit: ns where no cell is missing, else s."""
         if self.unit == "ns":
-            return np.concatenate(parts)
-        return np.concatenate([part * 1e-9 if part.dtype.kind == "i" else part.astype(np.float64) for part in parts])
+            return np.asarray(np.concatenate(parts))
+        seconds = [part * 1e-9 if part.dtype.kind == "i" else part.astype(np.float64) for part in parts]
+        return np.asarray(np.concatenate(seconds))
 
     def loss(self, values: Column, timed: NDArray[np.bool_] | None = None) -> Loss | None:
         """What could not be had of the column; None where nothing was lost.
@@ -159,7 +162,8 @@ def _joined(parts: Sequence[NDArray[Any]]) -> Column:
     """Parts of numbers as one column: whole numbers stay whole where all are."""
     if all(part.dtype.kind in "iu" for part in parts):
         whole = np.concatenate(parts)
-        return whole.astype(np.int64) if np.abs(whole[:1]).max(initial=0) > 2**52 else whole.astype(np.float64)
+        is_exact = np.abs(whole[:1]).max(initial=0) > 2**52
+        return np.asarray(whole.astype(np.int64 if is_exact else np.float64))
     return np.concatenate([part.astype(np.float64) for part in parts])
 
 
@@ -179,19 +183,19 @@ def _quick(cells: NDArray[Any], decimal: str) -> tuple[NDArray[np.float64], NDAr
 
 
 def loses_by_value(values: Column, missing: NDArray[np.bool_]) -> bool:
-    """Whether cells are missing where a column is at its largest, or smallest: what comes before each gap tells."""
+    """Whether cells are missing where a column is at its largest, or smallest: what stands around each gap tells."""
     numbers = values.astype(np.float64)
     finite = np.isfinite(numbers)
-    starts = np.flatnonzero(missing[1:] & finite[:-1])
-    if len(starts) < _FEWEST_RUNS:
+    before, after = np.flatnonzero(missing[1:] & finite[:-1]), np.flatnonzero(missing[:-1] & finite[1:]) + 1
+    lost = int(np.count_nonzero(missing))
+    if len(before) < (_FEWEST_RUNS if lost < _FEWEST_CELLS else _FEWEST_RUNS - 1):
         return False
     low, high = float(numbers[finite].min()), float(numbers[finite].max())
-    before = numbers[starts]
     edge = _AT_THE_EDGE * (high - low)
-    if edge <= 0.0:
-        return False
-    largest, smallest = (before >= high - edge), (before <= low + edge)
-    # What is large most of the time loses there by chance too.
-    usual = max(float(np.mean(numbers[finite] >= high - edge)), float(np.mean(numbers[finite] <= low + edge)))
-    share = max(float(np.mean(largest)), float(np.mean(smallest)), float(np.mean(largest | smallest)))
-    return share >= 1.0 - _MOST_RUNS_ELSEWHERE and usual < 0.5
+    around = numbers[np.concatenate([before, after])]
+    for is_there in (lambda one: one >= high - edge, lambda one: one <= low + edge):
+        # What is at its largest most of the time loses values there by chance too.
+        often = float(np.mean(is_there(numbers[finite]))) > _MOST_OFTEN
+        if edge > 0.0 and not often and float(np.mean(is_there(around))) >= 1.0 - _MOST_ELSEWHERE:
+            return True
+    return False

@@ -1,4 +1,4 @@
-"""Tables whose rows hold one value of one signal each, as historians and data bases write: one column for each signal."""
+"""Tables whose rows hold one value of one signal each, as data bases write them: one column for each signal."""
 
 from __future__ import annotations
 

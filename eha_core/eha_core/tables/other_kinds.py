@@ -8,8 +8,8 @@ from pathlib import Path
 from eha_core.errors import RecordingError
 
 READABLE = (
-    ".mcap, .db3 and rosbag2 folders; text tables (.csv, .tsv, .txt, .dat, .asc, .lvm); .mat; .h5; .parquet; .xlsx; .tdms;"
-    " .mf4 and .mdf; .jsonl and .json"
+    ".mcap, .db3 and rosbag2 folders; text tables (.csv, .tsv, .txt, .dat, .asc, .lvm); .mat; .h5; .parquet; .xlsx;"
+    " .tdms; .mf4 and .mdf; .jsonl and .json"
 )
 """What can be read, as messages list it."""
 _HEAD = 4096

@@ -43,7 +43,7 @@ def columns_with_times(kind: str, signals: Iterable[tuple[str, str, Column, Colu
 
 
 def by_length(columns: Mapping[str, Column]) -> dict[str, str]:
-    """The time of each vector among vectors of several lengths: one called so that is as long, the nearest by its path."""
+    """The time of each vector among vectors of several lengths: one as long called so, the nearest by its path."""
     lengths = {len(values) for values in columns.values()}
     times = {name: values for name, values in columns.items() if _TIME.fullmatch(name) and _increases(values)}
     if len(lengths) < 2 or not times:

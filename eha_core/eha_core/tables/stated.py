@@ -13,7 +13,7 @@ MOST_RATE = 1e6
 _BRACKETS = re.compile(r"[\[(<{]([^\[\]()<>{}]*(?:\([^()]*\))?)[\])>}]")
 _NUMBER = r"(?P<number>\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)"
 _BETWEEN = r"\s*(?:[\[(](?P<stated>[^\])]{1,12})[\])])?\s*[\"']?\s*[:=,;\t ]\s*[\"']?\s*"
-_BEHIND = r"\s*(?P<unit>[A-Za-z\u00b5\u03bc/]{0,12})[\"',;\s]*"
+_BEHIND = r"[\s\"',;]*(?P<unit>[A-Za-z\u00b5\u03bc/]{0,12})[\"',;\s]*"
 _WHAT = (
     r"(?:sampl\w*|abtast\w*|scan\w*|acqui\w*|acq|logg\w*|record\w*|mess\w*|daq|data|time|update|frame|storage|raster)"
 )
@@ -22,8 +22,8 @@ _RATE = re.compile(
     rf"{_BETWEEN}{_NUMBER}{_BEHIND}", re.IGNORECASE,
 )  # fmt: skip
 _INTERVAL = re.compile(
-    rf"[#%*\s\"']*(?:{_WHAT}[ _-]*)*(?:interval|intervall|period|periode|step|delta|delta[ _]?[xt]|dt|ts|increment|abstand"
-    rf"|abtastzeit|sampletime|zykluszeit|cycle ?time|sample ?time){_BETWEEN}{_NUMBER}{_BEHIND}", re.IGNORECASE,
+    rf"[#%*\s\"']*(?:{_WHAT}[ _-]*)*(?:interval|intervall|period|periode|step|delta|delta[ _]?[xt]|dt|ts|increment"
+    rf"|abstand|abtastzeit|sampletime|zykluszeit|cycle ?time|sample ?time){_BETWEEN}{_NUMBER}{_BEHIND}", re.IGNORECASE,
 )  # fmt: skip
 _HERTZ = {
     "": 1.0,

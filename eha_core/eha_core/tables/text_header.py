@@ -36,34 +36,9 @@ NAME_LABELS = (
 )
 UNIT_LABELS = ("unit", "units", "trace_units", "einheit", "einheiten", "channel units", "unit name")
 """First cells, in small letters, of rows that hold the columns' names and units."""
-_TYPES = frozenset(
-    [
-        "real",
-        "lreal",
-        "double",
-        "float",
-        "float32",
-        "float64",
-        "single",
-        "int",
-        "int16",
-        "int32",
-        "int64",
-        "uint",
-        "uint16",
-        "uint32",
-        "dint",
-        "udint",
-        "bool",
-        "number",
-        "numeric",
-        "string",
-        "long",
-        "word",
-        "dword",
-        "analog",
-        "digital",
-    ]
+_TYPE_NAMES = (
+    "real lreal double float float32 float64 single int int16 int32 int64 uint uint16 uint32 dint udint bool number"
+    " numeric string long word dword analog digital"
 )
 
 
@@ -226,6 +201,7 @@ def _names(
     wide = [row for row in above if abs(len(row) - width) <= 1 and any(row)]
     if not wide and first > 0 and lines[first - 1].startswith("#"):
         row = cells_of(lines[first - 1].lstrip("# "), delimiter)
+        row = ["#", *row[1:]] if row and not row[0] else row
         wide = [row] if abs(len(row) - width) <= 1 else []
     if not wide:
         return [f"column {k + 1}" for k in range(width)], {}
@@ -264,7 +240,7 @@ def are_units(row: Sequence[str]) -> bool:
 
 def _are_types(row: Sequence[str]) -> bool:
     filled = [cell.lower() for cell in row[1:] if cell]
-    return bool(filled) and all(cell in _TYPES for cell in filled)
+    return bool(filled) and all(cell in _TYPE_NAMES.split() for cell in filled)
 
 
 def _is_repeated(row: Sequence[str]) -> bool:

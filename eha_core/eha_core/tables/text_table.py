@@ -1,4 +1,4 @@
-"""Reads text tables: CSV of any delimiter and decimal point, with or without a header; LabVIEW, ControlDesk, TwinCAT."""
+"""Reads text tables: CSV of any delimiter and decimal point, with or without a header, and of measurement systems."""
 
 from __future__ import annotations
 
@@ -203,9 +203,9 @@ def _cells(block: Sequence[str], header: Header) -> list[NDArray[Any]]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             frame = pandas.read_csv(
-                StringIO("\n".join(block)), sep=r"\s+" if spaces else header.delimiter, decimal=header.decimal, header=None,
-                names=range(width + 1), index_col=False, keep_default_na=False, na_values=[""], skipinitialspace=not spaces,
-                float_precision="round_trip", low_memory=False, skip_blank_lines=False,
+                StringIO("\n".join(block)), sep=r"\s+" if spaces else header.delimiter, decimal=header.decimal,
+                header=None, names=range(width + 1), index_col=False, keep_default_na=False, na_values=[""],
+                skipinitialspace=not spaces, float_precision="round_trip", low_memory=False, skip_blank_lines=False,
             )  # fmt: skip
     except (ValueError, pandas.errors.ParserError, OverflowError):
         return _split(block, header)

@@ -88,7 +88,7 @@ def _stands(found: dict[str, str | None]) -> bool:
 def instants_of(cells: NDArray[Any]) -> Instants:
     """An array of texts as instants, all in the form of the first that is one; what is none is not known."""
     texts = np.array([cell.strip() if isinstance(cell, str) else "" for cell in cells], dtype=object)
-    match = next((found for text in texts if (found := _match(text))), None)
+    match = next((one for text in texts if (one := _match(text))), None)
     if match is None:
         return Instants(np.zeros(len(texts), np.int64), np.zeros(len(texts), bool), None, False, False)
     found = match.groupdict()

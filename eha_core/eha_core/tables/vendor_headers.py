@@ -18,7 +18,7 @@ _LABVIEW_END = "***End_of_Header***"
 _TRACE_NAMES = "trace_names"
 _FEWEST_PAIRS = 2
 _PAIR_LABELS = ("name", "signal", "channel")
-"""First cells of the row of names where each signal has its label and its name, and a column of times below the label."""
+"""First cells of a row of labels and names in turn; below each label is a column of times."""
 
 
 def read_header(where: str, lines: Sequence[str]) -> Header:
