@@ -9,11 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eha_core.api import given_model, known_model, takes_motion_as_given
 from eha_core.cli._paths import require_file, require_folder, require_recordings
 from eha_core.cli._progress import Progress
 from eha_core.errors import EhaError
-from eha_core.long_record.admission import admitted
 from eha_core.recording import Recording, TopicsFile, load_topics_file, read_recording
 from eha_core.workers import Workers
 
@@ -77,6 +75,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
     """All recordings are one rig."""
+    from eha_core.api import given_model, known_model, takes_motion_as_given
+    from eha_core.long_record.admission import admitted
     from eha_core.plausibility import admit
 
     if arguments.motion_given:
@@ -157,6 +157,7 @@ def _read(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recordin
 
 def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Recording], progress: Progress) -> int:
     """A test bench or a damper: nothing drives the plant, so the law of its force is found from the motion."""
+    from eha_core.api import known_model
     from eha_core.diagnosis.document import as_json
     from eha_core.motion_given import diagnose_motion
     from eha_core.report.account import account
@@ -213,7 +214,9 @@ def diagnose_alone(
     with_report: bool = True,
 ) -> tuple[Path, int, str]:
     """Diagnose one recording into `folder`: its path, its exit status, and the verdict or what is wrong, in a line."""
+    from eha_core.api import given_model, known_model
     from eha_core.diagnosis import diagnose_together
+    from eha_core.long_record.admission import admitted
     from eha_core.long_record.judging import judged
     from eha_core.plausibility import admit
     from eha_core.report.files import write_document, write_report

@@ -84,7 +84,10 @@ def _unpacked(path: Path, changed: int, size: int) -> TemporaryDirectory[str]:
     try:
         with path.open("rb") as packed, (Path(folder.name) / path.stem).open("wb") as plain:
             _unpack(packed, plain, ceiling)
-    except (OSError, ZstdError) as error:
+    except (OSError, ZstdError, RecordingError) as error:
+        folder.cleanup()
+        if isinstance(error, RecordingError):
+            raise
         raise RecordingError(f"{path}: cannot be unpacked ({error}); copy it anew") from error
     return folder
 

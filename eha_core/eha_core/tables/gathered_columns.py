@@ -192,10 +192,10 @@ def loses_by_value(values: Column, missing: NDArray[np.bool_]) -> bool:
         return False
     low, high = float(numbers[finite].min()), float(numbers[finite].max())
     edge = _AT_THE_EDGE * (high - low)
-    around = numbers[np.concatenate([before, after])]
-    for is_there in (lambda one: one >= high - edge, lambda one: one <= low + edge):
+    around = np.concatenate([before, after])
+    for there in (numbers >= high - edge, numbers <= low + edge):
         # What is at its largest most of the time loses values there by chance too.
-        often = float(np.mean(is_there(numbers[finite]))) > _MOST_OFTEN
-        if edge > 0.0 and not often and float(np.mean(is_there(around))) >= 1.0 - _MOST_ELSEWHERE:
+        often = float(np.mean(there[finite])) > _MOST_OFTEN
+        if edge > 0.0 and not often and float(np.mean(there[around])) >= 1.0 - _MOST_ELSEWHERE:
             return True
     return False

@@ -34,11 +34,16 @@ def read_mdf(path: Path) -> Table:
         RecordingError: as `read_tdms`.
     """
     asammdf = required("asammdf", path, "MDF files")
+    with path.open("rb") as file:
+        head = file.read(68)
+    # What does not begin like one is not shown to the library, which leaves it open.
+    if not (head.startswith(b"MDF") and head[64:] in (b"##HD", b"HD\xa4\x00", b"HD\xd0\x00")):
+        raise RecordingError(f"{path}: is no MDF file (it starts with other bytes)")
     return _table(path, "mdf", lambda: _of_mdf(asammdf, path))
 
 
 def _of_tdms(nptdms: Any, path: Path) -> Iterator[Signal]:
-    with nptdms.TdmsFile.open(path) as file:
+    with path.open("rb") as stream, nptdms.TdmsFile.open(stream) as file:
         for group in file.groups():
             for channel in group.channels():
                 values = as_column(channel[:]) if len(channel) else None

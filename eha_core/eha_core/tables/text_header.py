@@ -42,6 +42,10 @@ _TYPE_NAMES = (
 )
 
 
+_Score = tuple[float, bool, int]
+"""How well lines read as a table: the share of values in a row, whether a mark divides the cells, their number."""
+
+
 @dataclass(frozen=True)
 class Header:
     """How a text table is written.
@@ -89,7 +93,7 @@ def plain_header(where: str, lines: Sequence[str]) -> Header:
     Raises:
         RecordingError: no row of numbers is among the lines, or it is open how the numbers are written.
     """
-    found: dict[tuple[str, str], tuple[tuple[float, int], Header]] = {}
+    found: dict[tuple[str, str], tuple[_Score, Header]] = {}
     for delimiter in DELIMITERS:
         for decimal in (POINT, COMMA):
             if (delimiter, decimal) == (",", COMMA) and not any('"' in line for line in lines):
@@ -151,7 +155,7 @@ def is_value_cell(cell: str, decimal: str = POINT) -> bool:
     return number_of(cell, decimal, scaled=True) is not None or is_instant(cell)
 
 
-def _written(lines: Sequence[str], delimiter: str, decimal: str) -> tuple[tuple[float, int], Header] | None:
+def _written(lines: Sequence[str], delimiter: str, decimal: str) -> tuple[_Score, Header] | None:
     """How well the lines read as a table that is written so, and its header; None where they do not."""
     rows = {k: cells_of(line, delimiter) for k, line in enumerate(lines) if line.strip() and line[:1] != "#"}
     first = _first_row(rows, decimal)
@@ -167,7 +171,9 @@ def _written(lines: Sequence[str], delimiter: str, decimal: str) -> tuple[tuple[
         return None
     rate = rate_in(line for line in lines[:first])
     long = long_form_of(names, looked, lambda cell: is_value_cell(cell, decimal))
-    return (round(share, 2), width), Header("csv", names, delimiter, decimal, first, units, rate=rate, long=long)
+    # Blanks divide a date from its clock too, so that a mark comes first.
+    score = (round(share, 2), delimiter != SPACES, width)
+    return score, Header("csv", names, delimiter, decimal, first, units, rate=rate, long=long)
 
 
 def _first_row(rows: Mapping[int, list[str]], decimal: str) -> int | None:
