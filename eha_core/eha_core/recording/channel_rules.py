@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from eha_core.errors import RecordingError, remedy
-from eha_core.recording.recording import CHANNEL_KINDS, FloatArray
+from eha_core.recording.channel_kinds import CHANNEL_KINDS, FloatArray
 from eha_core.unit_names import UNITS, Unit, unit_named
 from eha_core.yaml_file import load_yaml
 

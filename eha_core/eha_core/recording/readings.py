@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import floor
 
+from eha_core.recording.channel_kinds import CHANNEL_KINDS
 from eha_core.recording.channel_rules import ABSOLUTE, GAUGE, Points
 from eha_core.recording.field_meanings import MeantField
 from eha_core.recording.inspection import Field
-from eha_core.recording.recording import CHANNEL_KINDS
 from eha_core.unit_names import UNITS, Unit, name_of, unit_named
 
 _USUAL = {

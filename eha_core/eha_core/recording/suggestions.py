@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from math import isnan, nan
 
 from eha_core.errors import RecordingError
+from eha_core.recording.channel_kinds import CHANNEL_KINDS
 from eha_core.recording.channel_rules import ChannelRule
 from eha_core.recording.column_names import common_words
 from eha_core.recording.discovery import find_rules
 from eha_core.recording.field_meanings import MeantField, is_doubled, meant
 from eha_core.recording.inspection import Field, Inspection
 from eha_core.recording.readings import BELOW_ZERO, Reading, is_usual, readings_of, si_of
-from eha_core.recording.recording import CHANNEL_KINDS
 from eha_core.recording.time_suggestions import suggest_time
 from eha_core.unit_names import unit_named
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.errors import RecordingError
+from eha_core.recording.channel_kinds import CHANNEL_KINDS
 from eha_core.recording.channel_rules import ABSOLUTE, GAUGE, ChannelRule
-from eha_core.recording.recording import CHANNEL_KINDS
 from eha_core.recording.samples import Samples
 
 _LEAST_PRESSURE = {ABSOLUTE: 2e4, GAUGE: 1e3}
