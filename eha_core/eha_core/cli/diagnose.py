@@ -17,6 +17,7 @@ from eha_core.workers import Workers
 
 if TYPE_CHECKING:
     from eha_core.diagnosis import Diagnosis
+    from eha_core.nominal import NominalModel
 
 UNUSABLE = 2
 DAMAGED = 3
@@ -99,6 +100,10 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
         [admit(recording, model.values, arguments.as_recorded, model.composition) for recording in several]
         for several in (recordings, tests)
     )
+    for recording in () if arguments.as_recorded else (*recordings, *tests):
+        require_travel(recording, model, given is not None)
+    if line := assumed_cylinder(given is not None, recordings[0], model):
+        print(f"eha diagnose: {line}", file=sys.stderr)
     for warning in (
         remark for recording in (*recordings, *tests) for remark in recording.remarks if remark.startswith("warning")
     ):
@@ -136,6 +141,30 @@ def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Prog
         if arguments.json is not None:
             written = (*written, _write(Path(arguments.json), as_json(diagnosis)))
         print(account(diagnosis, written))
+
+
+def assumed_cylinder(is_given: bool, recording: Recording, model: NominalModel) -> str:
+    """What is assumed in place of a nominal file, in a line; empty where one is given, or the recording has values."""
+    if is_given or recording.parameters or recording.parts:
+        return ""
+    values = model.values
+    return (
+        f"no --nominal: the catalogue's cylinder is assumed, of {values['piston_area'] * 1e4:.3g} cm^2 and"
+        f" {2e3 * values['actuator_displacement']:.3g} mm stroke; `eha init-rig` makes the file of a rig"
+    )
+
+
+def require_travel(recording: Recording, model: NominalModel, is_given: bool) -> None:
+    """Raise RecordingError for a position that the cylinder cannot have gone through."""
+    from eha_core.rig import require_possible_travel
+
+    position = recording.channels.get("position")
+    if position is None or "piston_area" not in model.composition.rows:
+        return
+    travel = float(position.values.max() - position.values.min())
+    area = max(model.values["piston_area"], model.values["piston_area_b"])
+    has_own = is_given or bool(recording.parameters)
+    require_possible_travel(str(recording.path), travel, area, has_own)
 
 
 def _check_paths(arguments: argparse.Namespace) -> None:
@@ -227,6 +256,8 @@ def diagnose_alone(
         record = admitted(path, topics, given.composition if given else None)
         model = known_model(given, record.recordings[0])
         recordings = [admit(recording, model.values, as_recorded, model.composition) for recording in record.recordings]
+        for recording in () if as_recorded else recordings:
+            require_travel(recording, model, given is not None)
         diagnosis = judged(diagnose_together(recordings, model, jobs=1), [record], model)
         diagnosis = with_provenance(diagnosis, [record], nominal)
         (write_report if with_report else write_document)(diagnosis, folder)
