@@ -24,7 +24,6 @@ PARTS = "plant."
 """How the names of stored parameters begin that say which parts the actuator has."""
 
 
-
 @dataclass(frozen=True)
 class Channel:
     """One measured quantity.

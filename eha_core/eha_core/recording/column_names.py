@@ -102,7 +102,8 @@ def common_words(names: list[str]) -> frozenset[str]:
 
 
 def _of_words(words: list[str], unit: str, common: frozenset[str]) -> Meaning:
-    words = _joined([word for word in words if word not in common] or words)
+    joined = _joined(words)
+    words = [word for word in joined if word not in common] or joined
     known, said = unit_named(unit), set(words)
     quantities = [QUANTITIES[word] for word in words if word in QUANTITIES]
     objects = {OBJECTS[word] for word in words if word in OBJECTS}
@@ -114,6 +115,9 @@ def _of_words(words: list[str], unit: str, common: frozenset[str]) -> Meaning:
     if said & words_known.DENIED or "other" in quantities:
         return Meaning(quantity="other", is_other=True)
     sides = {SIDES[word] for word in words if word in SIDES}
+    behind = {after for word, after in zip(words, words[1:], strict=False) if _is_pressure(word)}
+    objects |= {"tank"} if behind & words_known.TANK_LETTERS else set()
+    sides |= {"supply"} if behind & words_known.SUPPLY_LETTERS else set()
     if "flow" in named:
         sides |= {{"in": "a", "out": "b"}[word] for word in words if word in ("in", "out")}
     channels = _channels(named, objects, sides, known.si if known else "", is_wanted)
@@ -124,6 +128,10 @@ def _of_words(words: list[str], unit: str, common: frozenset[str]) -> Meaning:
     sure = understood and not is_wanted and len(set(quantities) - {"command"}) < 2
     is_other = not channels and bool(objects & {"tank", "pump", "supply"})
     return Meaning(frozenset(channels), (*named, "")[0], bool(quantities), sure, is_wanted, is_other, side)
+
+
+def _is_pressure(word: str) -> bool:
+    return "pressure" in (QUANTITIES.get(word), LETTERS.get(word))
 
 
 def _joined(words: list[str]) -> list[str]:

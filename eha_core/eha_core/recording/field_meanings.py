@@ -31,6 +31,8 @@ def plain_name(field: Field) -> str:
     name = path if path and not field.path.startswith("data") else f"{field.topic}/{path}"
     if field.topic:
         return name
+    # The labels of a historian's series, and a drive's numbers of parameters, name nothing.
+    name = re.sub(r"\{[^{}]*=[^{}]*\}|\b[SP]-\d-\d{4}\b", " ", name).strip() or name
     if re.fullmatch(r"[A-Za-z]{1,2}\d?\[\d+\]", name):
         return ""  # a row of a matrix, whose symbol says nothing of its rows
     if field.unit:

@@ -161,6 +161,8 @@ def unit_of_name(name: str, names: tuple[str, ...] = ()) -> str:
         return ""
     if len(match[1]) > 1:
         return match[1]
+    if re.search(r"\bin\s+$", name[: match.start(1)]) and match[1] in UNITS:
+        return match[1]
     # One letter may be part of the name, as in p_A and x_m; it is a unit after a word, or where it is the usual one.
     before = name[: match.start()].lower()
     usual = (match[1], before[:1]) in (("V", "u"), ("V", "v"), ("N", "f"), ("s", "t"), ("A", "i"))

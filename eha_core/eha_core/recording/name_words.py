@@ -64,10 +64,12 @@ MEASURED = _all("position velocity force pressure flow angle torque")
 FILLERS = _all(
     "main plot data value sensor measured meas messwert ist istwert actual act fbk feedback signal sig ch chan"
     " channel ai"
-    " ain analog in input io out output hyd hydraulic rig run test log gvl plc global var st model root chamber kammer"
+    " ain analog in input io out output hyd hydraulic rig run test log gvl plc global var st model root chamber"
+    " kammer"
     " side seite port line axis ax axial exp no nr raw filt filtered filter the of at on daq dev device mod module"
     " group"
-    " untitled abs rel gauge absolute interface interfaces controller lbl y z d r lr fl l j joint states oel oil"
+    " untitled ave avg average mean mittel mittelwert rms abs rel gauge absolute interface interfaces controller"
+    " lbl y z d r lr fl l j joint states oel oil"
 )
 """Words that say nothing of what is measured."""
 FIRST = _all(
@@ -84,7 +86,12 @@ INDEX = _all(
     " i line zeile messpunkt tick ticks"
 )
 """Words of columns that count rows."""
-NUMBERED = _all("ai ain ch chan channel analog input in group plot sensor sig signal dev mod module slot card")
+TANK_LETTERS, SUPPLY_LETTERS = _all("t r"), _all("p s 0")
+"""Letters behind a pressure: `pT` and `pP` are those of the tank and the pump."""
+NUMBERED = _all(
+    "ai ain ch chan channel analog input in group plot sensor sig signal dev mod module slot card"
+    " cyl cylinder zyl zylinder actuator aktor axis achse ram jack rig valve ventil pump pumpe motor joint"
+)
 """Words behind which a number only counts."""
 PAIRS = _all("loadcell xdot xvalue xv flowrate headside rodside rodend capend")
 """Words that are written apart too, as `load cell`."""

@@ -17,6 +17,9 @@ _USUAL = {
     "rad/s": (1.0, 2e3),
 }  # fmt: skip
 """Largest magnitudes of rigs, by SI unit; they order questions, and answer none."""
+_BELOW_USUAL, _ABOVE_USUAL = 100.0, 2.0
+"""How far below or above those a stated unit may bring a channel and still be believed: a piston may creep, and nothing
+is much larger."""
 BELOW_ZERO = -2e4
 """Pa: below this a pressure is gauge; a sensor's zero is not that far off."""
 _ATMOSPHERE_MATTERS = 20e5
@@ -72,6 +75,12 @@ def is_usual(channel: str, field: Field, scale: float = 1.0) -> bool:
     return max(abs(field.low), abs(field.high)) * scale <= CHANNEL_KINDS[channel].largest
 
 
+def is_likely(channel: str, field: Field, unit: Unit) -> bool:
+    """Whether a stated unit makes of a field's numbers what a rig may have; a wrong word in a header is off by more."""
+    low, high = _USUAL[si_of(channel)]
+    return low / _BELOW_USUAL <= max(abs(field.low), abs(field.high)) * unit.scale <= _ABOVE_USUAL * high
+
+
 def readings_of(channel: str, one: MeantField, any_range: bool = True) -> list[Reading]:
     """The ways to read a field as a channel; one that is certain where nothing is open.
 
@@ -87,7 +96,7 @@ def readings_of(channel: str, one: MeantField, any_range: bool = True) -> list[R
         unit = None  # a name beats a unit that contradicts it
     elif unit is not None and channel == "voltage_command" and one.meaning.quantity == "current":
         return []
-    if unit is not None and is_usual(channel, field, unit.scale):
+    if unit is not None and is_likely(channel, field, unit):
         reading = _in_unit(channel, field, unit, True)
         return [reading] if reading.is_certain else [reading, *_other_reference(reading)]
     units = likely_units(channel, field, any_range)

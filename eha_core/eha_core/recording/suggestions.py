@@ -147,10 +147,11 @@ def _of_channel(channel: str, claims: Mapping[str, list[MeantField]], both: bool
     others = sorted({other for other in claims if other != channel and any(one in claims[other] for one in fields)})
     if channel == "force" and both:
         return Question(channel, f"{_names(fields)}: {_IN_PLACE}", (*readings, None))
-    if alone and not others and fields[0].meaning.is_sure and readings[0].is_certain:
+    meaning = fields[0].meaning
+    if alone and not others and meaning.channels == {channel} and meaning.is_sure and readings[0].is_certain:
         return readings[0]
     text = f"{_names(fields)}: {_text(channel, fields, readings, others)}"
-    is_maybe_none = bool(others) or len(fields) > 1 or not fields[0].meaning.is_sure
+    is_maybe_none = bool(others) or len(fields) > 1 or not meaning.is_sure or meaning.channels != {channel}
     return Question(channel, text, (*readings, None) if is_maybe_none else tuple(readings))
 
 

@@ -110,7 +110,8 @@ class _Clocks:
         if time == "":
             rate = self._rule.rate or self._table.rate or 1.0
             rows = count if count is not None else max(map(len, self._table.columns.values()))
-            self.remarks.append(f"{self._path}: has no times; its rows were taken as {rate:g} in a second")
+            remark = f"{self._path}: has no times; its rows were taken as {rate:g} in a second"
+            self.remarks += [remark] if remark not in self.remarks else []
             return np.ones(rows, dtype=bool), np.round(np.arange(rows) * (1e9 / rate)).astype(np.int64)
         if time not in self._table.columns:
             raise RecordingError(

@@ -42,9 +42,10 @@ def suggest_time(inspection: Inspection, fields: Sequence[Field]) -> list[Readin
             return [found]
     if rate is not None:
         index = next(iter([field for field in (*indices, *moving) if _counts(field)]), None)
-        return [] if index is None else [Reading("time", index, rate=rate)]
+        if index is not None or not moving:
+            return [] if index is None else [Reading("time", index, rate=rate)]
     if moving:
-        return [_of_times(moving[0], None)] if len(moving) == 1 else [_which(moving)]
+        return [_of_times(moving[0], rate)] if len(moving) == 1 else [_which(moving)]
     if standing:
         return [_of_standing(standing[0])]
     if indices:
@@ -107,6 +108,8 @@ def _of_times(field: Field, rate: float | None) -> Reading | TimeQuestion:
     if rate is not None and _counts(field) and not found.is_certain:
         return Reading("time", field, rate=rate)
     readings = [Reading("time", field, unit, is_certain=False) for unit in found.units]
+    if _counts(field) and field.step == 1.0 and field.first in (0.0, 1.0) and not _is_time(field):
+        readings = []  # an index without a name
     if _counts(field):
         readings.append(Reading("time", field, rate=nan, is_certain=False))
     step = f"it goes by steps of {field.step:.4g}{' ' + field.unit if field.unit else ''}"
@@ -114,7 +117,8 @@ def _of_times(field: Field, rate: float | None) -> Reading | TimeQuestion:
     unit = unit_named(field.unit)
     if unit is not None and unit.si == "s" and 1.0 / (field.step * unit.scale) > FASTEST:
         fast = ", which is faster than any rig is recorded"
-    return TimeQuestion(f'"{field.path}": in which unit is time? {step}{fast}', tuple(readings))
+    states = f"; the file states {rate:g} Hz" if rate is not None else ""
+    return TimeQuestion(f'"{field.path}": in which unit is time? {step}{fast}{states}', tuple(readings))
 
 
 def _of_standing(field: Field) -> TimeQuestion:

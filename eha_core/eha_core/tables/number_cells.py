@@ -65,7 +65,7 @@ def number_of(cell: str, decimal: str, scaled: bool = False) -> tuple[float, str
 
     With `scaled` a letter such as k or m behind the number is a power of ten.
     """
-    text = cell.strip()
+    text = cell.strip().replace("\u2212", "-")
     match = _forms(decimal).fullmatch(text)
     if match is None:
         return (float(text.lower().replace("infinity", "inf")), "") if _INFINITE.fullmatch(text) else None
@@ -75,7 +75,7 @@ def number_of(cell: str, decimal: str, scaled: bool = False) -> tuple[float, str
         return None
     digits = match["number"].replace(match["group"] or "\0", "").replace(decimal, ".")
     power = (match["power"] or "").replace("d", "e").replace("D", "e")
-    value = float(f"{'-' if match['sign'] in ('-', chr(0x2212)) else ''}{digits}{power}")
+    value = float(f"{'-' if match['sign'] == '-' else ''}{digits}{power}")
     return (value * factor, "") if factor is not None else (value, behind)
 
 
