@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from eha_core.errors import RecordingError
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile
+from eha_core.recording.channel_rules import ChannelRule
 from eha_core.recording.table_file import channels_of, stamps_of
+from eha_core.recording.topics_file import TopicsFile
 from eha_core.tables import Table
 
 DAY = 86400 * 10**9

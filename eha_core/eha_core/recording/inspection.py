@@ -15,34 +15,22 @@ from eha_core.errors import RecordingError, printable
 from eha_core.recording.bag import bag_topics, read_bag
 from eha_core.recording.cdr_layout import Layout, layout_of
 from eha_core.recording.channel_rules import ABSOLUTE
-from eha_core.recording.column_names import names_a_side
 from eha_core.recording.fields import Tables
 from eha_core.recording.introspection import value_names
 from eha_core.recording.message_types import recorded_types
 from eha_core.recording.raw import RawTopic
+from eha_core.recording.stated_units import unit_of_name, unit_of_type
 from eha_core.recording.time_units import repeats, unwrapped, usual_step
 from eha_core.recording.topic_columns import BLOCK, TopicColumns
-from eha_core.tables import Table, is_table, read_table, unit_in
-from eha_core.unit_names import UNITS, unit_named
+from eha_core.tables import Table, is_table, read_table
 
 MOST_FIELDS = 200
 """Numbers of a topic, or columns of a table, that are listed."""
 LONGEST_ARRAY = 12
 """Numbers of an unnamed array that are listed one by one; longer ones are images, scans or covariances."""
-_OF_TYPE = {
-    ("sensor_msgs/msg/JointState", "position["): "m",
-    ("sensor_msgs/msg/JointState", "velocity["): "m/s",
-    ("sensor_msgs/msg/JointState", "effort["): "N",
-    ("sensor_msgs/msg/FluidPressure", "fluid_pressure"): "Pa",
-    ("geometry_msgs/msg/Wrench", "force."): "N",
-    ("geometry_msgs/msg/WrenchStamped", "wrench.force."): "N",
-}
-"""Units that a message's definition states, by its type and how the path begins."""
 _HEADS = ("header.", "layout.")
 """Parts of messages that hold no numbers of a rig."""
 _NO_CHANNEL = (".sec", ".nanosec", "variance", "names_version")
-_NO_UNITS = frozenset(("in", "at", "d", "h", "t", "l", "min", "day", "k", "hz", "w", "g"))
-"""Units, in small letters, that at the end of a name mean something else more often."""
 _ABSOLUTE = "sensor_msgs/msg/FluidPressure"
 """The message whose definition says that its pressure is absolute."""
 
@@ -146,32 +134,6 @@ def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
     )  # fmt: skip
 
 
-def unit_of_name(name: str, names: tuple[str, ...] = ()) -> str:
-    """The unit that a name states, in brackets or at its end, as `x_mm` and `p_A (bar)` do; empty where it has none.
-
-    Args:
-        name: a column's name.
-        names: all columns' names: of `valve_A` and `valve_B` neither ends in a unit.
-    """
-    if stated := unit_in(name):
-        return stated
-    match = re.search(r"(?:[_/\s,;:|-]|\bin\s)\s*(%|[A-Za-z\u00b5\u03bc\u00b0]{1,8}(?:\^?\d)?(?:/(?:s|min|h))?)$", name)
-    match = match or re.search(r"(?<=[a-z])(Bar|Psi|Mm|Mpa|MPa|Kpa|kPa|Pct|Deg|Rpm|kN|mA)$", name)
-    if match is None or unit_named(match[1]) is None or match[1].lower() in _NO_UNITS:
-        return ""
-    if len(match[1]) > 1:
-        return match[1]
-    if re.search(r"\bin\s+$", name[: match.start(1)]) and match[1] in UNITS:
-        return match[1]
-    # One letter may be part of the name, as in p_A and x_m; it is a unit after a word, or where it is the usual one.
-    before = name[: match.start()].lower()
-    usual = (match[1], before[:1]) in (("V", "u"), ("V", "v"), ("N", "f"), ("s", "t"), ("A", "i"))
-    is_side = match[1] == "A" and (name[: match.start(1)] + "B" in names or names_a_side(before))
-    if match[1] not in UNITS and match[1] != "%" or is_side:
-        return ""
-    return match[1] if usual or match[1] == "%" or re.search(r"[a-z]{3}$", before) else ""
-
-
 def _of_bag(path: Path) -> Inspection:
     topics = bag_topics(path)
     watches = {name: _Watch(topic, value_names(path, topics, name)) for name, topic in topics.items()}
@@ -263,20 +225,10 @@ class _Watch:
         for path, (count, low, high) in self._ranges.items():
             seconds = (self._span[1] - self._span[0]) * 1e-9 if self._span else 0.0
             rate = (count - 1) / seconds if seconds > 0.0 and count > 1 else nan
-            unit = _unit_of_type(self._topic.type_name, path)
+            unit = unit_of_type(self._topic.type_name, path)
             reference = ABSOLUTE if self._topic.type_name == _ABSOLUTE and path == "fluid_pressure" else None
             found.append(Field(self._topic.name, path, count, low, high, rate, unit, reference=reference))
         return found
-
-
-def _unit_of_type(type_name: str, path: str) -> str:
-    for (of_type, start), unit in _OF_TYPE.items():
-        if of_type == type_name and path.startswith(start):
-            return unit
-    # An interface of ros2_control is called by its joint and its kind; what a command's effort is, the hardware says.
-    if "command_interface" in path:
-        return ""
-    return {"position": "m", "velocity": "m/s", "effort": "N"}.get(path.rpartition("/")[2].partition("]")[0], "")
 
 
 def _paths(layout: Layout, type_name: str, tables: Tables) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from eha_core.errors import RecordingError
 from eha_core.recording.assembly import PARTS, STANDARD_ATMOSPHERE, assembled
 from eha_core.recording.bag import bag_topics, read_bag
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile, topics_of
+from eha_core.recording.channel_rules import ChannelRule
 from eha_core.recording.clocks import on_one_clock, without_leaps
 from eha_core.recording.discovery import LEAKAGE_TOPIC, find_rules, leakage_topic
 from eha_core.recording.introspection import value_names
@@ -20,6 +20,7 @@ from eha_core.recording.recording import Recording
 from eha_core.recording.samples import Samples
 from eha_core.recording.table_file import channels_of
 from eha_core.recording.topic_columns import TopicColumns
+from eha_core.recording.topics_file import TopicsFile, topics_of
 from eha_core.tables import is_table, read_table
 
 __all__ = ["PARTS", "STANDARD_ATMOSPHERE", "MessageFile", "assemble", "open_messages", "read_recording"]

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from eha_core.errors import RecordingError
 from eha_core.recording.channel_kinds import CHANNEL_KINDS, FloatArray
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile
+from eha_core.recording.channel_rules import ChannelRule
 from eha_core.recording.samples import Samples
 from eha_core.recording.time_units import TimeUnit, time_unit, unwrapped, usual_step
+from eha_core.recording.topics_file import TopicsFile
 from eha_core.tables import Column, Table
 from eha_core.unit_names import UNITS
 
