@@ -88,6 +88,11 @@ ASKED: dict[str, Log] = {
         text(["Time", *REST], [[f"21:04:5{2 + k // 100}" for k in range(COUNT)], U, X, PA, PB]),
         {"time": {"column": "Time", "rate": 1000}},
     ),
+    "clock_of_half_the_rate": Log(
+        "a.csv",
+        timed("Time", [f"21:04:52.{2 * (k // 2):03d}" for k in range(COUNT)]),
+        {"time": {"column": "Time", "rate": 1000}},
+    ),
     "percent": Log(
         "a.csv",
         text(
@@ -118,6 +123,14 @@ ASKED: dict[str, Log] = {
             "pressure_a": {"column": "pA [mA]", **LOOPS["pressure_a"]},
             "pressure_b": {"column": "pB [mA]", **LOOPS["pressure_b"]},
         },
+    ),
+    "valve_in_a_loop": Log(
+        "a.csv",
+        text(
+            ["t [s]", "valve [mA]", "x [mm]", "pA [bar]", "pB [bar]"],
+            [cells(TIMES), cells(12.0 + 0.8 * RUN.voltage), X, PA, PB],
+        ),
+        {"voltage_command": {"column": "valve [mA]", "points": [[4, -10], [20, 10]], "unit": "V"}},
     ),
     "sensors_in_volts": Log(
         "a.csv",

@@ -31,6 +31,7 @@ from peoples_logs import (
     text,
     timed,
     twincat,
+    two_rates,
 )
 
 AS_THEY_ARE: dict[str, Log] = {
@@ -63,6 +64,7 @@ AS_THEY_ARE: dict[str, Log] = {
         "a.csv", timed("Time", [str(134087426922340000 + 10_000 * k) for k in range(COUNT)], delimiter="\t")
     ),
     "two_tables_beside": Log("a.csv", side_by_side, lost=True),
+    "two_tables_of_other_names": Log("a.csv", two_rates, lost=True),
     "thousands": Log(
         "a.csv",
         text(

@@ -132,6 +132,15 @@ def side_by_side(path: Path) -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
+def two_rates(path: Path) -> None:
+    """Two tables in one with times of other names, below a spreadsheet's line on its separator."""
+    lines = ["sep=;", "t_fast [s];u [V];x [mm];t_slow [s];pA [bar];pB [bar]"]
+    for k in range(COUNT):
+        slow = [f"{2 * TIMES[k]:.4f}", PA[2 * k], PB[2 * k]] if 2 * k < COUNT else ["", "", ""]
+        lines.append(";".join([f"{TIMES[k]:.4f}", U[k], X[k], *slow]))
+    path.write_text("\n".join(lines) + "\n")
+
+
 def control_desk(path: Path) -> None:
     names = [
         "Command/Valve_V",

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eha_core.recording.column_names import Meaning, meaning_of
 from eha_core.recording.inspection import Field, Inspection
+from eha_core.unit_names import unit_named
+
+LOOP = (3.5e-3, 20.5e-3)
+"""A: between these a loop current lies; its ends are 4 and 20 mA."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +25,15 @@ def meant(field: Field, common: frozenset[str] = frozenset()) -> MeantField:
     """What a field's name says, without its unit; `common` are words that most names of its file begin with."""
     if "command_interface" in field.path:
         return MeantField(field, Meaning(frozenset({"voltage_command"}), "command", True, True))
-    return MeantField(field, meaning_of(plain_name(field), field.unit, common))
+    meaning = meaning_of(plain_name(field), field.unit, common)
+    unit = unit_named(field.unit)
+    is_loop = (
+        unit is not None and unit.si == "A" and LOOP[0] <= field.low * unit.scale <= field.high * unit.scale <= LOOP[1]
+    )
+    if is_loop and meaning.channels == {"current"} and meaning.quantity != "current":
+        # A valve between 4 and 20 mA is commanded so; a coil's current goes both ways, or is called one.
+        meaning = replace(meaning, channels=frozenset({"voltage_command"}))
+    return MeantField(field, meaning)
 
 
 def plain_name(field: Field) -> str:

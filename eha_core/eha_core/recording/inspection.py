@@ -50,7 +50,7 @@ class Field:
         first: the first value; NaN where there is none.
         step: the usual step from one value to the next; zero where they do not increase all the way.
         reference: "absolute" for a pressure whose message says so; else None.
-        repeated: rows in a second, by its first and last, of a column that stands for most steps and never goes back.
+        repeated: rows in a second, by its first and last, of a column that often stands and never goes back.
         time: the column of its own times; empty where the table's time serves.
         problem: why it cannot be used; empty where it can.
     """

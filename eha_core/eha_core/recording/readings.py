@@ -7,7 +7,7 @@ from math import floor
 
 from eha_core.recording.channel_kinds import CHANNEL_KINDS
 from eha_core.recording.channel_rules import ABSOLUTE, GAUGE, Points
-from eha_core.recording.field_meanings import MeantField
+from eha_core.recording.field_meanings import LOOP, MeantField
 from eha_core.recording.inspection import Field
 from eha_core.unit_names import UNITS, Unit, name_of, unit_named
 
@@ -26,8 +26,6 @@ _ATMOSPHERE_MATTERS = 20e5
 """Pa: a pressure that reaches more is read as gauge without a question: an atmosphere is 5 % of it at most."""
 _RARE = frozenset(("mbar", "kgf/cm^2", "100ns", "daN", "kgf", "m^3/h", "Hz", "deg/s"))
 """Units that are taken where they are stated, and not offered where none is."""
-LOOP = (3.5e-3, 20.5e-3)
-"""A: between these a sensor's loop current lies; its ends are 4 and 20 mA."""
 _VALUE_UNITS = {
     "Pa": "bar", "m": "mm", "m/s": "mm/s", "V": "V", "A": "A", "N": "kN", "m^3/s": "l/min", "rad/s": "rpm",
 }  # fmt: skip

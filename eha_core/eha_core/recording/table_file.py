@@ -13,7 +13,7 @@ from eha_core.errors import RecordingError
 from eha_core.recording.channel_kinds import CHANNEL_KINDS, FloatArray
 from eha_core.recording.channel_rules import ChannelRule
 from eha_core.recording.samples import Samples
-from eha_core.recording.time_units import TimeUnit, time_unit, unwrapped, usual_step
+from eha_core.recording.time_units import TimeUnit, repeats, time_unit, unwrapped, usual_step
 from eha_core.recording.topics_file import TopicsFile
 from eha_core.tables import Column, Table
 from eha_core.unit_names import UNITS
@@ -176,7 +176,7 @@ def stamps_of(
     times, wrapped = unwrapped(times)
     remarks = (f"{where} {wrapped}",) if wrapped else ()
     scale = rule.scale
-    if rule.rate is not None and usual_step(times) <= 0.0:
+    if rule.rate is not None and (usual_step(times) <= 0.0 or repeats(times)):
         # Times that stand are coarser than the samples, which only their number tells apart.
         return np.round(np.arange(len(times)) * (1e9 / rule.rate)).astype(np.int64), remarks
     if rule.rate is not None:

@@ -32,7 +32,7 @@ def suggest_time(inspection: Inspection, fields: Sequence[Field]) -> list[Readin
         return _own_times(fields, own)
     rate = inspection.rate
     named = [field for field in fields if _is_time(field)]
-    moving = [field for field in named if field.step > 0.0]
+    moving = [field for field in named if field.step > 0.0 and field.repeated == 0.0]
     indices = [field for field in fields if _is_index(field)]
     standing = [field for field in named if field.repeated > 0.0]
     # A date says more than a count of ms, and both more than a number of samples.

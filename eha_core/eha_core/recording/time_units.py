@@ -17,6 +17,8 @@ ONLY_NS = 1e6
 """Steps from which on a count is of ns: in us it would be slower than LONGEST_STEP."""
 AGREES = 0.05
 """Share by which a stated rate and that of the times may differ: loggers' clocks are better, and round their rate."""
+MOST_REPEATED = 0.2
+"""Share of steps in which times may stand: a logger that is late writes two rows at once now and then."""
 _WRAPS_WITHIN = 3.0
 """Steps by which a counter may miss its period where it begins anew."""
 _MOST_WRAPS = 0.1
@@ -123,10 +125,10 @@ def usual_step(times: Column) -> float:
 
 
 def repeats(times: Column) -> bool:
-    """Whether times stand for most steps and never go back: a clock coarser than the samples."""
+    """Whether times often stand and never go back: a clock coarser than the samples."""
     with np.errstate(over="ignore"):
         steps = np.diff(times).astype(np.float64)
-    return bool(len(steps) > 2 and np.all(steps >= 0.0) and steps.any() and np.median(steps) == 0.0)
+    return bool(len(steps) > 2 and np.all(steps >= 0.0) and steps.any() and np.mean(steps == 0.0) > MOST_REPEATED)
 
 
 def unwrapped(times: Column) -> tuple[Column, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,10 @@ _TIME = re.compile(
     r"(t|time|zeit|timestamp|time_?stamp|x_?value|zeitstempel|uhrzeit|date|datum|date ?time"
     r"|(abs|rel)(olute|ative)? ?time)"
 )
+_CLOCKS = ("time", "zeit", "timestamp")
+"""Words with which a name of times ends."""
+_ALIKE = 0.02
+"""Share by which the usual steps of two clocks of the same rows may differ."""
 _FRACTIONS = {
     10**6: re.compile(r"(ms|msec|millis|milli ?seconds?|millisekunden?|millisec|time ?ms)", re.IGNORECASE),
     10**3: re.compile(r"(us|usec|micros|micro ?seconds?|mikrosekunden?|microsec)", re.IGNORECASE),
@@ -87,22 +92,29 @@ def assembled(
 
 def _own_times(names: Sequence[str], plain: Sequence[str], values: Mapping[str, Column]) -> dict[str, str]:
     """The column of times before each column, in a file that has one before each signal or each of several tables."""
-    is_time = [_TIME.fullmatch(_bare(name)) is not None for name in plain]
+    is_time = [_is_time(_bare(name)) for name in plain]
     places = [k for k, one in enumerate(is_time) if one]
-    if (
-        len(places) < 2
-        or places[0] != 0
-        or is_time[-1]
-        or any(b - a == 1 for a, b in zip(places, places[1:], strict=False))
-    ):
+    if len(places) < 2 or places[0] != 0 or is_time[-1] or any(b - a == 1 for a, b in pairwise(places)):
         return {}
-    if len({_bare(plain[k]) for k in places}) > 1:
+    if len({_bare(plain[k]) for k in places}) > 1 and _are_alike([values[names[k]] for k in places]):
         return {}
-    own = {}
-    for k, name in enumerate(names):
-        if not is_time[k]:
-            own[name] = names[max(place for place in places if place < k)]
-    return own
+    return {name: names[max(place for place in places if place < k)] for k, name in enumerate(names) if not is_time[k]}
+
+
+def _is_time(bare: str) -> bool:
+    words = re.split(r"[^a-z]+", bare)
+    return _TIME.fullmatch(bare) is not None or _TIME.fullmatch(words[0]) is not None or words[-1] in _CLOCKS
+
+
+def _are_alike(clocks: Sequence[Column]) -> bool:
+    """Whether columns of times have the same rows, and go alike but for their unit and origin."""
+    numbers = [clock.astype(np.float64) for clock in clocks]
+    if len({int(np.isfinite(one).sum()) for one in numbers}) > 1:
+        return False
+    steps = [float(np.nanmedian(np.abs(np.diff(one)))) for one in numbers]
+    ratios = [step / steps[0] if steps[0] > 0.0 else 1.0 for step in steps]
+    of_units = [10.0**power for power in range(-12, 13)] + [60.0, 1.0 / 60.0, 86400.0, 1.0 / 86400.0]
+    return all(any(abs(ratio / one - 1.0) < _ALIKE for one in of_units) for ratio in ratios)
 
 
 def _bare(name: str) -> str:
