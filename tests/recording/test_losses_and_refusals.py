@@ -108,6 +108,14 @@ def test_a_header_that_repeats_in_the_middle_is_passed_over(tmp_path: Path) -> N
     assert len(table.columns["position"]) == COUNT and table.losses == {} and table.remarks == ()
 
 
+def test_columns_of_words_are_named_and_no_loss_of_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    text(["time", "mode", "position", "note"], [cells(TIMES), ["auto"] * COUNT, cells(RUN.position), [""] * COUNT])(
+        path
+    )
+    assert inspect_file(path).remarks == ("without numbers: mode, note",)
+
+
 def test_rows_without_a_time_are_counted(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     text(HEADS[:2], [["" if k % 100 == 50 else f"{k * 1e-3}" for k in range(COUNT)], cells(RUN.position)])(path)

@@ -110,7 +110,9 @@ def inspect_file(path: str | Path) -> Inspection:
 def _of_table(path: Path, table: Table) -> Inspection:
     fields = [_column(name, np.asarray(values), table) for name, values in table.columns.items()]
     remarks = list(table.remarks)
-    remarks += [f"{name!r}: {loss}" for name, loss in table.losses.items()]
+    wordy = {field.path for field in fields if not field.count}
+    remarks += [f"{name!r}: {loss}" for name, loss in table.losses.items() if name not in wordy]
+    remarks += [f"without numbers: {', '.join(field.path for field in fields if field.path in wordy)}"] if wordy else []
     if len(fields) > MOST_FIELDS:
         remarks.append(f"{len(fields) - MOST_FIELDS} columns more are not listed")
     said = tuple(map(printable, remarks))
