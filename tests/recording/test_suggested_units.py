@@ -165,3 +165,17 @@ def test_a_unit_is_usual_from_the_least_to_the_most_of_rigs(name: str, unit: str
         readings += [one for one in found.certain if one.channel != "time"]
         usual = {kind for kind, scale in kinds.items() if least <= scale * largest <= most}
         assert {one.unit for one in readings} == (usual or set(kinds))  # where none is usual, all are asked
+
+
+@pytest.mark.parametrize(
+    ("name", "reference"),
+    [
+        ("pA abs [bar]", "absolute"), ("Pressure A (absolute) [bar]", "absolute"),
+        ("Druck_A_absolut [bar]", "absolute"),
+        ("pA_rel [bar]", "gauge"), ("Pressure A gauge [bar]", "gauge"),
+    ],
+)  # fmt: skip
+def test_a_name_may_say_against_what_its_pressure_is_measured(name: str, reference: str) -> None:
+    found = of_table(a_column(name, 1.0, 60.0, "bar"))
+    assert certain_of(found) == {"pressure_a": (name, "bar", reference)}
+    assert not any(one.assumed for one in found.certain)

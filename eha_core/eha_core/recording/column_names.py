@@ -91,6 +91,12 @@ def names_a_side(name: str) -> bool:
     return bool(said & {"pressure", "flow"})
 
 
+def reference_in(name: str) -> str | None:
+    """Whether a name says that its pressure is "absolute" or "gauge"; None where it says neither, or both."""
+    said = {words_known.REFERENCES[word] for word in words_of(name) if word in words_known.REFERENCES}
+    return next(iter(said)) if len(said) == 1 else None
+
+
 def common_words(names: list[str]) -> frozenset[str]:
     """Words that most names of a file begin with: they name the rig, and say nothing of the column."""
     counts: dict[str, int] = {}

@@ -61,6 +61,10 @@ DENIED = _all(
 """What is derived, or of another part than the cylinder."""
 MEASURED = _all("position velocity force pressure flow angle torque")
 """Quantities that are measured, so that a command of theirs is wanted."""
+REFERENCES = _of(
+    absolute="abs absolute absolut absolutdruck", gauge="gauge rel relative relativ ueberdruck relativdruck"
+)
+"""Words that say against what a pressure is measured."""
 FILLERS = _all(
     "main plot data value sensor measured meas messwert ist istwert actual act fbk feedback signal sig ch chan"
     " channel ai"
@@ -95,7 +99,7 @@ NUMBERED = _all(
 """Words behind which a number only counts."""
 PAIRS = _all("loadcell xdot xvalue xv flowrate headside rodside rodend capend")
 """Words that are written apart too, as `load cell`."""
-EVERY = (QUANTITIES, LETTERS, OBJECTS, SIDES, WANTED, FILLERS, FIRST, SECOND)
+EVERY = (QUANTITIES, LETTERS, OBJECTS, SIDES, WANTED, REFERENCES, FILLERS, FIRST, SECOND)
 """All that is known."""
 COMPOUNDED = (QUANTITIES, OBJECTS, SIDES)
 """The second words of compounds such as `kolbendruck`."""

@@ -7,6 +7,7 @@ from math import floor
 
 from eha_core.recording.channel_kinds import CHANNEL_KINDS
 from eha_core.recording.channel_rules import ABSOLUTE, GAUGE, Points
+from eha_core.recording.column_names import reference_in
 from eha_core.recording.field_meanings import LOOP, MeantField
 from eha_core.recording.inspection import Field
 from eha_core.unit_names import UNITS, Unit, name_of, unit_named
@@ -130,7 +131,7 @@ def _in_unit(channel: str, field: Field, unit: Unit, is_certain: bool) -> Readin
     name = name_of(unit)
     if not CHANNEL_KINDS[channel].is_pressure:
         return Reading(channel, field, name, is_certain=is_certain)
-    if stated := unit.reference or field.reference:
+    if stated := unit.reference or field.reference or reference_in(field.path):
         return Reading(channel, field, name, stated, is_certain=is_certain)
     if field.low * unit.scale < BELOW_ZERO:
         return Reading(channel, field, name, GAUGE, is_certain=is_certain)
