@@ -44,7 +44,7 @@ def test_what_is_optional_allows_what_is_tested() -> None:
     settings.read(ROOT / "eha_core" / "setup.cfg")
     optional = [Requirement(row) for row in settings["options.extras_require"]["files"].split("\n") if row]
     develop = pins("develop.txt")
-    assert {one.name for one in optional} == {"h5py", "pyarrow"}
+    assert {one.name for one in optional} == {"h5py", "pyarrow", "openpyxl", "npTDMS", "asammdf"}
     assert all(one.specifier.contains(develop[one.name]) for one in optional)
 
 

@@ -257,12 +257,12 @@ def dump_parameters(values: Mapping[str, float], heading: str = "") -> str:
     lines = [f"# {line}" for line in heading.splitlines()]
     lines += ["/**/eha_sim:", "  ros__parameters:"]
     for name, value in to_node(values).items():
-        text = f"[{', '.join(map(_text, value))}]" if isinstance(value, list) else _text(value)
+        text = f"[{', '.join(map(number_text, value))}]" if isinstance(value, list) else number_text(value)
         lines.append(f"    {name}: {text}")
     return "\n".join(lines) + "\n"
 
 
-def _text(value: float) -> str:
+def number_text(value: float) -> str:
     """A number with its point: without it, YAML 1.1 takes 1e-10 for text."""
     text = repr(float(value))
     mantissa, _, exponent = text.partition("e")

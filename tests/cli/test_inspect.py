@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 
 from eha_core.cli import main
+from eha_core.errors import RecordingError
 from eha_core.recording import load_topics_file, read_recording
 
 FOLDER = Path(__file__).resolve().parent.parent / "recording"
@@ -22,11 +25,10 @@ from test_introspection import EFFORT, introspection_bag  # noqa: E402
 from test_introspection import POSITION as STATE  # noqa: E402
 
 ASKED = {
-    **dict.fromkeys(("semicolons", "tabs", "dates", "labview", "control_desk", "mat_5", "mat_73"), 2),
+    **dict.fromkeys(("semicolons", "tabs", "dates", "labview", "control_desk", "mat_5", "mat_73", "parquet"), 0),
     "without_names": 4,
-    "parquet": 0,
 }
-"""Questions of each kind of table: gauge or absolute, twice; or what each column is."""
+"""Questions of each kind of table: none, or which column each channel is."""
 
 
 def inspected(path: Path, topics: Path, capsys: pytest.CaptureFixture[str], status: int = 0) -> str:
@@ -34,14 +36,24 @@ def inspected(path: Path, topics: Path, capsys: pytest.CaptureFixture[str], stat
     return capsys.readouterr().out
 
 
-def answer(topics: Path, *answers: str) -> None:
-    """Take the # away from the lines with these words."""
-    lines = topics.read_text().splitlines()
-    for words in answers:
-        found = [k for k, line in enumerate(lines) if line.startswith("  # ") and words in line and "?" not in line]
-        assert len(found) == 1, (words, lines)
-        lines[found[0]] = lines[found[0]].replace("# ", "", 1)
-    topics.write_text("\n".join(lines) + "\n")
+def asked(topics: Path) -> dict[str, dict[str, Any]]:
+    """The entries of a topics file that still ask."""
+    entries = yaml.safe_load(topics.read_text())["channels"]
+    return {name: entry for name, entry in entries.items() if isinstance(entry, dict) and "ask" in entry}
+
+
+def answer(topics: Path, **answers: dict[str, Any] | None) -> None:
+    """Give each channel the one of its possible answers that has these values."""
+    content = yaml.safe_load(topics.read_text())
+    for channel, wanted in answers.items():
+        found = [
+            one
+            for one in content["channels"][channel]["ask"]
+            if (one is None) == (wanted is None) and (wanted or {}).items() <= (one or {}).items()
+        ]
+        assert len(found) == 1, (wanted, content["channels"][channel])
+        content["channels"][channel] = found[0]
+    topics.write_text(yaml.safe_dump(content))
 
 
 @pytest.mark.parametrize("kind", list(ASKED))
@@ -51,20 +63,16 @@ def test_every_kind_of_table_is_listed_and_read_once_its_questions_are_answered(
     path, _ = written(tmp_path, kind)
     topics = tmp_path / "asked.yaml"
     listing = inspected(path, topics, capsys)
-    assert topics.read_text().count("# ? ") == ASKED[kind]
+    assert len(asked(topics)) == ASKED[kind]
     assert re.search(rf" {COUNT} +1000 ", listing)
     assert f"eha diagnose {path} --topics {topics}" in listing
     if kind == "without_names":
-        text = topics.read_text()
-        for column, right in ((4, "pressure_a"), (5, "pressure_b")):
-            line = next(one for one in text.splitlines() if f'{right}: {{column: "column {column}"' in one)
-            text = text.replace(line, line.replace("absolute", "gauge"))
-        topics.write_text(text)
-        answer(topics, 'voltage_command: {column: "column 2"', 'position: {column: "column 3"')
-        answer(topics, 'pressure_a: {column: "column 4"', 'pressure_b: {column: "column 5"')
-    elif ASKED[kind]:
-        lines = [line[4:] for line in topics.read_text().splitlines() if line.endswith("reference: gauge}")]
-        answer(topics, *lines)
+        answer(
+            topics, voltage_command={"column": "column 2", "unit": "V"}, position={"column": "column 3", "unit": "mm"}
+        )
+        answer(
+            topics, pressure_a={"column": "column 4", "unit": "bar"}, pressure_b={"column": "column 5", "unit": "bar"}
+        )
     channels = read_recording(path, topics).channels
     assert set(channels) == set(CHANNELS)
     for channel, expected in CHANNELS.items():
@@ -93,10 +101,10 @@ def test_a_bag_of_any_topic_names_is_listed_with_what_its_messages_say(
             writer.write_fields("/loadcell", "geometry_msgs/msg/WrenchStamped", wrench, stamp)
     listing = inspected(path, topics, capsys)
     assert re.search(r"/cyl/p_head fluid_pressure +400 +1000 +5e\+06 +5\.0004e\+06 +Pa +pressure_a\n", listing)
+    assert set(asked(topics)) == {"position", "voltage_command"}
+    answer(topics, position={"field": "position[boom]"}, voltage_command={"unit": "V"})
     certain = load_topics_file(topics).channels
-    assert set(certain) == {"pressure_a", "force"}
     assert certain["force"] is not None and certain["force"].field == "wrench.force.x"
-    answer(topics, "position[boom]", "unit: V")
     channels = read_recording(path, topics).channels
     np.testing.assert_allclose(channels["position"].values, POSITION)
     np.testing.assert_allclose(channels["voltage_command"].values, VOLTAGE)
@@ -106,7 +114,7 @@ def test_an_introspection_bag_is_listed_by_its_interfaces(tmp_path: Path, capsys
     path, topics = introspection_bag(tmp_path), tmp_path / "topics.yaml"
     listing = inspected(path, topics, capsys)
     assert f"values[{STATE}]".rpartition("data/")[2] in listing
-    answer(topics, f"values[{EFFORT}]")
+    answer(topics, voltage_command={"field": f"values[{EFFORT}]", "unit": "V"})
     channels = read_recording(path, topics).channels
     np.testing.assert_allclose(channels["position"].values, np.arange(40) * 1e-6)
     np.testing.assert_allclose(channels["voltage_command"].values, np.arange(40) * 1e-3)
@@ -129,36 +137,32 @@ def test_a_damaged_bag_is_listed_as_far_as_it_goes(tmp_path: Path, capsys: pytes
 
 
 @pytest.mark.parametrize(
-    ("header_line", "row", "asked"),
+    ("header_line", "row", "asks"),
     [
         ("time,x_mm,stroke_mm", "{t},{k},{k}", "which of these is position?"),
         ("time,x", "{t},{k}", "in which unit is position?"),
         ("time,u", "{t},0.{k}", "voltage_command"),
-        ("time,p_a_bar", "{t},1{k}", "is pressure_a absolute or gauge?"),
+        ("time,p_a_bar", "{t},1.{k}", "is pressure_a absolute or gauge?"),
         ("t,position", "{k},0.{k}", "in which unit is time?"),
-        ("time,signal1", "{t},{k}", "which channel is it, if any?"),
+        ("time,signal1", "{t},{k}", "which number is position, if any?"),
         ("time,stuff [bar]", "{t},1{k}", "pressure_a"),
         ("time,f_N,p_a_barg,p_b_barg", "{t},1{k},1{k},2{k}", "in place of both pressures?"),
     ],
 )
 def test_what_is_ambiguous_is_asked_and_never_an_entry(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], header_line: str, row: str, asked: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], header_line: str, row: str, asks: str
 ) -> None:
     path, topics = tmp_path / "run.csv", tmp_path / "topics.yaml"
     rows = [row.replace("{t}", f"{k * 1e-3:.3f}").replace("{k}", str(k)) for k in range(30)]
     path.write_text("\n".join([header_line, *rows]) + "\n")
     inspected(path, topics, capsys)
-    questions = [line for line in topics.read_text().splitlines() if line.startswith("  # ? ")]
-    assert any(asked in question for question in questions), questions
-    entries = [line for line in topics.read_text().splitlines() if re.match(r"  \w", line)]
-    assert not any(
-        entry.startswith(f"  {name}:")
-        for entry in entries
-        for name in ("position", "voltage_command", "force")
-        if name in asked
-    )
-    if "time" not in asked:
-        assert entries[0] == '  time: {column: "time", unit: s}'
+    questions = asked(topics)
+    (channel,) = [name for name, entry in questions.items() if asks in entry["question"]][:1]
+    assert channel not in yaml.safe_load(topics.read_text())["channels"] or "ask" in questions[channel]
+    if "time" not in asks:
+        assert yaml.safe_load(topics.read_text())["channels"]["time"] == {"column": "time", "unit": "s"}
+    with pytest.raises(RecordingError, match=re.escape(f"topics file {topics}: ")):
+        load_topics_file(topics)
 
 
 def test_what_is_asked_for_is_not_taken_for_what_is_measured(
@@ -168,7 +172,7 @@ def test_what_is_asked_for_is_not_taken_for_what_is_measured(
     path.write_text("time,x_mm,x_ref_mm,pA_setpoint_bar\n" + "".join(f"{k / 1000},{k},{k},{k}\n" for k in range(30)))
     inspected(path, topics, capsys)
     assert set(load_topics_file(topics).channels) == {"position"}
-    assert "# ?" not in topics.read_text()
+    assert not asked(topics)
 
 
 def test_a_pressure_far_below_zero_is_gauge(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -195,7 +199,7 @@ def test_names_that_would_write_to_the_terminal_are_shown_and_quoted(
     listing = inspected(path, topics, capsys)
     assert "\x85" not in listing
     assert "\x85" not in topics.read_text()
-    load_topics_file(topics)
+    load_topics_file(topics, assume=True)
 
 
 def test_a_pump_s_speed_is_found_in_revolutions_a_minute(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

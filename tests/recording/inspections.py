@@ -30,4 +30,4 @@ def certain_of(found: Suggestions) -> dict[str, tuple[str, str | None, str | Non
 
 
 def ways(question: Question) -> list[tuple[str, str | None, str | None]]:
-    return [(one.channel, one.unit, one.reference) for one in question.readings]
+    return [(one.channel, one.unit, one.reference) for one in question.readings if one is not None]

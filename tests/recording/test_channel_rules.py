@@ -9,7 +9,8 @@ import pytest
 
 from eha_core.errors import RecordingError
 from eha_core.recording import load_topics_file
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile
+from eha_core.recording.channel_rules import ChannelRule
+from eha_core.recording.topics_file import TopicsFile
 
 
 def loaded(folder: Path, text: str) -> TopicsFile:

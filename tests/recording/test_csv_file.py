@@ -53,7 +53,7 @@ def test_gaps_and_words_are_left_out_and_counted(tmp_path: Path) -> None:
     recording = read_recording(csv_file(tmp_path, "time,position,velocity\n0,1,0\n1,,0\n2,n/a,0\n3,4\n"))
     assert recording.channels["position"].values.tolist() == [1.0, 4.0]
     assert recording.channels["velocity"].time.tolist() == [0.0, 1.0, 2.0]
-    assert "position (position): 2 samples that are no finite number were left out" in recording.remarks
+    assert "position (position): 2 cells are empty" in recording.remarks
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from eha_core.errors import RecordingError
-from eha_core.recording.channel_rules import DEFAULT_RULES, ChannelRule, TopicsFile
+from eha_core.recording.channel_rules import DEFAULT_RULES, ChannelRule
 from eha_core.recording.discovery import default_rule, find_rules, leakage_topic
+from eha_core.recording.topics_file import TopicsFile
 
 CONTRACT = ("voltage_command", "joint_states", "chamber_a/pressure", "chamber_b/pressure")
 

@@ -6,11 +6,21 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
-from eha_core.recording import blocks, channel_rules, inspection, reader, samples, simulated, suggestions, topic_columns
+from eha_core.recording import (
+    blocks,
+    channel_rules,
+    inspection,
+    reader,
+    samples,
+    simulated,
+    suggestions,
+    topic_columns,
+    topics_file,
+)
 from eha_core.recording import recording as recordings
 
 KINDS = [
-    blocks.Block, channel_rules.ChannelRule, channel_rules.TopicsFile, inspection.Field, inspection.Inspection,
+    blocks.Block, channel_rules.ChannelRule, topics_file.TopicsFile, inspection.Field, inspection.Inspection,
     reader.MessageFile, recordings.Channel, recordings.ChannelKind, recordings.Recording, samples.Samples,
     simulated.Experiment, simulated.Simulated, suggestions.Question, suggestions.Reading, suggestions.Suggestions,
     topic_columns.DecodedTopic,

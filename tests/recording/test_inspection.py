@@ -11,7 +11,8 @@ from recordings import SECOND, START, header
 
 from eha_core.errors import RecordingError
 from eha_core.recording import RecordingWriter, inspection
-from eha_core.recording.inspection import Field, inspect_file, unit_of_name
+from eha_core.recording.inspection import Field, inspect_file
+from eha_core.recording.stated_units import unit_of_name
 
 JOINTS, FLOAT, PRESSURE = "sensor_msgs/msg/JointState", "std_msgs/msg/Float64", "sensor_msgs/msg/FluidPressure"
 

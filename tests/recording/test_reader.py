@@ -10,7 +10,8 @@ from recordings import ATMOSPHERE, SECOND, START, header, piston_recording, writ
 
 from eha_core.errors import RecordingError
 from eha_core.recording import RecordingWriter, read_recording
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile
+from eha_core.recording.channel_rules import ChannelRule
+from eha_core.recording.topics_file import TopicsFile
 
 FLOAT = "std_msgs/msg/Float64"
 PRESSURE = "sensor_msgs/msg/FluidPressure"

@@ -42,17 +42,17 @@ def test_the_only_unit_that_is_usual_is_asked_after_and_not_certain() -> None:
     (question,) = found.questions
     assert certain_of(found) == {}
     assert ways(question) == [("current", "mA", None)] and not question.is_open
-    assert question.text == "is current in mA? it goes from -50 to 50"
+    assert question.text == '"strom": is current in mA? it goes from -50 to 50'
     assert certain_of(of_table(a_column("strom", -50.0, 50.0, "mA"))) == {"current": ("strom", "mA", None)}
 
 
 def test_where_no_unit_is_usual_a_name_is_asked_after_in_all_and_a_nameless_column_in_none() -> None:
     (named,) = of_table(a_column("strom", 0.0, 1e12)).questions
     assert ways(named) == [("current", unit, None) for unit in ("A", "mA", "uA")]
-    assert named.text == "in which unit is current? it goes from 0 to 1e+12"
-    (nameless,) = of_table(a_column("column 7", 0.0, 1e12)).questions
-    assert (nameless.readings, nameless.is_open) == ((), True)
-    assert nameless.text == "which channel is it, if any? it goes from 0 to 1e+12"
+    assert named.text == '"strom": in which unit is current? it goes from 0 to 1e+12'
+    assert of_table(a_column("column 7", 0.0, 1e12)).questions == ()
+    nameless = of_table(a_column("column 7", 0.0, 10.0)).questions[0]
+    assert nameless.is_open and nameless.text == "which number is voltage_command, if any?"
 
 
 @pytest.mark.parametrize(
@@ -71,8 +71,8 @@ def test_what_is_usual_has_its_ends(largest: float, units: list[str], is_below_z
     ("low", "unit", "references"),
     [
         (-0.21, "bar", ["gauge"]),
-        (-0.2, "bar", ["absolute", "gauge"]),
-        (1.0, "bar", ["absolute", "gauge"]),
+        (-0.2, "bar", ["gauge"]),
+        (1.0, "bar", ["gauge"]),
         (-0.5, "barg", ["gauge"]),
         (0.5, "bara", ["absolute"]),
         (-0.5, "bara", ["absolute"]),
@@ -82,31 +82,46 @@ def test_a_pressure_is_gauge_where_it_says_so_or_none_can_be_so_low(
     low: float, unit: str, references: list[str]
 ) -> None:
     found = of_table(a_column("druck_kolben", low, 60.0, unit))
-    readings = [*found.certain, *(one for question in found.questions for one in question.readings)]
-    told = [(one.unit, one.reference) for one in readings if one.channel == "pressure_a"]
+    told = [(one.unit, one.reference) for one in found.certain if one.channel == "pressure_a"]
     assert told == [("bar", reference) for reference in references]
-    assert len(found.questions) == (len(references) > 1)
-    if found.questions:
-        span = f"it goes from {low:.4g} to 60 bar"
-        assert found.questions[0].text == f"is pressure_a absolute or gauge? {span}"
+    assert found.questions == ()
+    is_word = unit != "bar" or low < -0.2
+    assert [one.assumed for one in found.certain if one.channel == "pressure_a"] == [
+        "" if is_word else "gauge, for want of a word on it"
+    ]
+
+
+@pytest.mark.parametrize(("high", "is_asked"), [(19.9, True), (20.0, False)])
+def test_a_pressure_in_which_an_atmosphere_matters_is_asked_after(high: float, is_asked: bool) -> None:
+    """Below 20 bar the atmosphere is more than 5 % of the largest pressure."""
+    found = of_table(a_column("druck_kolben", 1.0, high, "bar"))
+    assert bool(found.questions) == is_asked
+    if is_asked:
+        (question,) = found.questions
+        assert ways(question) == [("pressure_a", "bar", reference) for reference in ("gauge", "absolute")]
+        assert question.text == f'"druck_kolben": is pressure_a absolute or gauge? it goes from 1 to {high:.4g} bar'
 
 
 @pytest.mark.parametrize(
     ("first", "step", "units"),
     [
-        (0.0, 2e-3, ["s"]), (0.0, 0.999, ["s"]), (0.0, 1.0, ["ms", "us", "ns"]), (0.0, 2e6, ["ms", "us", "ns"]),
-        (1e12, 2.0, ["ms"]), (3.99e12, 2.0, ["ms"]), (4e12, 2.0, ["ms", "us", "ns"]),
-        (0.99e12, 2.0, ["ms", "us", "ns"]),
-        (1.7e15, 2e3, ["us"]), (1.7e18, 2e6, ["ns"]),
+        (0.0, 2e-3, ["s"]), (0.0, 0.999, ["s"]), (0.0, 1.0, ["ms", None]), (0.0, 25.0, ["ms", "us", None]),
+        (0.0, 2e4, ["us", "100ns", "ns", None]), (0.0, 2e6, ["ns"]), (0.0, 2.5, ["ms"]),
+        (0.0, 1e-5, ["min", "h", "day"]),
+        (1e12, 2.0, ["ms"]), (3.99e12, 2.0, ["ms"]), (4e12, 2.0, ["ms", None]), (0.99e12, 2.0, ["ms", None]),
+        (1.7e15, 2e3, ["us"]), (1.7e18, 2e6, ["ns"]), (46352.5, 2.3e-8, ["day"]), (739000.5, 2.3e-8, ["day"]),
+        (46352.5, 2e-3, ["s"]), (1.34e17, 2e4, ["100ns"]), (6.4e17, 2e4, ["100ns"]), (1.4e9, 2e-3, ["s"]),
     ],
 )  # fmt: skip
-def test_a_time_without_a_unit_is_told_by_how_it_counts_or_asked(first: float, step: float, units: list[str]) -> None:
+def test_a_time_without_a_unit_is_told_by_how_it_counts_or_asked(
+    first: float, step: float, units: list[str | None]
+) -> None:
     found = suggest(Inspection(Path("run.csv"), "csv", (a_time("", first, step),), {}, ()))
     readings = [*found.certain, *(one for question in found.questions for one in question.readings)]
     assert [(one.channel, one.unit) for one in readings] == [("time", unit) for unit in units]
-    assert bool(found.certain) == (len(units) == 1)
-    if len(units) > 1:
-        assert found.questions[0].text.startswith("in which unit is time?")
+    assert bool(found.certain) == (len(units) == 1 and units != ["ms"] or first > 0.0 and len(units) == 1)
+    if found.questions:
+        assert found.questions[0].text.startswith('"time": in which unit is time?')
 
 
 def test_a_column_that_does_not_increase_is_no_time_and_one_that_does_may_be() -> None:
@@ -140,8 +155,27 @@ LIMITS = [
 
 @pytest.mark.parametrize(("name", "unit", "least", "most"), LIMITS)
 def test_a_unit_is_usual_from_the_least_to_the_most_of_rigs(name: str, unit: str, least: float, most: float) -> None:
-    kinds = {kind: one.scale for kind, one in UNITS.items() if one.si == unit and one.reference is None}
+    rare = {"mbar", "kgf/cm^2", "daN", "kgf", "m^3/h", "Hz", "deg/s"}  # taken where stated, and not offered
+    kinds = {
+        kind: one.scale for kind, one in UNITS.items() if one.si == unit and one.reference is None and kind not in rare
+    }
     for largest in (least, np.nextafter(least, 0.0), most, np.nextafter(most, np.inf)):
-        readings = [one for question in of_table(a_column(name, 0.0, largest)).questions for one in question.readings]
+        found = of_table(a_column(name, 0.0, largest))
+        readings = [one for question in found.questions for one in question.readings if one is not None]
+        readings += [one for one in found.certain if one.channel != "time"]
         usual = {kind for kind, scale in kinds.items() if least <= scale * largest <= most}
         assert {one.unit for one in readings} == (usual or set(kinds))  # where none is usual, all are asked
+
+
+@pytest.mark.parametrize(
+    ("name", "reference"),
+    [
+        ("pA abs [bar]", "absolute"), ("Pressure A (absolute) [bar]", "absolute"),
+        ("Druck_A_absolut [bar]", "absolute"),
+        ("pA_rel [bar]", "gauge"), ("Pressure A gauge [bar]", "gauge"),
+    ],
+)  # fmt: skip
+def test_a_name_may_say_against_what_its_pressure_is_measured(name: str, reference: str) -> None:
+    found = of_table(a_column(name, 1.0, 60.0, "bar"))
+    assert certain_of(found) == {"pressure_a": (name, "bar", reference)}
+    assert not any(one.assumed for one in found.certain)

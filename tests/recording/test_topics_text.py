@@ -25,7 +25,7 @@ NAMES = ["way of the piston " * 6 + "[mm]", 'way "a": {b} [mm]', "way\nnext [mm]
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_name_is_on_one_line_and_reads_back(name: str) -> None:
-    *_, last = lines = text_of(a_column(name, 0.0, 80.0, "mm"), a_column("laser", 0.0, 7.0, "mm")).splitlines()
+    *_, last = lines = text_of(a_column(name, 0.0, 80.0, "kg"), a_column("laser", 0.0, 7.0, "mm")).splitlines()
     assert len(lines) == 5 and last.startswith("# not taken for a channel: ")
     assert yaml.safe_load(last.partition(": ")[2]) == name
     (entry,) = [line for line in text_of(a_column(f"{name}.weg", 0.0, 8.0, "mm")).splitlines() if "position" in line]
@@ -39,19 +39,24 @@ def test_what_is_certain_is_an_entry_what_is_open_a_comment_and_the_rest_is_name
     ]  # fmt: skip
     assert text_of(*fields).splitlines() == [
         '# Channels of "my run.csv", as `eha inspect` found them.',
-        "# Lines with a ? are questions: take the # away from the one answer that is right.",
+        "# Where it says `ask`, put the right one of the answers in place of `{question: ..., ask: ...}`;",
+        "# a null inside an answer is a number to fill in, an answer `null` means that there is no such channel.",
         "channels:",
         '  time: {column: "time", unit: s}',
+        '  pressure_a: {column: "p_head", unit: bar, reference: gauge}  # assumed: gauge, for want of a word on it',
         '  position: {column: "weg", unit: mm}',
-        '  # ? "p_head": is pressure_a absolute or gauge? it goes from 1 to 60 bar',
-        '  # pressure_a: {column: "p_head", unit: bar, reference: absolute}',
-        '  # pressure_a: {column: "p_head", unit: bar, reference: gauge}',
-        '  # ? "signal 7": which channel is it, if any? it goes from 0 to 3',
-        '  # voltage_command: {column: "signal 7", unit: V}  # or mV',
-        '  # position: {column: "signal 7", unit: m}  # or mm or cm or in',
-        '  # pressure_a: {column: "signal 7", unit: bar, reference: absolute}  # or MPa, or gauge',
-        '  # pressure_b: {column: "signal 7", unit: bar, reference: absolute}  # or MPa, or gauge',
-        '  # force: {column: "signal 7", unit: kN}  # or lbf',
+        "  voltage_command:",
+        '    question: "which number is voltage_command, if any?"',
+        "    ask:",
+        '      - {column: "signal 7", unit: V}  # it goes from 0 to 3',
+        '      - {column: "signal 7", unit: mV}  # it goes from 0 to 3',
+        "      - null",
+        "  pressure_b:",
+        '    question: "which number is pressure_b, if any?"',
+        "    ask:",
+        '      - {column: "signal 7", unit: bar, reference: gauge}  # it goes from 0 to 3',
+        '      - {column: "signal 7", unit: MPa, reference: gauge}  # it goes from 0 to 3',
+        "      - null",
         '# not taken for a channel: "beam"',
     ]
 

@@ -16,7 +16,8 @@ from eha_core.errors import EhaError
 # what reads, simulates or plots is imported where it is used: the help and a refusal need none of it
 if TYPE_CHECKING:
     from eha_core.diagnosis import Diagnosis
-    from eha_core.recording import Recording
+    from eha_core.nominal import NominalModel
+    from eha_core.recording import Recording, TopicsFile
 
 UNUSABLE = 2
 DAMAGED = 3
@@ -39,6 +40,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help="a bag or a table: .mcap, .csv, .mat ...")
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
+    add(
+        "--assume",
+        action="store_true",
+        help="take the likely answers to what the topics file still asks, and list them",
+    )
     add("--test", action="append", default=[], type=Path, metavar="FILE", help="a recording that is only predicted")
     add("--motion-given", action="store_true", help="find the force's law from the motion, whatever else was recorded")
     add("--as-recorded", action="store_true", help="go on where a recording cannot be right, and warn of it")
@@ -94,6 +100,10 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
         [admit(recording, model.values, arguments.as_recorded, model.composition) for recording in several]
         for several in (recordings, tests)
     )
+    for recording in () if arguments.as_recorded else (*recordings, *tests):
+        require_travel(recording, model, given is not None)
+    if line := assumed_cylinder(given is not None, recordings[0], model):
+        print(f"eha diagnose: {line}", file=sys.stderr)
     for warning in (
         remark for recording in (*recordings, *tests) for remark in recording.remarks if remark.startswith("warning")
     ):
@@ -133,6 +143,30 @@ def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Prog
         print(account(diagnosis, written))
 
 
+def assumed_cylinder(is_given: bool, recording: Recording, model: NominalModel) -> str:
+    """What is assumed in place of a nominal file, in a line; empty where one is given, or the recording has values."""
+    if is_given or recording.parameters or recording.parts:
+        return ""
+    values = model.values
+    return (
+        f"no --nominal: the catalogue's cylinder is assumed, of {values['piston_area'] * 1e4:.3g} cm^2 and"
+        f" {2e3 * values['actuator_displacement']:.3g} mm stroke; `eha init-rig` makes the file of a rig"
+    )
+
+
+def require_travel(recording: Recording, model: NominalModel, is_given: bool) -> None:
+    """Raise RecordingError for a position that the cylinder cannot have gone through."""
+    from eha_core.rig import require_possible_travel
+
+    position = recording.channels.get("position")
+    if position is None or "piston_area" not in model.composition.rows:
+        return
+    travel = float(position.values.max() - position.values.min())
+    area = max(model.values["piston_area"], model.values["piston_area_b"])
+    has_own = is_given or bool(recording.parameters)
+    require_possible_travel(str(recording.path), travel, area, has_own)
+
+
 def _check_paths(arguments: argparse.Namespace) -> None:
     """Raise EhaError for a path that could not be read or written, before any work is done."""
     if not arguments.each:  # there, what is missing stops none of the others
@@ -144,7 +178,8 @@ def _check_paths(arguments: argparse.Namespace) -> None:
     if arguments.topics is not None:
         from eha_core.recording import load_topics_file
 
-        load_topics_file(arguments.topics)
+        # Read once, before anything slow: what is still asked there ends the command at once.
+        arguments.topics = load_topics_file(arguments.topics, assume=arguments.assume)
 
 
 def _read(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recording]:
@@ -153,9 +188,7 @@ def _read(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recordin
     return [read_recording(path, arguments.topics) for path in paths]
 
 
-def _run_motion_given(
-    arguments: argparse.Namespace, recordings: Sequence[Recording], progress: Progress
-) -> int:
+def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Recording], progress: Progress) -> int:
     """A test bench or a damper: nothing drives the plant, so the law of its force is found from the motion."""
     from eha_core.api import known_model
     from eha_core.motion_given import diagnose_motion
@@ -210,7 +243,7 @@ def _run_each(arguments: argparse.Namespace) -> int:
 def diagnose_alone(
     path: Path,
     nominal: Path | None,
-    topics: Path | None,
+    topics: TopicsFile | None,
     folder: Path,
     as_recorded: bool = False,
     with_report: bool = True,
@@ -229,6 +262,8 @@ def diagnose_alone(
         record = admitted(path, topics, given.composition if given else None)
         model = known_model(given, record.recordings[0])
         recordings = [admit(recording, model.values, as_recorded, model.composition) for recording in record.recordings]
+        for recording in () if as_recorded else recordings:
+            require_travel(recording, model, given is not None)
         diagnosis = judged(diagnose_together(recordings, model, jobs=1), [record], model)
         diagnosis = with_provenance(diagnosis, [record], nominal)
         (write_report if with_report else write_document)(diagnosis, folder)

@@ -7,7 +7,9 @@ import sys
 from pathlib import Path
 
 from eha_core.errors import EhaError
-from eha_core.rig import DATA, Datum, nominal_text, parameters_of, quantity
+from eha_core.plant import PAPER, composition_of
+from eha_core.plant.parts import parts
+from eha_core.rig import DATA, Datum, asked_of, nominal_text, parameters_of, quantity
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -23,6 +25,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("--out", type=Path, required=True, metavar="FILE", help="the nominal file that is written")
     add("--ask", action="store_true", help="ask for what no option gives, also where the answers come from a pipe")
     add("--assume", action="store_true", help="write the catalogue's value, marked as assumed, in place of unknown")
+    known = parts("source")
+    what = ", ".join(f"{name} ({known[name].summary})" for name in sorted(known))
+    default = PAPER.source.id
+    what = f"what drives the piston: {what}; default {default}"
+    add("--source", choices=sorted(known), default=default, metavar="SOURCE", help=what)
     for datum in DATA:
         add(f"--{datum.name.replace('_', '-')}", metavar=f"'{datum.example}'", help=datum.meaning.replace("%", "%%"))
 
@@ -33,10 +40,15 @@ def run(arguments: argparse.Namespace) -> int:
         raise EhaError(f"{arguments.out}: exists already; choose another name")
     texts = {datum.name: getattr(arguments, datum.name) for datum in DATA}
     given = {datum.name: quantity(datum, texts[datum.name]) for datum in DATA if texts[datum.name] is not None}
+    composition = composition_of({"source": arguments.source})
+    asked = asked_of(composition)
+    idle = next((name for name in given if name not in [datum.name for datum in asked]), None)
+    if idle is not None:
+        raise EhaError(f"--{idle.replace('_', '-')} tells nothing of a rig on {arguments.source}; leave it out")
     if arguments.ask or (sys.stdin.isatty() and not given):
-        given |= _asked([datum for datum in DATA if datum.name not in given])
-    entries = parameters_of(given)
-    text = nominal_text(entries, arguments.assume)
+        given |= _asked([datum for datum in asked if datum.name not in given])
+    entries = parameters_of(given, composition)
+    text = nominal_text(entries, arguments.assume, composition)
     try:
         with arguments.out.open("x", encoding="utf-8") as file:
             file.write(text)

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from math import isnan
 from pathlib import Path
 
-from eha_core.errors import printable
+from eha_core.cli._ask import answered
+from eha_core.errors import EhaError, printable
 from eha_core.recording.inspection import Field, Inspection, inspect_file
 from eha_core.recording.suggestions import Suggestions, rate_of, suggest, used
 from eha_core.recording.topics_text import topics_text, write_topics
+from eha_core.tables import READABLE
 
+UNUSABLE = 2
+"""Exit status where nothing in the file can be a channel."""
 DAMAGED = 3
 """Exit status where the file was damaged and the list rests on the part that could be read."""
 WIDEST = 60
 """Characters of a name in the list; the topics file has it in full."""
 _KINDS = {
     "csv": "text table", "lvm": "LabVIEW measurement file", "mat": "MAT file", "parquet": "Parquet file",
+    "json": "JSON records", "xlsx": "workbook", "tdms": "TDMS file", "mdf": "MDF file",
     "bag": "recording of ROS 2 messages",
 }  # fmt: skip
 
@@ -28,26 +34,44 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="list what is in a log file and write a topics file for it",
         description=__doc__,
         epilog="A channel is certain where one column or topic alone is called so and its unit is stated; everything"
-        " else becomes a question in the topics file, with its answers as comments.",
+        " else is a question. On a terminal the questions are asked one by one; else they are in the topics file,"
+        " with their possible answers.",
     )
     add = parser.add_argument
-    add("file", type=Path, metavar="FILE", help=".mcap, .db3, rosbag2 folder, .csv, .txt, .lvm, .mat or .parquet")
-    add("--topics", type=Path, metavar="FILE", help="write a topics file there, for `eha diagnose --topics`")
+    add("file", type=Path, metavar="FILE", help=READABLE)
+    add("--topics", type=Path, metavar="FILE", help="write a topics file there, for `eha diagnose --topics`; where"
+        " questions are asked, by default FILE.topics.yaml in this folder")  # fmt: skip
+    add("--ask", action="store_true", help="ask the questions, also where the answers come from a pipe")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb."""
+    if arguments.topics is not None and arguments.topics.exists():
+        raise EhaError(f"{arguments.topics}: exists already; choose another name")
     inspection = inspect_file(arguments.file)
     suggestions = suggest(inspection)
     print("\n".join(_listing(inspection, suggestions)))
-    if arguments.topics is not None:
-        write_topics(arguments.topics, topics_text(inspection, suggestions))
-        print(f"\n{arguments.topics}: {_counted(suggestions)}")
-        answered = " once they are answered" if suggestions.questions else ""
-        print(f"Go on{answered} with: eha diagnose {arguments.file} --topics {arguments.topics}")
+    found = {reading.channel for reading in suggestions.certain} | {asked.channel for asked in suggestions.questions}
+    if not found - {"time"}:
+        print(f"eha inspect: {arguments.file}: holds nothing that can be a channel; {_WANTED}", file=sys.stderr)
+        return UNUSABLE
+    topics = arguments.topics
+    if suggestions.questions and (arguments.ask or (sys.stdin.isatty() and sys.stdout.isatty())):
+        topics = topics or Path(f"{arguments.file.name}.topics.yaml")
+        if topics.exists():
+            raise EhaError(f"{topics}: exists already; choose another name with --topics")
+        suggestions = answered(suggestions)
+    if topics is not None:
+        write_topics(topics, topics_text(inspection, suggestions))
+        print(f"\n{topics}: {_counted(suggestions)}")
+        is_open = " once they are answered" if suggestions.questions else ""
+        print(f"Go on{is_open} with: eha diagnose {arguments.file} --topics {topics}")
     else:
         print(f"\n{_counted(suggestions)}; --topics FILE writes them down")
     return DAMAGED if inspection.damaged else 0
+
+
+_WANTED = "of use are a valve's command, a position, pressures or a force, each over time"
 
 
 def _counted(suggestions: Suggestions) -> str:
@@ -65,6 +89,7 @@ def _listing(inspection: Inspection, suggestions: Suggestions) -> list[str]:
         for asked in suggestions.questions
         if asked.is_open
         for reading in asked.readings
+        if reading is not None
     }
     sure = {(reading.field.topic, reading.field.path) for reading in suggestions.certain}
     for field in inspection.fields:
@@ -81,7 +106,19 @@ def _listing(inspection: Inspection, suggestions: Suggestions) -> list[str]:
         ]
         lines.append("  ".join(cells).rstrip())
     lines += [f"note: {remark}" for remark in inspection.remarks]
+    lines += [f"note: not usable: {field.path!r}: {field.problem}" for field in inspection.fields if field.problem]
+    lines += [f"question: {question.channel}: {printable(question.text)}" for question in suggestions.questions]
+    lines += _assumed(suggestions)
     return lines + ([f"damaged: {inspection.damaged}"] if inspection.damaged else [])
+
+
+def _assumed(suggestions: Suggestions) -> list[str]:
+    """What was taken without a question, one line for channels alike."""
+    channels: dict[str, list[str]] = {}
+    for reading in suggestions.certain:
+        if reading.assumed:
+            channels.setdefault(reading.assumed, []).append(reading.channel)
+    return [f"assumed: {' and '.join(names)} {assumed}" for assumed, names in channels.items()]
 
 
 def _row(field: Field, rate: float, channel: str) -> tuple[str, ...]:

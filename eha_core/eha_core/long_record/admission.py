@@ -9,7 +9,7 @@ from pathlib import Path
 from eha_core.errors import RecordingError
 from eha_core.long_record import limits
 from eha_core.plant import Composition, composition_of
-from eha_core.recording import Recording, load_topics_file, read_recording
+from eha_core.recording import Recording, TopicsFile, read_recording, topics_of
 from eha_core.recording.bag import bag_extent, bag_size
 from eha_core.recording.blocks import Block, Blocks, BlocksInMemory, BlocksOfFile
 from eha_core.tables import is_table
@@ -49,7 +49,7 @@ class Admitted:
 
 def admitted(
     given: Recording | str | Path,
-    topics: str | Path | None = None,
+    topics: str | Path | TopicsFile | None = None,
     composition: Composition | None = None,
     progress: Progress = lambda _: None,
 ) -> Admitted:
@@ -69,7 +69,7 @@ def admitted(
         return _of_recording(given, composition, progress)
     path = Path(given)
     if _is_long_file(path):
-        file = BlocksOfFile(path, load_topics_file(topics) if topics is not None else None, limits.STRETCH)
+        file = BlocksOfFile(path, topics_of(topics), limits.STRETCH)
         found = _stretches(file, composition, progress)
         if found is not None:
             return found

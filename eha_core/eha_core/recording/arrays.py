@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from eha_core.errors import RecordingError, remedy
+from eha_core.recording.assembly import Assembled, assembled
+from eha_core.recording.channel_kinds import CHANNEL_KINDS, FloatArray
 from eha_core.recording.channel_rules import ABSOLUTE, GAUGE, ChannelRule
 from eha_core.recording.raw import RawRecording
-from eha_core.recording.reader import assemble
-from eha_core.recording.recording import CHANNEL_KINDS, FloatArray, Recording
 from eha_core.recording.samples import Samples
 
 IN_MEMORY = "in memory"
@@ -22,7 +22,7 @@ IN_MEMORY = "in memory"
 
 def from_arrays(
     time: ArrayLike, channels: Mapping[str, ArrayLike], pressures: str = ABSOLUTE, name: str = IN_MEMORY
-) -> Recording:
+) -> Assembled:
     """See `Recording.from_arrays`."""
     if pressures not in (ABSOLUTE, GAUGE):
         raise RecordingError(f"{name}: pressures = {pressures!r}; say {ABSOLUTE!r} or {GAUGE!r}")
@@ -44,12 +44,12 @@ def from_arrays(
         is_pressure = CHANNEL_KINDS[channel].is_pressure
         rules[channel] = ChannelRule(channel, column=channel, reference=pressures if is_pressure else None)
         samples[channel] = Samples(stamps, column)
-    return assemble(Path(name), samples, rules, dict.fromkeys(rules, "array"), RawRecording(), [])
+    return assembled(Path(name), samples, rules, dict.fromkeys(rules, "array"), RawRecording(), [])
 
 
 def from_dataframe(
     frame: Any, columns: Mapping[str, str], time: str | None, pressures: str = ABSOLUTE, name: str = IN_MEMORY
-) -> Recording:
+) -> Assembled:
     """See `Recording.from_dataframe`."""
     there = [str(column) for column in frame.columns]
     wanted = {channel: channel for channel in CHANNEL_KINDS} | dict(columns)

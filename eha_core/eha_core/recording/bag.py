@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from urllib.parse import quote
 
 import apsw
@@ -12,6 +13,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.rosbag2.errors import ReaderError
 
 from eha_core.errors import RecordingError
+from eha_core.recording.compressed import ENDING, plain_file, unpacking
 from eha_core.recording.mcap_file import mcap_topics, read_mcap
 from eha_core.recording.mcap_summary import mcap_extent, mcap_metadata
 from eha_core.recording.raw import RawRecording, RawTopic, Sinks
@@ -20,6 +22,8 @@ from eha_core.yaml_file import load_yaml
 
 _READ_ONLY = apsw.SQLITE_OPEN_READONLY | apsw.SQLITE_OPEN_URI
 _COMPUTED = re.compile(r"generated\s+always|\bas\s*\(|\bvirtual\s+table\b", re.IGNORECASE)
+_ENDINGS = ("*.mcap", "*.db3", f"*.mcap{ENDING}", f"*.db3{ENDING}")
+_Read = TypeVar("_Read")
 _ROW = 32  # bytes of a row beside its message
 
 
@@ -48,16 +52,17 @@ def read_bag(path: Path, sinks: Sinks) -> RawRecording:
     Raises:
         RecordingError: there is nothing that can be read.
     """
+    plain = unpacking(sinks, str(path), bag_size(path))
     if path.is_dir():
-        return _read_files(path, _files_of(path), sinks)
-    return _read_file(path, sinks)
+        return _read_files(path, _files_of(path), plain)
+    return _read_file(path, plain)
 
 
 def bag_extent(path: Path) -> float | None:
     """s from the first to the last message, where the files say so without being read."""
     extents = []
     for file in _files_of(path) if path.is_dir() else [path]:
-        if file.suffix == ".db3" or not file.is_file():
+        if file.suffix in (".db3", ENDING) or not file.is_file():
             return None
         extents.append(mcap_extent(file))
     known = [extent for extent in extents if extent is not None]
@@ -75,18 +80,29 @@ def bag_metadata(path: Path) -> dict[str, dict[str, str]]:
     """The metadata records of a file or a folder that can be had without reading the messages."""
     found: dict[str, dict[str, str]] = {}
     for file in _files_of(path) if path.is_dir() else [path]:
-        if file.suffix != ".db3" and file.is_file():
+        if file.suffix not in (".db3", ENDING) and file.is_file():
             for name, values in mcap_metadata(file).items():
                 found.setdefault(name, {}).update(values)
     return found
 
 
 def _topics_of_file(path: Path) -> dict[str, RawTopic]:
-    return _read_sqlite(path, {}).topics if path.suffix == ".db3" else mcap_topics(path)
+    return _of_file(path, lambda file: _read_sqlite(file, {}).topics if file.suffix == ".db3" else mcap_topics(file))
 
 
 def _read_file(path: Path, sinks: Sinks) -> RawRecording:
-    return _read_sqlite(path, sinks) if path.suffix == ".db3" else read_mcap(path, sinks)
+    return _of_file(path, lambda file: _read_sqlite(file, sinks) if file.suffix == ".db3" else read_mcap(file, sinks))
+
+
+def _of_file(path: Path, read: Callable[[Path], _Read]) -> _Read:
+    """What is read of a file, unpacked where it is packed as a whole; messages name the file that was given."""
+    plain = plain_file(path)
+    try:
+        return read(plain)
+    except RecordingError as error:
+        if plain == path:
+            raise
+        raise RecordingError(str(error).replace(str(plain), str(path))) from error
 
 
 def _files_of(folder: Path) -> list[Path]:
@@ -104,8 +120,8 @@ def _files_of(folder: Path) -> list[Path]:
         if outside is not None:
             raise RecordingError(f"{description}: lists {outside}, which is not in its folder; name the file itself")
         return [folder / name for name in listed]
-    files = sorted((file for ending in ("*.mcap", "*.db3") for file in folder.glob(ending)), key=_numbered)
-    if len({re.sub(r"_\d+$", "", file.stem) for file in files}) > 1:
+    files = sorted((file for ending in _ENDINGS for file in folder.glob(ending)), key=_numbered)
+    if len({re.sub(r"_\d+$", "", _stem(file)) for file in files}) > 1:
         names = ", ".join(file.name for file in files)
         raise RecordingError(f"{folder}: holds several recordings ({names}); name one of them")
     if not files:
@@ -113,8 +129,12 @@ def _files_of(folder: Path) -> list[Path]:
     return files
 
 
+def _stem(file: Path) -> str:
+    return file.name.partition(".")[0]
+
+
 def _numbered(file: Path) -> tuple[int, str]:
-    match = re.search(r"_(\d+)$", file.stem)
+    match = re.search(r"_(\d+)$", _stem(file))
     return (int(match[1]) if match else -1, file.name)
 
 

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from eha_core.errors import RecordingError
 from eha_core.recording.bag import bag_metadata, read_bag
-from eha_core.recording.channel_rules import TopicsFile
 from eha_core.recording.cutting import HELD, cut_out, leakage_within, named_stretch
 from eha_core.recording.discovery import LEAKAGE_TOPIC
 from eha_core.recording.raw import RawRecording, Sink
 from eha_core.recording.reader import MessageFile, assemble, open_messages
 from eha_core.recording.recording import CHANNEL_KINDS, FloatArray, Recording
 from eha_core.recording.samples import Samples, put_in_order
+from eha_core.recording.topics_file import TopicsFile
 
 PIECE = 30.0
 """s of a file that are gathered before blocks are made of them (assumed; blocks are of 10 s)."""
@@ -227,9 +227,7 @@ class _Cutter:
         stamps, values = series.stamps[later], series.values[later]
         if len(stamps):
             self._last[name] = int(stamps[-1])
-        self._pending[name] = Samples(
-            np.concatenate([before.stamps, stamps]), np.concatenate([before.values, values])
-        )
+        self._pending[name] = Samples(np.concatenate([before.stamps, stamps]), np.concatenate([before.values, values]))
 
     def _emit(self) -> None:
         assert self.start is not None

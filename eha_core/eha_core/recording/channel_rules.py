@@ -1,19 +1,19 @@
-"""Where each channel is found: the default topics, and the topics file that says otherwise."""
+"""How each channel is taken from what was recorded: a rule, and the rules of the default topics."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import isfinite
-from pathlib import Path
-from typing import Any
 
-from eha_core.errors import RecordingError, remedy
-from eha_core.recording.recording import CHANNEL_KINDS
-from eha_core.unit_names import UNITS, Unit, unit_named
-from eha_core.yaml_file import load_yaml
+import numpy as np
+
+from eha_core.recording.channel_kinds import FloatArray
 
 ABSOLUTE, GAUGE = "absolute", "gauge"
+_BENT = 2
+"""Points up to which what a sensor gives is a straight line."""
+
+Points = tuple[tuple[float, "float | None"], ...]
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,12 @@ class ChannelRule:
         offset: added after scaling [SI unit].
         reference: for pressures, "absolute" or "gauge"; None where nothing was said, which counts as absolute.
         unit: the unit that was named, which `scale` and `reference` already stand for.
+        points: (raw, value) pairs of a sensor, in the file's numbers and in `unit`; a line through two, a smooth
+            monotone curve through more; empty where raw numbers are values. A value that is open is None.
+        minus: a second column, taken from the first: of two one-sided commands.
+        time: the column of the channel's own times; None where the table's time, or that which the file states, serves.
+        rate: of the time, rows in a second where the table has no instants [Hz]; None where it has, NaN where it is
+            open.
     """
 
     topic: str | None = None
@@ -37,15 +43,30 @@ class ChannelRule:
     offset: float = 0.0
     reference: str | None = None
     unit: str | None = None
+    points: Points = ()
+    minus: str | None = None
+    time: str | None = None
+    rate: float | None = None
 
+    @property
+    def is_open(self) -> bool:
+        """Whether a number of the rule is still to be said."""
+        return any(value is None for _, value in self.points) or (self.rate is not None and not isfinite(self.rate))
 
-@dataclass(frozen=True)
-class TopicsFile:
-    """A topics file as read: rules by channel name (None leaves a channel out) and the namespace to look in."""
+    def in_si(self, raw: FloatArray) -> FloatArray:
+        """The values [SI] of what was recorded."""
+        return np.asarray(self.scale * (self._through_points(raw) if self.points else raw) + self.offset)
 
-    channels: Mapping[str, ChannelRule | None]
-    namespace: str | None = None
-    time: ChannelRule = ChannelRule()
+    def _through_points(self, raw: FloatArray) -> FloatArray:
+        places, values = (np.array([pair[k] for pair in self.points], dtype=np.float64) for k in (0, 1))
+        slopes = np.diff(values) / np.diff(places)
+        if len(places) <= _BENT:
+            return np.asarray(values[0] + slopes[0] * (raw - places[0]))
+        from scipy.interpolate import PchipInterpolator
+
+        inside = PchipInterpolator(places, values)(np.clip(raw, places[0], places[-1]))
+        beyond = slopes[0] * np.minimum(raw - places[0], 0.0) + slopes[-1] * np.maximum(raw - places[-1], 0.0)
+        return np.asarray(inside + beyond)
 
 
 DEFAULT_RULES: dict[str, ChannelRule] = {
@@ -68,73 +89,31 @@ STATE_RULES: dict[str, ChannelRule] = {
 """Taken from the simulator's logging topic where nothing else was recorded: its sensors' values, not its truth."""
 
 
-def load_topics_file(path: str | Path) -> TopicsFile:
-    """Read a topics file.
-
-    Raises:
-        RecordingError: the file is missing, is no YAML, or names an unknown channel or key.
-    """
-    content = load_yaml(path, RecordingError, f"topics file {path}")
-    if not isinstance(content, dict) or not isinstance(content.get("channels"), dict):
-        raise RecordingError(f"topics file {path}: needs `channels:` with one entry for each channel")
-    _refuse_unknown(path, "key", content, ("channels", "namespace"))
-    _refuse_unknown(path, "channel", content["channels"], (*CHANNEL_KINDS, "time"))
-    rules = {name: _rule(path, name, entry) for name, entry in content["channels"].items()}
-    namespace = content.get("namespace")
-    return TopicsFile(
-        {name: rule for name, rule in rules.items() if name != "time"},
-        None if namespace is None else str(namespace).strip("/"),
-        rules.get("time") or ChannelRule(),
-    )
-
-
-def _refuse_unknown(path: str | Path, what: str, given: Mapping[Any, Any], known: tuple[str, ...]) -> None:
-    for name in given:
-        if name not in known:
-            raise RecordingError(f"topics file {path}: unknown {what} {name!r}; known are {', '.join(known)}")
+def entry_text(rule: ChannelRule | None) -> str:
+    """A rule as a topics file's entry on one line; numbers that are open are `null`."""
+    if rule is None:
+        return "null"
+    parts = []
+    for name in ("topic", "field", "column", "minus", "time"):
+        value = getattr(rule, name)
+        if value is not None:
+            parts.append(f"{name}: {quoted(value)}")
+    if rule.points:
+        pairs = ", ".join(f"[{raw:g}, {'null' if value is None else f'{value:g}'}]" for raw, value in rule.points)
+        parts.append(f"points: [{pairs}]")
+    if rule.rate is not None:
+        parts.append(f"rate: {f'{rule.rate:g}' if isfinite(rule.rate) else 'null'}")
+    if rule.unit is not None:
+        parts.append(f"unit: {quoted(rule.unit) if not rule.unit.isalpha() else rule.unit}")
+    elif rule.scale != 1.0:
+        parts.append(f"scale: {rule.scale:g}")
+    if rule.reference is not None:
+        parts.append(f"reference: {rule.reference}")
+    return f"{{{', '.join(parts)}}}"
 
 
-def _rule(path: str | Path, channel: str, entry: Any) -> ChannelRule | None:
-    if entry is None:
-        return None
-    where = f"topics file {path}: channel {channel}"
-    if not isinstance(entry, dict):
-        raise RecordingError(f"{where}: needs keys such as {{topic: /name, field: data}}")
-    _refuse_unknown(path, f"key of {channel}", entry, tuple(row.name for row in fields(ChannelRule)))
-    values = dict(entry)
-    for name in ("scale", "offset"):
-        if name in values:
-            try:
-                values[name] = float(values[name])
-            except (TypeError, ValueError, OverflowError):
-                raise RecordingError(f"{where}: {name} {values[name]!r} is no number") from None
-            if not isfinite(values[name]) or (name == "scale" and values[name] == 0.0):
-                raise RecordingError(f"{where}: {name} {values[name]:g} makes no numbers of what was recorded")
-    if values.get("reference") not in (None, ABSOLUTE, GAUGE):
-        raise RecordingError(f"{where}: reference {values['reference']!r}; say {ABSOLUTE} or {GAUGE}")
-    for name in ("topic", "field", "column", "unit"):
-        if values.get(name) is not None:
-            values[name] = str(values[name])
-    if "unit" in values and "scale" in values:
-        raise RecordingError(f"{where}: unit and scale say the same thing; keep one")
-    if values.get("unit") is not None:
-        unit = _unit_of(where, channel, values["unit"])
-        values["scale"] = unit.scale
-        values.setdefault("reference", unit.reference)
-    return ChannelRule(**values)
+def quoted(text: str) -> str:
+    """A text in YAML's quotes on one line, whatever a file calls its columns."""
+    import yaml
 
-
-def _unit_of(where: str, channel: str, text: str) -> Unit:
-    """The unit that a topics file says of a channel.
-
-    Raises:
-        RecordingError: it is no unit, or one of another quantity.
-    """
-    si = "s" if channel == "time" else CHANNEL_KINDS[channel].unit
-    fitting = [name for name, unit in UNITS.items() if unit.si == si]
-    unit = unit_named(text)
-    if unit is None:
-        raise RecordingError(f"{where}: unit {text!r} is not known; {remedy(text, fitting)}")
-    if unit.si != si:
-        raise RecordingError(f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}")
-    return unit
+    return str(yaml.safe_dump(text, default_style='"', allow_unicode=True, width=2**20)).strip()

@@ -49,9 +49,7 @@ def cut_out(recording: Recording, start: float, end: float) -> Recording | None:
     )
 
 
-def leakage_within(
-    changes: Sequence[tuple[float, float]], start: float, end: float
-) -> tuple[tuple[float, float], ...]:
+def leakage_within(changes: Sequence[tuple[float, float]], start: float, end: float) -> tuple[tuple[float, float], ...]:
     """What a stretch tells of the internal leakage: the coefficient with which the record began, then what was in
     force at its own start, then its own changes, in its own time."""
     before = [value for time, value in changes if time <= start]

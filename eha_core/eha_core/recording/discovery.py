@@ -6,7 +6,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from eha_core.errors import RecordingError
-from eha_core.recording.channel_rules import DEFAULT_RULES, STATE_RULES, ChannelRule, TopicsFile
+from eha_core.recording.channel_rules import DEFAULT_RULES, STATE_RULES, ChannelRule
+from eha_core.recording.topics_file import TopicsFile
 
 LEAKAGE_TOPIC = "internal_leakage"
 _MEASURED = ("joint_states", "chamber_a/pressure", "chamber_b/pressure")

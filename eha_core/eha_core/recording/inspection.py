@@ -19,23 +19,17 @@ from eha_core.recording.fields import Tables
 from eha_core.recording.introspection import value_names
 from eha_core.recording.message_types import recorded_types
 from eha_core.recording.raw import RawTopic
+from eha_core.recording.stated_units import unit_of_name, unit_of_type
+from eha_core.recording.time_units import repeats, unwrapped, usual_step
 from eha_core.recording.topic_columns import BLOCK, TopicColumns
-from eha_core.tables import Table, is_table, read_table, unit_in
-from eha_core.unit_names import UNITS, unit_named
+from eha_core.tables import Table, is_table, read_table
 
 MOST_FIELDS = 200
 """Numbers of a topic, or columns of a table, that are listed."""
 LONGEST_ARRAY = 12
 """Numbers of an unnamed array that are listed one by one; longer ones are images, scans or covariances."""
-_OF_TYPE = {
-    ("sensor_msgs/msg/JointState", "position["): "m",
-    ("sensor_msgs/msg/JointState", "velocity["): "m/s",
-    ("sensor_msgs/msg/JointState", "effort["): "N",
-    ("sensor_msgs/msg/FluidPressure", "fluid_pressure"): "Pa",
-    ("geometry_msgs/msg/Wrench", "force."): "N",
-    ("geometry_msgs/msg/WrenchStamped", "wrench.force."): "N",
-}
-"""Units that a message's definition states, by its type and how the path begins."""
+_HEADS = ("header.", "layout.")
+"""Parts of messages that hold no numbers of a rig."""
 _NO_CHANNEL = (".sec", ".nanosec", "variance", "names_version")
 _ABSOLUTE = "sensor_msgs/msg/FluidPressure"
 """The message whose definition says that its pressure is absolute."""
@@ -56,6 +50,9 @@ class Field:
         first: the first value; NaN where there is none.
         step: the usual step from one value to the next; zero where they do not increase all the way.
         reference: "absolute" for a pressure whose message says so; else None.
+        repeated: rows in a second, by its first and last, of a column that often stands and never goes back.
+        time: the column of its own times; empty where the table's time serves.
+        problem: why it cannot be used; empty where it can.
     """
 
     topic: str
@@ -68,6 +65,9 @@ class Field:
     first: float = nan
     step: float = 0.0
     reference: str | None = None
+    repeated: float = 0.0
+    time: str = ""
+    problem: str = ""
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,7 @@ class Inspection:
         topics: message types by topic; empty for a table.
         remarks: what was left out.
         damaged: what of a bag could not be read; None where it is sound.
+        rate: rows in a second that a table states [Hz]; None where it states none.
     """
 
     path: Path
@@ -89,6 +90,7 @@ class Inspection:
     topics: Mapping[str, str]
     remarks: tuple[str, ...]
     damaged: str | None = None
+    rate: float | None = None
 
 
 def inspect_file(path: str | Path) -> Inspection:
@@ -108,9 +110,13 @@ def inspect_file(path: str | Path) -> Inspection:
 def _of_table(path: Path, table: Table) -> Inspection:
     fields = [_column(name, np.asarray(values), table) for name, values in table.columns.items()]
     remarks = list(table.remarks)
+    wordy = {field.path for field in fields if not field.count}
+    remarks += [f"{name!r}: {loss}" for name, loss in table.losses.items() if name not in wordy]
+    remarks += [f"without numbers: {', '.join(field.path for field in fields if field.path in wordy)}"] if wordy else []
     if len(fields) > MOST_FIELDS:
         remarks.append(f"{len(fields) - MOST_FIELDS} columns more are not listed")
-    return Inspection(path, table.kind, tuple(fields[:MOST_FIELDS]), {}, tuple(map(printable, remarks)))
+    said = tuple(map(printable, remarks))
+    return Inspection(path, table.kind, tuple(fields[:MOST_FIELDS]), {}, said, rate=table.rate)
 
 
 def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
@@ -118,25 +124,16 @@ def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
     numbers = numbers[np.isfinite(numbers)]
     if not len(numbers):
         return Field("", name, 0, nan, nan, nan, "")
-    # Whole numbers are told apart as they are: ns since 1970 are more than a float holds.
-    with np.errstate(over="ignore"):
-        steps = np.diff(values if values.dtype.kind == "i" else numbers).astype(np.float64)
-    step = float(np.median(steps)) if len(steps) and np.all(steps >= 0.0) and steps.any() else 0.0
-    unit = table.units.get(name) or unit_of_name(name)
-    return Field("", name, len(numbers), float(numbers.min()), float(numbers.max()), nan, unit, float(numbers[0]), step)
-
-
-def unit_of_name(name: str) -> str:
-    """The unit that a name states, in brackets or at its end, as `x_mm` and `p_A (bar)` do; empty where it has none."""
-    if stated := unit_in(name):
-        return stated
-    # One letter may be part of the name, as in p_A and x_m; it is a unit after a word, or where it is the usual one.
-    match = re.search(r"[_/\s]([A-Za-z]{1,4}(?:\^?\d)?(?:/(?:s|min))?)$", name)
-    if match is None or unit_named(match[1]) is None or (len(match[1]) == 1 and match[1] not in UNITS):
-        return ""
-    before = name[: match.start()].lower()
-    usual = (match[1], before[:1]) in (("V", "u"), ("V", "v"), ("N", "f"), ("s", "t"), ("A", "i"))
-    return match[1] if len(match[1]) > 1 or usual or re.search(r"[a-z]{3}$", before) else ""
+    whole = values if values.dtype.kind == "i" else numbers
+    times, _ = unwrapped(whole)
+    unit = table.units.get(name) or unit_of_name(name, tuple(table.columns))
+    loss = table.losses.get(name)
+    return Field(
+        "", name, len(numbers), float(numbers.min()), float(numbers.max()), nan, unit, float(numbers[0]),
+        usual_step(times), repeated=(len(times) - 1) / float(times[-1] - times[0]) if repeats(times) else 0.0,
+        time=table.times.get(name, ""),
+        problem=str(loss) if loss is not None and loss.by_value else "",
+    )  # fmt: skip
 
 
 def _of_bag(path: Path) -> Inspection:
@@ -187,13 +184,19 @@ class _Watch:
             topic = self._topic
             try:
                 store, _ = recorded_types(topic.type_name, topic.encoding, topic.definition)
-                paths = _paths(layout_of(store, topic.type_name, payload), topic.type_name, self._tables)
+                layout = layout_of(store, topic.type_name, payload)
+                paths = _paths(layout, topic.type_name, self._tables)
             except RecordingError as error:
                 self.remarks.append(str(error))
                 self._unread = True
                 return False
             except ValueError:
                 return False
+            if long := long_arrays(layout):
+                self.remarks.append(
+                    f"{topic.name}: {', '.join(long)} of more than {LONGEST_ARRAY} numbers not listed; a topics file"
+                    f" can name an element, as {long[0]}[0]"
+                )
             if len(paths) > MOST_FIELDS:
                 self.remarks.append(f"{topic.name}: {len(paths) - MOST_FIELDS} numbers more are not listed")
             self._columns = TopicColumns(topic, {path: path for path in paths[:MOST_FIELDS]}, self._tables)
@@ -224,27 +227,17 @@ class _Watch:
         for path, (count, low, high) in self._ranges.items():
             seconds = (self._span[1] - self._span[0]) * 1e-9 if self._span else 0.0
             rate = (count - 1) / seconds if seconds > 0.0 and count > 1 else nan
-            unit = _unit_of_type(self._topic.type_name, path)
+            unit = unit_of_type(self._topic.type_name, path)
             reference = ABSOLUTE if self._topic.type_name == _ABSOLUTE and path == "fluid_pressure" else None
             found.append(Field(self._topic.name, path, count, low, high, rate, unit, reference=reference))
         return found
-
-
-def _unit_of_type(type_name: str, path: str) -> str:
-    for (of_type, start), unit in _OF_TYPE.items():
-        if of_type == type_name and path.startswith(start):
-            return unit
-    # An interface of ros2_control is called by its joint and its kind; what a command's effort is, the hardware says.
-    if "command_interface" in path:
-        return ""
-    return {"position": "m", "velocity": "m/s", "effort": "N"}.get(path.rpartition("/")[2].partition("]")[0], "")
 
 
 def _paths(layout: Layout, type_name: str, tables: Tables) -> list[str]:
     """Paths of the numbers of a message that could be a channel, elements by their names where they have some."""
     paths = []
     for path, run in layout.runs.items():
-        if path.startswith("header.") or path.endswith(_NO_CHANNEL):
+        if path.startswith(_HEADS) or path.endswith(_NO_CHANNEL):
             continue
         named = _by_names(path, layout)
         if run.count is None:
@@ -254,6 +247,16 @@ def _paths(layout: Layout, type_name: str, tables: Tables) -> list[str]:
         if names or run.count <= LONGEST_ARRAY:
             paths += [f"{named}[{names[k] if names else k}]" for k in range(run.count)]
     return paths
+
+
+def long_arrays(layout: Layout) -> list[str]:
+    """The paths of a message's unnamed arrays that are too long to be listed and not too long for a rig's signals."""
+    return [
+        path for path, run in layout.runs.items()
+        if run.count is not None and LONGEST_ARRAY < run.count <= MOST_FIELDS and run.size >= 4
+        and not path.startswith(_HEADS) and not path.endswith("covariance")
+        and not _element_names(path, run.count, layout, {})
+    ]  # fmt: skip
 
 
 def _by_names(path: str, layout: Layout) -> str:

@@ -26,7 +26,6 @@ _CHECKSUM_SIZE = 4
 _FOOTER_SIZE = RECORD_HEAD.size + 8 + 8 + _CHECKSUM_SIZE + len(MCAP0_MAGIC)
 
 
-
 @contextmanager
 def opened(path: Path) -> Iterator[tuple[IO[bytes], int]]:
     try:

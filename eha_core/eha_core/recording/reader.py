@@ -8,26 +8,22 @@ from pathlib import Path
 
 import numpy as np
 
-from eha_core.errors import RecordingError, printable
+from eha_core.errors import RecordingError
+from eha_core.recording.assembly import PARTS, STANDARD_ATMOSPHERE, assembled
 from eha_core.recording.bag import bag_topics, read_bag
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile, load_topics_file
+from eha_core.recording.channel_rules import ChannelRule
 from eha_core.recording.clocks import on_one_clock, without_leaps
 from eha_core.recording.discovery import LEAKAGE_TOPIC, find_rules, leakage_topic
 from eha_core.recording.introspection import value_names
 from eha_core.recording.raw import RawRecording
-from eha_core.recording.recording import CHANNEL_KINDS, Channel, Recording
-from eha_core.recording.samples import Samples, on_one_span, put_in_order
+from eha_core.recording.recording import Recording
+from eha_core.recording.samples import Samples
 from eha_core.recording.table_file import channels_of
 from eha_core.recording.topic_columns import TopicColumns
-from eha_core.recording.units import in_model_units
-from eha_core.recording.writer import PARAMETERS_RECORD
+from eha_core.recording.topics_file import TopicsFile, topics_of
 from eha_core.tables import is_table, read_table
 
-STANDARD_ATMOSPHERE = 101325.0
-"""Taken from absolute pressures where the recording does not say `atmospheric_pressure` [Pa]."""
-
-PARTS = "plant."
-"""How the names of stored parameters begin that say which parts the actuator has."""
+__all__ = ["PARTS", "STANDARD_ATMOSPHERE", "MessageFile", "assemble", "open_messages", "read_recording"]
 
 MAY_BE_EMPTY = ("velocity", "force")
 """Channels that a joint's messages may leave out by their definition: that they do is no remark."""
@@ -44,15 +40,16 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
         RecordingError: nothing usable is there, or it is open what is meant; the message says what to do.
     """
     path = Path(path)
-    topics_file = topics if isinstance(topics, TopicsFile) or topics is None else load_topics_file(topics)
+    topics_file = topics_of(topics)
     if not path.exists():
         raise RecordingError(f"{path}: there is no such file or folder")
     if not (path.is_file() or path.is_dir()):
         raise RecordingError(f"{path}: is neither a file nor a folder; name a recording")
     if is_table(path):
         table = read_table(path)
-        samples, rules, remarks = channels_of(path, table, topics_file)
-        return assemble(path, samples, rules, dict.fromkeys(rules, table.kind), RawRecording(), list(remarks))
+        samples, rules, found = channels_of(path, table, topics_file)
+        remarks = [*(topics_file.remarks if topics_file else ()), *found]
+        return assemble(path, samples, rules, dict.fromkeys(rules, table.kind), RawRecording(), remarks)
     return _from_messages(path, topics_file)
 
 
@@ -98,7 +95,8 @@ def open_messages(path: Path, topics_file: TopicsFile | None) -> MessageFile:
         sinks[topic] = TopicColumns(topics[topic], fields, value_names(path, topics, topic), optional)
     types = {name: topics[str(rule.topic)].type_name for name, rule in rules.items()}
     asked = topics_file.channels.keys() if topics_file is not None else ()
-    return MessageFile(path, rules, types, sinks, tuple(remarks), asked)
+    remarks = (*(topics_file.remarks if topics_file is not None else ()), *remarks)
+    return MessageFile(path, rules, types, sinks, remarks, asked)
 
 
 def _from_messages(path: Path, topics_file: TopicsFile | None) -> Recording:
@@ -116,80 +114,5 @@ def assemble(
     raw: RawRecording,
     remarks: list[str],
 ) -> Recording:
-    """The samples of each channel as a recording: in order, in the model's units, on one time axis.
-
-    Raises RecordingError where no channel has a usable sample.
-    """
-    parameters = _parameters(raw, remarks)
-    atmosphere = parameters.get("atmospheric_pressure", STANDARD_ATMOSPHERE)
-    ordered: dict[str, Samples] = {}
-    for name in (name for name in CHANNEL_KINDS if name in samples):
-        source = f"{name} ({rules[name].topic})"
-        series, notes = put_in_order(samples[name])
-        if not len(series.values):
-            remarks.append(f"{source}: no values were recorded")
-            continue
-        ordered[name] = series
-        remarks += [f"{source}: {note}" for note in notes]
-    if ordered:
-        ordered, span_remarks = on_one_span(ordered, samples, ("voltage_command",))
-        remarks += span_remarks
-    for name, series in ordered.items():
-        source = f"{name} ({rules[name].topic})"
-        ordered[name], notes = in_model_units(f"{path}: {source}", name, rules[name], series, atmosphere)
-        remarks += [f"{source}: {note}" for note in notes]
-    if not ordered:
-        what_to_do = "map what there is to channels in a topics file, as `eha inspect` writes it"
-        raise RecordingError(f"{path}: {_nothing_usable(raw, remarks)}; {what_to_do}")
-    start = min(int(series.stamps[0]) for series in ordered.values())
-    duration = (max(int(series.stamps[-1]) for series in ordered.values()) - start) / 1e9
-    return Recording(
-        path=path,
-        channels={name: _channel(name, series, start, rules[name], types[name]) for name, series in ordered.items()},
-        start_stamp=start,
-        duration=duration,
-        parameters=parameters,
-        parts=_parts(raw),
-        leakage_changes=_changes(samples.get(LEAKAGE_TOPIC), start),
-        damaged=printable(f"{'; '.join(raw.damage)}; what was read covers {duration:.4g} s") if raw.damage else None,
-        remarks=tuple(printable(remark) for remark in remarks),
-    )
-
-
-def _channel(name: str, series: Samples, start: int, rule: ChannelRule, type_name: str) -> Channel:
-    time, values = (series.stamps - start) / 1e9, series.values
-    time.flags.writeable = values.flags.writeable = False
-    return Channel(name, time, values, CHANNEL_KINDS[name].unit, str(rule.topic), type_name, rule)
-
-
-def _parameters(raw: RawRecording, remarks: list[str]) -> dict[str, float]:
-    parameters = {}
-    for name, text in raw.metadata.get(PARAMETERS_RECORD, {}).items():
-        if name.startswith(PARTS):
-            continue
-        try:
-            parameters[name] = float(text)
-        except ValueError:
-            remarks.append(f"the stored parameter {name} is no number ({text!r}) and was left out")
-    return parameters
-
-
-def _parts(raw: RawRecording) -> dict[str, str]:
-    """Which parts the recorder said that the actuator has, by kind."""
-    stored = raw.metadata.get(PARAMETERS_RECORD, {})
-    return {name.removeprefix(PARTS): part for name, part in stored.items() if name.startswith(PARTS)}
-
-
-def _changes(samples: Samples | None, start: int) -> tuple[tuple[float, float], ...]:
-    if samples is None:
-        return ()
-    pairs = zip(((samples.stamps - start) / 1e9).tolist(), samples.values.tolist(), strict=True)
-    return tuple(sorted((time, value) for time, value in pairs if np.isfinite(value)))
-
-
-def _nothing_usable(raw: RawRecording, remarks: list[str]) -> str:
-    if raw.damage and not raw.topics:
-        return f"nothing could be saved ({'; '.join(raw.damage)})"
-    recorded = ", ".join(f"{topic.name} ({topic.type_name})" for topic in raw.topics.values())
-    because = f" ({'; '.join(remarks)})" if remarks else ""
-    return f"no usable channel{because}; recorded topics: {recorded or 'none'}"
+    """The samples of each channel as a recording. Raises RecordingError where no channel has a usable sample."""
+    return Recording.of(assembled(path, samples, rules, types, raw, remarks))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.recording.recording import FloatArray
+from eha_core.recording.channel_kinds import FloatArray
 
 LONGEST_GAP = 3_600_000_000_000
 """ns without a sample from which on what lies beyond is of another run, or its stamps are wrong."""

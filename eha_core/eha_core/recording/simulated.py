@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from eha_core.errors import ParameterError
 from eha_core.plant import COLUMNS, PAPER, Composition, Plant, simulate_many
+from eha_core.recording.channel_kinds import FloatArray
 from eha_core.recording.message_rows import encode_rows
 from eha_core.recording.message_types import encode
-from eha_core.recording.recording import FloatArray
 from eha_core.recording.writer import OfferedQuality, RecordingWriter
 
 FLOAT, JOINTS = "std_msgs/msg/Float64", "sensor_msgs/msg/JointState"
@@ -124,9 +124,7 @@ def simulate(experiment: Experiment) -> Simulated:
     Raises:
         ParameterError: a parameter, a change or the rate does not fit.
     """
-    plant = Plant(
-        experiment.parameters, experiment.step_size, experiment.initial_position, experiment.composition
-    )
+    plant = Plant(experiment.parameters, experiment.step_size, experiment.initial_position, experiment.composition)
     every, periods = experiment.steps_per_period, experiment.periods
     parameters = dict(plant.parameters)
     driving = _driving(experiment)

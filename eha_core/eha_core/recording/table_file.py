@@ -3,75 +3,154 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.errors import RecordingError
-from eha_core.recording.channel_rules import ChannelRule, TopicsFile
-from eha_core.recording.recording import CHANNEL_KINDS
+from eha_core.recording.channel_kinds import CHANNEL_KINDS, FloatArray
+from eha_core.recording.channel_rules import ChannelRule
 from eha_core.recording.samples import Samples
+from eha_core.recording.time_units import TimeUnit, repeats, time_unit, unwrapped, usual_step
+from eha_core.recording.topics_file import TopicsFile
 from eha_core.tables import Column, Table
-from eha_core.unit_names import unit_named
+from eha_core.unit_names import UNITS
 
-LONGEST_STEP = 1.0
-"""s between samples from which on a time is no second's count: so slow a recording shows no actuator's dynamics."""
 FEWEST = 20
 """Times below which nothing is said of their unit."""
-SHORTEST_STEP_NS = 2e4
-"""ns between samples down to which a time may count them: 50 kHz."""
+FINE = 2.0**60
+"""ns from which on a float holds no times finer than 0.1 us, so that even steps come out uneven."""
 FARTHEST = 2**62
 """ns from 1970 that a stamp may lie: 146 years."""
-EPOCHS = {"ms": (1e12, 4e12), "us": (1e15, 4e15), "ns": (1e18, 4e18)}
-"""Counts since 1970 that lie between 2001 and 2096, by unit; those in s need no word."""
 
 
 def channels_of(
     path: Path, table: Table, topics_file: TopicsFile | None
 ) -> tuple[dict[str, Samples], dict[str, ChannelRule], tuple[str, ...]]:
-    """The columns that are channels, and remarks on what was assumed.
+    """The columns that are channels, and remarks on what was assumed or lost.
 
-    Times are s, since any epoch, or what the file or the topics file says; dates, and counts of ms, us or ns since
-    1970, are recognised.
+    Times are s, since any epoch, or what the file or the topics file says; dates, and counts that only one epoch can
+    have, are recognised.
 
     Raises:
-        RecordingError: no time column, or a column that the topics file names is not there or has another length.
+        RecordingError: no time, a column that the topics file names is not there or has another length, or one loses
+            its largest or smallest values.
     """
-    columns, listed = table.columns, _listed(table)
-    time_rule = topics_file.time if topics_file else ChannelRule()
-    time_column = time_rule.column or "time"
-    if time_column not in columns:
-        raise RecordingError(
-            f"{path}: no column {time_column!r} ({listed}); name the times [s] `time` or map them with"
-            f" `time: {{column: ...}}` in a topics file, which `eha inspect {path} --topics FILE` writes"
-        )
-    timed = np.isfinite(columns[time_column])
-    if not timed.any():
-        raise RecordingError(f"{path}: column {time_column!r} holds no numbers; it must be the time in s")
-    where = f"{path}: column {time_column!r}"
-    stated = table.units.get(time_column, "")
-    stamps, remarks = stamps_of(where, columns[time_column][timed], time_rule, stated)
     given: Mapping[str, ChannelRule | None] = topics_file.channels if topics_file else {}
+    clocks = _Clocks(path, table, topics_file.time if topics_file else ChannelRule())
     rules: dict[str, ChannelRule] = {}
+    samples: dict[str, Samples] = {}
+    remarks = list(table.remarks)
     for name in CHANNEL_KINDS:
         rule = given.get(name, ChannelRule())
         if rule is None:
             continue
         column = rule.column or name
-        if column in columns:
-            if len(columns[column]) != len(timed):
+        if column not in table.columns:
+            if name in given:
+                raise RecordingError(f"{path}: no column {column!r} for channel {name}; there are {_listed(table)}")
+            continue
+        rules[name] = replace(rule, topic=column, field=None, column=column)
+        samples[name] = clocks.samples(name, rules[name])
+        remarks += _lost(path, table, name, rules[name])
+    if not samples:
+        clocks.require_main()
+    return samples, rules, (*remarks, *clocks.remarks)
+
+
+class _Clocks:
+    """The stamps of a table's rows: one time for all columns, or several."""
+
+    def __init__(self, path: Path, table: Table, rule: ChannelRule) -> None:
+        self.remarks: list[str] = []
+        self._path, self._table, self._rule = path, table, rule
+        self._known: dict[str, tuple[NDArray[np.bool_], NDArray[np.int64]]] = {}
+
+    def samples(self, channel: str, rule: ChannelRule) -> Samples:
+        """A channel's numbers at its own times."""
+        columns, column = self._table.columns, str(rule.column)
+        values = columns[column].astype(np.float64)
+        timed, stamps = self._of(self._time_of(column, rule), len(values))
+        if len(values) != len(timed):
+            time = self._time_of(column, rule)
+            raise RecordingError(
+                f"{self._path}: {column!r} for channel {channel} has {len(values)} values and the time"
+                f" {time!r} has {len(timed)}; name the time that belongs to it"
+            )
+        if rule.minus is not None:
+            if rule.minus not in columns or len(columns[rule.minus]) != len(values):
                 raise RecordingError(
-                    f"{path}: {column!r} for channel {name} has {len(columns[column])} values and the time"
-                    f" {time_column!r} has {len(timed)}; name the time that belongs to it"
+                    f"{self._path}: no column {rule.minus!r} as long as {column!r}, for channel {channel}"
                 )
-            rules[name] = ChannelRule(column, None, column, rule.scale, rule.offset, rule.reference, rule.unit)
-        elif name in given:
-            raise RecordingError(f"{path}: no column {column!r} for channel {name}; there are {listed}")
-    samples = {
-        name: Samples(stamps, columns[str(rule.column)][timed].astype(np.float64)) for name, rule in rules.items()
-    }
-    return samples, rules, (*table.remarks, *remarks)
+            values = values - columns[rule.minus].astype(np.float64)
+        # What is not there is counted among the table's losses.
+        there = timed & ~np.isnan(values) if column in self._table.losses else timed
+        return Samples(stamps[there[timed]], values[there])
+
+    def require_main(self) -> None:
+        """Raise RecordingError where a table without channels has no time either, which is then the likely mistake."""
+        self._of(self._time_of("", ChannelRule()), None)
+
+    def _time_of(self, column: str, rule: ChannelRule) -> str:
+        """The column of a channel's times; empty where its rows are counted."""
+        if rule.time is not None:
+            return rule.time
+        if self._rule.column is not None:
+            return self._rule.column
+        if column in self._table.times:
+            return self._table.times[column]
+        rate = self._rule.rate or self._table.rate
+        return "" if rate is not None and "time" not in self._table.columns else "time"
+
+    def _of(self, time: str, count: int | None) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+        """Which rows have a time, and those times as stamps."""
+        if time in self._known:
+            return self._known[time]
+        if time == "":
+            rate = self._rule.rate or self._table.rate or 1.0
+            rows = count if count is not None else max(map(len, self._table.columns.values()))
+            remark = f"{self._path}: has no times; its rows were taken as {rate:g} in a second"
+            self.remarks += [remark] if remark not in self.remarks else []
+            return np.ones(rows, dtype=bool), np.round(np.arange(rows) * (1e9 / rate)).astype(np.int64)
+        if time not in self._table.columns:
+            raise RecordingError(
+                f"{self._path}: no column {time!r} ({_listed(self._table)}); name the times [s] `time` or map them with"
+                f" `time: {{column: ...}}` in a topics file, which `eha inspect {self._path} --topics FILE` writes"
+            )
+        values = self._table.columns[time]
+        timed = np.isfinite(values.astype(np.float64))
+        if not timed.any():
+            raise RecordingError(f"{self._path}: column {time!r} holds no numbers; it must be the time in s")
+        if not timed.all() and time not in self._table.times.values():
+            self.remarks.append(f"{np.count_nonzero(~timed)} rows without a time in {time!r} were left out")
+        stated = self._table.units.get(time, "")
+        rule = self._rule if time == self._rule.column or self._rule.column is None else ChannelRule()
+        stamps, remarks = stamps_of(f"{self._path}: column {time!r}", values[timed], rule, stated, self._table.rate)
+        self.remarks += remarks
+        self._known[time] = timed, stamps
+        return timed, stamps
+
+
+def _lost(path: Path, table: Table, channel: str, rule: ChannelRule) -> list[str]:
+    """What of a channel's columns could not be had.
+
+    Raises:
+        RecordingError: it loses its largest or smallest values.
+    """
+    said = []
+    for column in (str(rule.column), rule.minus):
+        loss = table.losses.get(column) if column is not None else None
+        if loss is None:
+            continue
+        if loss.by_value:
+            raise RecordingError(
+                f"{path}: {column!r} for channel {channel}: {loss}; what is left is no fair sample: export it anew, or"
+                f" leave the channel out with `{channel}: null` in a topics file"
+            )
+        said.append(f"{channel} ({column}): {loss}")
+    return said
 
 
 def _listed(table: Table) -> str:
@@ -79,51 +158,75 @@ def _listed(table: Table) -> str:
     return ", ".join(names[:30]) + (f" and {len(names) - 30} more" if len(names) > 30 else "")
 
 
-def stamps_of(where: str, times: Column, rule: ChannelRule, stated: str) -> tuple[NDArray[np.int64], tuple[str, ...]]:
-    """The times as stamps [ns], and a remark where their unit was taken from their size.
+def stamps_of(
+    where: str, times: Column, rule: ChannelRule, stated: str, rate: float | None = None
+) -> tuple[NDArray[np.int64], tuple[str, ...]]:
+    """The times as stamps [ns], and remarks where their unit was taken from their size, or a counter began anew.
 
     Args:
         where: how messages begin.
         times: finite times in the order of the file.
         rule: what a topics file says of them.
         stated: the unit that the file itself states; empty where it states none.
+        rate: rows in a second that the file states [Hz]; None where it states none.
 
     Raises:
         RecordingError: the unit is open, or the times are beyond any calendar.
     """
+    times, wrapped = unwrapped(times)
+    remarks = (f"{where} {wrapped}",) if wrapped else ()
     scale = rule.scale
-    remarks: tuple[str, ...] = ()
-    if (rule.scale, rule.offset, rule.unit) == (1.0, 0.0, None):
-        scale, remarks = _scale(where, times, stated)
+    if rule.rate is not None and (usual_step(times) <= 0.0 or repeats(times)):
+        # Times that stand are coarser than the samples, which only their number tells apart.
+        return np.round(np.arange(len(times)) * (1e9 / rule.rate)).astype(np.int64), remarks
+    if rule.rate is not None:
+        scale = 1.0 / (rule.rate * usual_step(times))
+    elif (rule.scale, rule.offset, rule.unit) == (1.0, 0.0, None):
+        scale, said = _scale(where, times, stated, rate)
+        remarks = (*remarks, *said)
     if times.dtype == np.int64 and scale == 1e-9 and rule.offset == 0.0:
         return times, remarks  # to the last ns, which a float cannot tell since 1970
     # The first time is set apart, or an epoch's digits would leave none for the steps.
     first = float(times[0]) * scale + rule.offset
     with np.errstate(over="ignore"):
         since = (times - times[0]).astype(np.float64) * scale * 1e9
+    since = _even(since, abs(float(times[0])) * scale * 1e9)
+    if abs(first) * 1e9 > FARTHEST and scale in (UNITS["day"].scale, UNITS["100ns"].scale):
+        first = 0.0  # since the year 0, 1 or 1601; only how far they lie apart matters
     if not (abs(first) * 1e9 <= FARTHEST and float(np.max(np.abs(since))) <= FARTHEST):
         raise RecordingError(f"{where} is beyond any calendar; it must be in s, or say its `unit` in a topics file")
     return round(first * 1e9) + np.round(since).astype(np.int64), remarks
 
 
-def _scale(where: str, times: Column, stated: str) -> tuple[float, tuple[str, ...]]:
+def _even(since: FloatArray, size: float) -> FloatArray:
+    """Times [ns] since the first at even steps, where they differ from those by no more than a float of their size can
+    tell: a day's number holds 10 us."""
+    if len(since) < FEWEST or size < FINE:
+        return since
+    count = np.arange(len(since), dtype=np.float64)
+    slope, start = np.polyfit(count, since, 1)
+    even = start + slope * count
+    return even - start if float(np.max(np.abs(since - even))) <= 2.0 * float(np.spacing(size)) else since
+
+
+def _scale(where: str, times: Column, stated: str, rate: float | None) -> tuple[float, tuple[str, ...]]:
     """What makes seconds of times of which no topics file says anything, and a remark where it is no certain thing."""
-    if (unit := unit_named(stated)) and unit.si == "s":
-        return unit.scale, () if unit.scale in (1.0, 1e-9) else (f"{where} was taken as {stated}, as the file says",)
-    first = abs(float(times[0]))
     with np.errstate(over="ignore"):
-        steps = np.abs(np.diff(times.astype(np.float64)))
+        steps = np.abs(np.diff(times).astype(np.float64))
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
-    if step < LONGEST_STEP or len(times) < FEWEST:
+    found = time_unit(float(times[0]), step, stated, rate)
+    if not stated and (step == 0.0 or len(times) < FEWEST):
         return 1.0, ()
-    epoch = next((name for name, (low, high) in EPOCHS.items() if low <= first < high), None)
-    if epoch is None and step < SHORTEST_STEP_NS:
+    if not found.is_certain:
+        if rate is not None and step > 0.0:
+            return 1.0 / (rate * step), (f"{where} counts samples of the stated rate of {rate:g} Hz",)
         raise RecordingError(
             f"{where} goes by steps of {step:.4g}, which are no seconds; say its unit in a topics file,"
-            " for example `channels: {time: {scale: 1.0e-3}}` for ms"
+            " for example `channels: {time: {scale: 1.0e-3}}` for ms, or its rate with `channels: {time: {rate: 500}}`"
         )
-    epoch = epoch or "ns"
-    found = unit_named(epoch)
-    assert found is not None
-    since = " since 1970" if first >= EPOCHS[epoch][0] else ""
-    return found.scale, (f"{where} goes by steps of {step:.4g} and was taken as {epoch}{since}",)
+    return UNITS[found.units[0]].scale, (_said(where, step, stated, found),) if found.why else ()
+
+
+def _said(where: str, step: float, stated: str, found: TimeUnit) -> str:
+    how = "" if stated else f"goes by steps of {step:.4g} and "
+    return f"{where} {how}was taken as {found.why}"

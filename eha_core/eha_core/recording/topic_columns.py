@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from eha_core.errors import RecordingError
 from eha_core.recording.cdr_layout import Layout, Run, layout_of
+from eha_core.recording.channel_kinds import FloatArray
 from eha_core.recording.fields import Steps, Tables, check_path, find, is_named_by_version, parse_path, uses_names
 from eha_core.recording.message_types import recorded_types
 from eha_core.recording.raw import RawTopic
-from eha_core.recording.recording import FloatArray
 
 Integers = NDArray[np.int64]
 Bytes = NDArray[np.uint8]

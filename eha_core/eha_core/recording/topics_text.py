@@ -1,32 +1,51 @@
-"""Writes a topics file: channels that are certain as entries, questions as comments to choose from."""
+"""Writes a topics file: channels that are certain as entries, questions with their possible answers as data."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import yaml
-
 from eha_core.errors import RecordingError
+from eha_core.recording.channel_rules import entry_text, quoted
 from eha_core.recording.inspection import Inspection
-from eha_core.recording.suggestions import Question, Reading, Suggestions, used
+from eha_core.recording.readings import Reading
+from eha_core.recording.suggestions import Question, Suggestions, rule_of, used
 
 
 def topics_text(inspection: Inspection, suggestions: Suggestions) -> str:
     """The text of a topics file that `eha diagnose --topics` takes once its questions are answered."""
-    lines = [f"# Channels of {_quoted(inspection.path.name)}, as `eha inspect` found them."]
+    lines = [f"# Channels of {quoted(inspection.path.name)}, as `eha inspect` found them."]
     if suggestions.questions:
-        lines.append("# Lines with a ? are questions: take the # away from the one answer that is right.")
-    lines.append("channels:")
-    lines += [f"  {_entry(reading)}" for reading in suggestions.certain]
-    for question in suggestions.questions:
-        lines += _asked(question)
-    found = used(suggestions)
-    unused = [field for field in inspection.fields if (field.topic, field.path) not in found]
-    if unused:
+        lines.append("# Where it says `ask`, put the right one of the answers in place of `{question: ..., ask: ...}`;")
         lines.append(
-            "# not taken for a channel: " + ", ".join(_quoted(_name(field.topic, field.path)) for field in unused)
+            "# a null inside an answer is a number to fill in, an answer `null` means that there is no such channel."
         )
+    lines.append("channels:")
+    for reading in suggestions.certain:
+        said = f"  # assumed: {reading.assumed}" if reading.assumed else ""
+        lines.append(f"  {reading.channel}: {entry_text(rule_of(reading))}{said}")
+    for question in suggestions.questions:
+        lines += [f"  {question.channel}:", f"    question: {quoted(question.text)}", "    ask:"]
+        lines += [f"      - {_candidate(reading, question)}" for reading in question.readings]
+    if len(lines) > 1 and lines[-1] == "channels:":
+        lines[-1] = "channels: {}"
+    found = used(suggestions)
+    times = {field.time for field in inspection.fields if (field.topic, field.path) in found and field.time}
+    unused = [
+        field for field in inspection.fields if (field.topic, field.path) not in found and field.path not in times
+    ]
+    if unused:
+        names = ", ".join(quoted(f"{field.topic} {field.path}" if field.topic else field.path) for field in unused)
+        lines.append(f"# not taken for a channel: {names}")
     return "\n".join(lines) + "\n"
+
+
+def _candidate(reading: Reading | None, question: Question) -> str:
+    """A possible answer; where several columns are in question, with how far its own goes."""
+    if reading is None:
+        return entry_text(None)
+    field = reading.field
+    span = f"  # it goes from {field.low:.4g} to {field.high:.4g}" if question.is_open else ""
+    return f"{entry_text(rule_of(reading))}{span}"
 
 
 def write_topics(path: Path, text: str) -> None:
@@ -38,34 +57,3 @@ def write_topics(path: Path, text: str) -> None:
         raise RecordingError(f"{path}: exists already; choose another name") from None
     except OSError as error:
         raise RecordingError(f"{path}: cannot be written ({error.strerror})") from error
-
-
-def _asked(question: Question) -> list[str]:
-    fields = dict.fromkeys(_name(reading.field.topic, reading.field.path) for reading in question.readings)
-    lines = [f"  # ? {', '.join(map(_quoted, fields))}: {question.text}"]
-    if not question.is_open:
-        return [*lines, *(f"  # {_entry(reading)}" for reading in question.readings)]
-    for channel in dict.fromkeys(reading.channel for reading in question.readings):
-        ways = [reading for reading in question.readings if reading.channel == channel]
-        units = list(dict.fromkeys(reading.unit for reading in ways))
-        references = list(dict.fromkeys(reading.reference for reading in ways))
-        choices = [f"or {' or '.join(map(str, rest))}" for rest in (units[1:], references[1:]) if rest]
-        lines.append(f"  # {_entry(ways[0])}" + (f"  # {', '.join(choices)}" if choices else ""))
-    return lines
-
-
-def _name(topic: str, path: str) -> str:
-    return f"{topic} {path}" if topic else path
-
-
-def _entry(reading: Reading) -> str:
-    field = reading.field
-    where = {"topic": field.topic, "field": field.path} if field.topic else {"column": field.path}
-    parts = [f"{key}: {_quoted(value)}" for key, value in where.items()]
-    parts += [f"{key}: {value}" for key, value in (("unit", reading.unit), ("reference", reading.reference)) if value]
-    return f"{reading.channel}: {{{', '.join(parts)}}}"
-
-
-def _quoted(text: str) -> str:
-    """A text in YAML's quotes on one line, whatever a file calls its columns."""
-    return str(yaml.safe_dump(text, default_style='"', allow_unicode=True, width=2**20)).strip()

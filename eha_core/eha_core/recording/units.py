@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.errors import RecordingError
+from eha_core.recording.channel_kinds import CHANNEL_KINDS
 from eha_core.recording.channel_rules import ABSOLUTE, GAUGE, ChannelRule
-from eha_core.recording.recording import CHANNEL_KINDS
 from eha_core.recording.samples import Samples
 
 _LEAST_PRESSURE = {ABSOLUTE: 2e4, GAUGE: 1e3}
@@ -32,7 +32,7 @@ def in_model_units(
         RecordingError: the numbers cannot be in the unit that was said.
     """
     kind = CHANNEL_KINDS[name]
-    values = samples.values * rule.scale + rule.offset
+    values = rule.in_si(samples.values)
     reference = rule.reference or ABSOLUTE
     impossible = np.abs(values) > kind.largest
     largest = float(np.max(np.abs(values)))

@@ -2,6 +2,7 @@
 
 from eha_core.rig.data_sheet import DATA, Datum, quantity
 from eha_core.rig.nominal_file import nominal_text
-from eha_core.rig.parameters import Entry, parameters_of
+from eha_core.rig.parameters import Entry, asked_of, parameters_of
+from eha_core.rig.travel import require_possible_travel
 
-__all__ = ["DATA", "Datum", "Entry", "nominal_text", "parameters_of", "quantity"]
+__all__ = ["DATA", "Datum", "Entry", "asked_of", "nominal_text", "parameters_of", "quantity", "require_possible_travel"]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from eha_core.parameters import UNKNOWN, catalogue, dump_parameters
+from eha_core.parameter import Parameter
+from eha_core.parameters import UNKNOWN, number_text
+from eha_core.plant import PAPER, Composition
 from eha_core.rig.parameters import Entry
 
 _HEADING = f"""\
@@ -14,14 +16,18 @@ _HEADING = f"""\
 """
 
 
-def nominal_text(entries: Sequence[Entry], assume: bool = False) -> str:
+def nominal_text(entries: Sequence[Entry], assume: bool = False, composition: Composition = PAPER) -> str:
     """The file's text; with `assume`, the catalogue's value, marked as assumed, in place of each unknown one."""
-    lines = [line for entry in entries for line in _lines(entry, assume)]
+    lines = [line for entry in entries for line in _lines(entry, assume, composition.rows)]
+    if not composition.is_papers:
+        source = composition.source
+        says = f"# {source.summary}, driven by {' and '.join(source.inputs)}"
+        lines = [says, f"plant: {{source: {source.id}}}", *lines]
     return "\n".join([f"{_HEADING}/**/eha_sim:", "  ros__parameters:", *(f"    {line}" for line in lines)]) + "\n"
 
 
-def _lines(entry: Entry, assume: bool) -> tuple[str, str]:
-    row = catalogue()[entry.name]
+def _lines(entry: Entry, assume: bool, rows: Mapping[str, Parameter]) -> tuple[str, str]:
+    row = rows[entry.name]
     value, how = entry.value, entry.how
     if value is None and assume:
         value, how = row.nominal, f"assumed: the catalogue's ({row.source})"
@@ -29,4 +35,4 @@ def _lines(entry: Entry, assume: bool) -> tuple[str, str]:
     if value is None:
         return comment, f"{entry.name}: {UNKNOWN}"
     # As ROS and YAML 1.1 read a number, to six digits: data sheets have fewer.
-    return comment, dump_parameters({entry.name: float(f"{value:.6g}")}).splitlines()[-1].strip()
+    return comment, f"{entry.name}: {number_text(float(f'{value:.6g}'))}"

@@ -9,6 +9,8 @@ from math import pi, sqrt
 from eha_core.errors import ParameterError
 from eha_core.nominal import nominal_of
 from eha_core.parameters import UNKNOWN, catalogue
+from eha_core.plant import PAPER, Composition
+from eha_core.rig.data_sheet import DATA, Datum
 
 AMPERE_EQUIVALENT = 0.02
 """A at full opening where a valve's electronics hide its current: the paper's; the spool is counted in it, and every
@@ -24,15 +26,32 @@ class Entry:
     how: str
 
 
-def parameters_of(given: Mapping[str, float]) -> list[Entry]:
+def parameters_of(given: Mapping[str, float], composition: Composition = PAPER) -> list[Entry]:
     """The parameters of a rig, as far as they follow from a data sheet's lines [SI by name, see DATA].
+
+    Args:
+        given: a data sheet's lines.
+        composition: the actuator's parts, which have some of the parameters and not others.
 
     Raises:
         ParameterError: lines that contradict each other, or a parameter outside of its bounds.
     """
-    entries = [*_valve(given), *_cylinder(given), *_oil(given), *_load(given)]
-    nominal_of({entry.name: UNKNOWN if entry.value is None else entry.value for entry in entries})
+    found = [*_valve(given), *_cylinder(given), *_oil(given), *_load(given), *_pump(given)]
+    entries = [entry for entry in found if entry.name in composition.rows]
+    values = {entry.name: UNKNOWN if entry.value is None else entry.value for entry in entries}
+    nominal_of(values, composition=composition)
     return entries
+
+
+def asked_of(composition: Composition) -> tuple[Datum, ...]:
+    """The lines of data sheets from which parameters of an actuator of these parts follow."""
+    return tuple(datum for datum in DATA if datum.tells in composition.rows)
+
+
+def _pump(given: Mapping[str, float]) -> list[Entry]:
+    size = given.get("pump_displacement")
+    per_radian = None if size is None else size / (2.0 * pi)
+    return [_entry("pump_displacement", per_radian, "oil of a revolution over 2 pi")]
 
 
 def piston_area(bore: float, rod: float) -> float:

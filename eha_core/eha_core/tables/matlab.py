@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ import numpy as np
 from eha_core.errors import RecordingError
 from eha_core.tables.mat5_elements import unpacked
 from eha_core.tables.optional import required
+from eha_core.tables.own_times import by_length
 from eha_core.tables.table import LARGEST, MOST_CELLS, MOST_COLUMNS, Column, Table, as_column, distinct
 
 DEEPEST = 8
@@ -51,10 +52,12 @@ def read_mat_table(path: Path) -> Table:
         raise RecordingError(f"{path}: cannot be read as a MAT file ({error})") from error
     if not gathered.columns:
         raise RecordingError(f"{path}: holds no vector of numbers")
+    gathered.name_rows()
     names, doubled = distinct([name for name, _ in gathered.columns])
     said = (*doubled, *gathered.remarks)
     columns = {name: values for name, (_, values) in zip(names, gathered.columns, strict=True)}
-    return Table("mat", columns, {n: unit for n, unit in gathered.units.items() if n in columns}, said)
+    units = {n: unit for n, unit in gathered.units.items() if n in columns}
+    return Table("mat", columns, units, said, by_length(columns))
 
 
 class _Gathered:
@@ -65,6 +68,8 @@ class _Gathered:
         self.units: dict[str, str] = {}
         self.remarks: list[str] = []
         self._where = where
+        self._texts: list[tuple[str, list[str]]] = []
+        self._matrices: dict[str, int] = {}
         self._cells = 0
         self._elements = 0
 
@@ -93,8 +98,24 @@ class _Gathered:
             self.columns.append((path, column))
             return
         rows = column if column.shape[0] <= column.shape[1] else column.T
+        self._matrices[path] = len(rows)
         for k, row in enumerate(rows[:MOST_COLUMNS]):
             self.columns.append((f"{path}[{k}]", row))
+
+    def texts(self, path: str, texts: Sequence[Any]) -> None:
+        """Take a list of texts, which may be the names of a matrix's columns."""
+        if texts and all(isinstance(text, str) and text.strip() for text in texts):
+            self._texts.append((path, [text.strip() for text in texts]))
+
+    def name_rows(self) -> None:
+        """Call a matrix's columns by the one list of as many texts, where there is one for it alone."""
+        for path, count in self._matrices.items():
+            lists = [texts for _, texts in self._texts if len(texts) == count and len(set(texts)) == count]
+            alike = [other for other, rows in self._matrices.items() if rows == count]
+            if len(lists) == 1 and len(alike) == 1:
+                made = {f"{path}[{k}]": text for k, text in enumerate(lists[0])}
+                self.columns = [(made.get(name, name), values) for name, values in self.columns]
+                self.remarks.append(f"the columns of {path} are called by the file's list of {count} names")
 
 
 def _version_5(path: Path, gathered: _Gathered) -> None:
@@ -115,6 +136,8 @@ def _walk_5(path: str, value: Any, gathered: _Gathered, levels: int) -> None:
     gathered.element()
     fields = getattr(getattr(value, "dtype", None), "names", None)
     if fields is None:
+        if isinstance(value, np.ndarray) and value.dtype.kind in "OU" and value.size > 1:
+            gathered.texts(path, [str(cell) if isinstance(cell, str) else cell for cell in np.ravel(value).tolist()])
         if isinstance(value, np.ndarray) and value.dtype.kind == "O" and levels:
             for k, cell in enumerate(np.ravel(value)):
                 _walk_5(f"{path}{{{k}}}", cell, gathered, levels - 1)
@@ -180,6 +203,7 @@ def _walk_73(h5py: Any, path: str, item: Any, gathered: _Gathered, levels: int) 
         return
     value = _value_73(h5py, item, gathered)
     if isinstance(value, list):
+        gathered.texts(path, [_value_73(h5py, cell, gathered) for cell in value])
         for k, cell in enumerate(value):
             _walk_73(h5py, f"{path}{{{k}}}", cell, gathered, levels - 1)
     elif isinstance(value, np.ndarray):

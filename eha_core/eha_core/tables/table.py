@@ -16,8 +16,37 @@ MOST_COLUMNS = 1000
 """No logger of a rig writes more; a table grows with columns times rows, whatever the file's size."""
 MOST_CELLS = 2**27
 """Numbers of a table, which take 1 GB: three hours of ten channels at 1 kHz."""
+LONGEST_QUOTE = 40
+"""Characters of a cell that are quoted."""
 LARGEST = 2**30
 """Bytes of a file; what is larger is converted to MCAP or cut."""
+
+
+@dataclass(frozen=True)
+class Loss:
+    """What of a column could not be had.
+
+    Attributes:
+        empty: cells without anything in them.
+        unreadable: cells that hold something else than what the column holds.
+        first: the first of those, as it stands in the file.
+        row: where it stands, counted from 1 among the rows of values.
+        by_value: whether cells are lost where the column is at its largest or smallest, so that what is left is no
+            fair sample of what was measured.
+    """
+
+    empty: int = 0
+    unreadable: int = 0
+    first: str = ""
+    row: int = 0
+    by_value: bool = False
+
+    def __str__(self) -> str:
+        said = [f"{self.empty} cells are empty"] if self.empty else []
+        if self.unreadable:
+            quoted = self.first if len(self.first) <= LONGEST_QUOTE else f"{self.first[:LONGEST_QUOTE]}..."
+            said.append(f"{self.unreadable} cells could not be read, the first {quoted!r} in row {self.row}")
+        return " and ".join(said) + (", all where it is largest or smallest" if self.by_value else "")
 
 
 @dataclass(frozen=True)
@@ -29,12 +58,18 @@ class Table:
         columns: the columns in the order of the file; of one length, except in files that hold variables.
         units: units that the file itself states, by column; "ns" for dates and times of day.
         remarks: what was left out or renamed.
+        times: the column that holds a column's own times, by column; the others share the table's one time.
+        rate: rows in a second that the file states [Hz]; None where it states none.
+        losses: what of a column could not be had, by column; columns without loss are not in it.
     """
 
     kind: str
     columns: Mapping[str, Column]
     units: Mapping[str, str] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    times: Mapping[str, str] = field(default_factory=dict)
+    rate: float | None = None
+    losses: Mapping[str, Loss] = field(default_factory=dict)
 
 
 def as_column(values: Any) -> Column | None:

@@ -4,25 +4,46 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import isfinite
 
 from eha_core.errors import RecordingError
+from eha_core.tables.long_form import LongForm, long_form_of
+from eha_core.tables.number_cells import COMMA, POINT, is_grouped, is_missing, number_of
+from eha_core.tables.stated import rate_in, unit_in
 from eha_core.tables.table import MOST_COLUMNS
-from eha_core.tables.text_cells import is_date, is_number
+from eha_core.tables.time_cells import is_instant
+from eha_core.unit_names import unit_named
 
 SPACES = " "
 """Stands for any number of blanks between cells."""
-_DELIMITERS = ("\t", ";", ",", SPACES)
-_LOOKED_AT = 40
+DELIMITERS = ("\t", ";", ",", "|", SPACES)
+_LOOKED_AT = 400
 """Rows that decide how a table is written."""
-_LONGEST_SPACING = 3600.0
-"""s between samples; what states more has a damaged header."""
-_LABVIEW_END = "***End_of_Header***"
-_TRACE_NAMES, _TRACE_UNITS = "trace_names", ("unit", "units", "trace_units")
-_BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]$")
-_UNIT = re.compile(r"[\[(<]?[-%°µμA-Za-z/^0-9.*²³·]{1,10}[\])>]?")
+_ALIKE = 5
+"""Rows that are written alike where the numbers begin: a line of a header may hold numbers too."""
+NAME_LABELS = (
+    "name",
+    "names",
+    "channel",
+    "channels",
+    "channel name",
+    "signal",
+    "signals",
+    "signal name",
+    "kanal",
+    "tag",
+)
+UNIT_LABELS = ("unit", "units", "trace_units", "einheit", "einheiten", "channel units", "unit name")
+"""First cells, in small letters, of rows that hold the columns' names and units."""
+_TYPE_NAMES = (
+    "real lreal double float float32 float64 single int int16 int32 int64 uint uint16 uint32 dint udint bool number"
+    " numeric string long word dword analog digital"
+)
+
+
+_Score = tuple[float, bool, int]
+"""How well lines read as a table: the share of values in a row, whether a mark divides the cells, their number."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +59,9 @@ class Header:
         first: line of the file at which the numbers begin, from 0.
         skip: cells at the beginning of each row that belong to no column.
         step: first value and spacing of the first column, where its cells are empty.
-        named: whether the names are the file's own.
+        times: the column of a column's own times, by name.
+        rate: rows in a second that the lines above the numbers state [Hz].
+        long: which columns hold names and values, where a row holds one value of one signal.
     """
 
     kind: str
@@ -49,20 +72,9 @@ class Header:
     units: dict[str, str] = field(default_factory=dict)
     skip: int = 0
     step: tuple[float, float] | None = None
-    named: bool = True
-
-
-def read_header(where: str, lines: Sequence[str]) -> Header:
-    """The header of a table, from its first lines.
-
-    Raises:
-        RecordingError: no row of numbers is among them.
-    """
-    if any(line.startswith(_LABVIEW_END) for line in lines):
-        return _labview(where, lines)
-    if any(_first_cell(line) == _TRACE_NAMES for line in lines):
-        return _traces(where, lines)
-    return _plain(where, lines)
+    times: Mapping[str, str] = field(default_factory=dict)
+    rate: float | None = None
+    long: LongForm | None = None
 
 
 def cells_of(line: str, delimiter: str) -> list[str]:
@@ -70,136 +82,174 @@ def cells_of(line: str, delimiter: str) -> list[str]:
     if delimiter == SPACES:
         return line.split()
     try:
-        return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter), [])]
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])]
     except csv.Error:
         return []
 
 
-def _plain(where: str, lines: Sequence[str]) -> Header:
-    best: tuple[tuple[float, int], Header] | None = None
-    for delimiter in _DELIMITERS:
-        for decimal in (".", ",") if delimiter != "," else (".",):
-            found = _written(lines, delimiter, decimal)
-            if found is not None and (best is None or found[0] > best[0]):
-                best = found
-    if best is None:
-        if not any(line.strip() for line in lines[1:]):
-            raise RecordingError(f"{where}: has no samples; expected a header row and one row for each instant")
-        width = max(len(cells_of(line, ",")) for line in lines[:1])
-        if width > MOST_COLUMNS:
-            raise RecordingError(f"{where}: its header has {width} columns; keep the few that matter")
-        raise RecordingError(f"{where}: has no rows of numbers; expected a header row and one row for each instant")
-    return best[1]
+def plain_header(where: str, lines: Sequence[str]) -> Header:
+    """The header of a table that follows no vendor's layout.
+
+    Raises:
+        RecordingError: no row of numbers is among the lines, or it is open how the numbers are written.
+    """
+    found: dict[tuple[str, str], tuple[_Score, Header]] = {}
+    for delimiter in DELIMITERS:
+        for decimal in (POINT, COMMA):
+            if (delimiter, decimal) == (",", COMMA) and not any('"' in line for line in lines):
+                continue
+            if (made := _written(lines, delimiter, decimal)) is not None:
+                found[delimiter, decimal] = made
+    if not found:
+        raise RecordingError(f"{where}: {_why_none(where, lines)}")
+    (delimiter, decimal), (score, header) = max(found.items(), key=lambda item: item[1][0])
+    other = found.get((delimiter, COMMA if decimal == POINT else POINT))
+    if other is not None and other[0] == score:
+        _require_one_writing(where, lines, header)
+    _require_names_for_all(where, lines, header)
+    return header
 
 
-def _written(lines: Sequence[str], delimiter: str, decimal: str) -> tuple[tuple[float, int], Header] | None:
+def _why_none(where: str, lines: Sequence[str]) -> str:
+    width = max((len(cells_of(line, ",")) for line in lines[:1]), default=0)
+    if width > MOST_COLUMNS:
+        return f"its header has {width} columns; keep the few that matter"
+    what = "rows of numbers" if any(line.strip() for line in lines[1:]) else "samples"
+    return f"has no {what}; expected a header row and one row for each instant"
+
+
+def _require_one_writing(where: str, lines: Sequence[str], header: Header) -> None:
+    """Raise RecordingError where every number may have a decimal point, or thousands set apart, of the same mark."""
+    for line in lines[header.first :]:
+        for cell in cells_of(line, header.delimiter):
+            for mark in (COMMA, POINT):
+                if is_grouped(cell, mark):
+                    one, other = cell.replace(mark, "."), cell.replace(mark, "")
+                    raise RecordingError(
+                        f"{where}: {cell!r} may be {one} or {other}, and no number of the file tells which; write it"
+                        " with another number of decimals"
+                    )
+
+
+def _require_names_for_all(where: str, lines: Sequence[str], header: Header) -> None:
+    """Raise RecordingError where decimal commas have made two cells of each number."""
+    made_up = sum(name.startswith("column ") for name in header.names)
+    named = len(header.names) - made_up
+    if header.delimiter == "," and named == 0 and header.first > 0:
+        above = cells_of(lines[header.first - 1], ",")
+        named = len(above) if all(above) and not any(map(is_value_cell, above)) else 0
+    row = cells_of(lines[header.first], header.delimiter)
+    if (
+        2 < named < len(row) - 1 <= 2 * named
+        and header.delimiter == ","
+        and all(re.fullmatch(r"-?\d+", cell) for cell in row)
+    ):
+        raise RecordingError(
+            f"{where}: has {len(row)} cells in a row under {named} names; its decimal commas divide the cells too:"
+            " write it with decimal points, or with ; between the cells"
+        )
+
+
+def is_value_cell(cell: str, decimal: str = POINT) -> bool:
+    """Whether a cell holds a number or an instant."""
+    return number_of(cell, decimal, scaled=True) is not None or is_instant(cell)
+
+
+def _written(lines: Sequence[str], delimiter: str, decimal: str) -> tuple[_Score, Header] | None:
     """How well the lines read as a table that is written so, and its header; None where they do not."""
     rows = {k: cells_of(line, delimiter) for k, line in enumerate(lines) if line.strip() and line[:1] != "#"}
-    full = {k: shares for k, row in rows.items() if (shares := _numeric(row, decimal))[1] >= 2}
-    starts = [k for k, (share, _) in full.items() if share >= 0.5]
-    if not starts:
-        # A table of one number a row beside text, or of cells that are mostly empty, still has its time.
-        starts = [k for k, row in rows.items() if len(row) > 1 and _numeric(row, decimal)[1]]
-    if not starts:
+    first = _first_row(rows, decimal)
+    if first is None:
         return None
-    first = starts[0]
     looked = [row for k, row in rows.items() if k >= first][:_LOOKED_AT]
     width = max(len(row) for row in looked)
     if width < 2:
         return None
-    share = sum(_numeric(row, decimal)[0] for row in looked) / len(looked)
-    names, units, named = _names(lines, rows, first, width, delimiter)
+    share = sum(values_in(row, decimal)[0] for row in looked) / len(looked)
+    names, units = _names(lines, rows, first, width, delimiter)
     if len(names) > MOST_COLUMNS:
         return None
-    return (round(share, 2), width), Header("csv", names, delimiter, decimal, first, units, named=named)
+    rate = rate_in(line for line in lines[:first])
+    long = long_form_of(names, looked, lambda cell: is_value_cell(cell, decimal))
+    # Blanks divide a date from its clock too, so that a mark comes first.
+    score = (round(share, 2), delimiter != SPACES, width)
+    return score, Header("csv", names, delimiter, decimal, first, units, rate=rate, long=long)
 
 
-def _numeric(row: Sequence[str], decimal: str) -> tuple[float, int]:
-    """Which share of a row's filled cells are numbers or dates, and how many."""
-    filled = [cell for cell in row if cell]
-    count = sum(_is_value(cell, decimal) for cell in filled)
+def _first_row(rows: Mapping[int, list[str]], decimal: str) -> int | None:
+    """The line at which the numbers begin."""
+    order = list(rows)
+    full = {k: shares for k, row in rows.items() if (shares := values_in(row, decimal))[1] >= 2}
+    starts = [k for k, (share, _) in full.items() if share >= 0.5]
+    for k in starts:
+        place = order.index(k)
+        after = order[place : place + _ALIKE]
+        if all(other in full and abs(len(rows[other]) - len(rows[k])) <= 1 for other in after):
+            return k
+    if starts:
+        return starts[0]
+    # A table of one number a row beside text, or of cells that are mostly empty, still has its time.
+    return next((k for k, row in rows.items() if len(row) > 1 and values_in(row, decimal)[1]), None)
+
+
+def values_in(row: Sequence[str], decimal: str) -> tuple[float, int]:
+    """Which share of a row's filled cells are numbers or instants, and how many."""
+    filled = [cell for cell in row if not is_missing(cell)]
+    count = sum(is_value_cell(cell, decimal) for cell in filled)
     return (count / len(filled) if filled else 0.0), count
 
 
-def _is_value(cell: str, decimal: str) -> bool:
-    return is_date(cell) or is_number(cell.replace(",", ".") if decimal == "," else cell)
-
-
 def _names(
-    lines: Sequence[str], rows: dict[int, list[str]], first: int, width: int, delimiter: str
-) -> tuple[list[str], dict[str, str], bool]:
-    """The columns' names and units from the lines above the numbers, and whether the file has names."""
+    lines: Sequence[str], rows: Mapping[int, list[str]], first: int, width: int, delimiter: str
+) -> tuple[list[str], dict[str, str]]:
+    """The columns' names and units from the lines above the numbers."""
     above = [rows[k] for k in sorted(rows, reverse=True) if k < first]
     wide = [row for row in above if abs(len(row) - width) <= 1 and any(row)]
     if not wide and first > 0 and lines[first - 1].startswith("#"):
         row = cells_of(lines[first - 1].lstrip("# "), delimiter)
+        row = ["#", *row[1:]] if row and not row[0] else row
         wide = [row] if abs(len(row) - width) <= 1 else []
     if not wide:
-        return [f"column {k + 1}" for k in range(width)], {}, False
-    names, units = wide[0], [""] * len(wide[0])
-    if len(wide) > 1 and _are_units(wide[0]):
-        units, names = wide[0], wide[1]
+        return [f"column {k + 1}" for k in range(width)], {}
+    names, units = _named(wide), _units_of(wide)
     # A delimiter at the end of each row makes an empty cell, and none in the header.
     names = names[: max(width, len(names) - (not names[-1]))]
     made = [*names, *(f"column {k + 1}" for k in range(len(names), width))]
     stated = {name: unit.strip("[]()<> ") for name, unit in zip(names, units, strict=False) if unit.strip("[]()<>- ")}
-    return made, {**{name: found for name in made if (found := unit_in(name))}, **stated}, True
+    return made, {**{name: found for name in made if (found := unit_in(name))}, **stated}
 
 
-def _are_units(row: Sequence[str]) -> bool:
-    """Whether a row under the names holds their units: short, and bracketed or of few letters."""
+def _named(wide: Sequence[list[str]]) -> list[str]:
+    """The row of names among the rows above the numbers, the nearest first: labelled so, or the nearest that tells."""
+    labelled = next((row for row in wide if row[0].lower() in NAME_LABELS and len(set(row)) > 2), None)
+    if labelled is not None and len(wide) > 1:
+        return ["time", *labelled[1:]]
+    telling = [row for row in wide if not (are_units(row) or _are_types(row) or _is_repeated(row))]
+    return (telling or wide)[0]
+
+
+def _units_of(wide: Sequence[list[str]]) -> list[str]:
+    """The row of units among those above the numbers; empty where there is none beside the names."""
+    for row in wide if len(wide) > 1 else ():
+        if row[0].lower().strip("[]()") in UNIT_LABELS:
+            return ["", *row[1:]]
+        if are_units(row):
+            return row
+    return []
+
+
+def are_units(row: Sequence[str]) -> bool:
+    """Whether most cells of a row that are filled are units."""
+    filled = [cell.strip("[]()<> ") for cell in row if cell.strip("[]()<>- ")]
+    return bool(filled) and sum(unit_named(cell) is not None for cell in filled) > 0.5 * len(filled)
+
+
+def _are_types(row: Sequence[str]) -> bool:
+    filled = [cell.lower() for cell in row[1:] if cell]
+    return bool(filled) and all(cell in _TYPE_NAMES.split() for cell in filled)
+
+
+def _is_repeated(row: Sequence[str]) -> bool:
+    """Whether a row says the same of most columns, as of their device or raster."""
     filled = [cell for cell in row if cell]
-    return bool(filled) and all(_UNIT.fullmatch(cell) for cell in filled)
-
-
-def unit_in(name: str) -> str:
-    """The unit that a name states in brackets at its end, as in `p_A [bar]`; empty where it states none."""
-    match = _BRACKETS.search(name.strip())
-    return match[1].strip() if match else ""
-
-
-def _labview(where: str, lines: Sequence[str]) -> Header:
-    """The header of a LabVIEW measurement file: tags with values, up to the last mark of a header's end."""
-    tags: dict[str, str] = {}
-    ends = [k for k, line in enumerate(lines) if line.startswith(_LABVIEW_END)][:2]
-    # The separator is stated by name in the file that it separates.
-    delimiter = "," if any(line.lower().startswith("separator,") for line in lines[: ends[0]]) else "\t"
-    for line in lines[: ends[-1]]:
-        tag, *values = cells_of(line, delimiter)[:MOST_COLUMNS] or [""]
-        tags[tag.lower()] = delimiter.join(values)
-    named = next((k for k in range(ends[-1] + 1, len(lines)) if lines[k].strip()), None)
-    if named is None or named + 1 >= len(lines):
-        raise RecordingError(f"{where}: has no samples after its header")
-    names = cells_of(lines[named], delimiter)
-    decimal = "," if tags.get("decimal_separator", ".").strip() == "," else "."
-    first_of = {tag: tags.get(tag, "").split(delimiter)[0].replace(",", ".") for tag in ("x0", "delta_x")}
-    step = None
-    if tags.get("x_columns", "").lower() == "no" and all(map(is_number, first_of.values())):
-        start, spacing = float(first_of["x0"]), float(first_of["delta_x"])
-        step = (start, spacing) if isfinite(start) and 0.0 < spacing < _LONGEST_SPACING else None
-    units = dict(zip(names[1:], tags.get("y_unit_label", "").split(delimiter), strict=False))
-    stated = {name: unit.strip() for name, unit in units.items() if unit.strip()}
-    if tags.get("x_dimension", "").startswith("Time"):
-        stated[names[0]] = "s"
-    found = {name: unit for name in names if (unit := unit_in(name))}
-    return Header("lvm", names, delimiter, decimal, named + 1, {**found, **stated}, step=step)
-
-
-def _traces(where: str, lines: Sequence[str]) -> Header:
-    """The header of a ControlDesk recorder's file: labelled rows, the names among them, in a first column of labels."""
-    at = next(k for k, line in enumerate(lines) if _first_cell(line) == _TRACE_NAMES)
-    delimiter = max(_DELIMITERS[:3], key=lines[at].count)
-    names = cells_of(lines[at], delimiter)[1:]
-    units: dict[str, str] = {}
-    for k in range(at + 1, len(lines)):
-        label, *cells = cells_of(lines[k], delimiter) or [""]
-        if label.lower() in _TRACE_UNITS:
-            units = {name: unit for name, unit in zip(names, cells, strict=False) if unit}
-        if label == "trace_values" or (not label and _numeric(cells, ".")[1]):
-            decimal = "." if delimiter == "," or _numeric(cells, ".") >= _numeric(cells, ",") else ","
-            return Header("csv", names, delimiter, decimal, k, units, skip=1)
-    raise RecordingError(f"{where}: has no samples after its header")
-
-
-def _first_cell(line: str) -> str:
-    return re.split(r"[,;\t]", line, maxsplit=1)[0].strip().strip('"').lower()
+    return len(filled) > 3 and len(set(filled)) <= len(filled) // 2

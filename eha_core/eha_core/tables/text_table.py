@@ -1,31 +1,35 @@
-"""Reads text tables: CSV of any delimiter and decimal point, with or without a header; LabVIEW, ControlDesk."""
+"""Reads text tables: CSV of any delimiter and decimal point, with or without a header, and of measurement systems."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from io import StringIO
 from itertools import chain, islice
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.errors import RecordingError
-from eha_core.tables.table import LARGEST, MOST_CELLS, Column, Table, distinct
-from eha_core.tables.text_cells import is_date, nanoseconds, number
-from eha_core.tables.text_header import SPACES, Header, cells_of, read_header
+from eha_core.tables.assembled import assembled
+from eha_core.tables.gathered_columns import GatheredColumn
+from eha_core.tables.table import LARGEST, MOST_CELLS, Table
+from eha_core.tables.text_header import SPACES, Header, cells_of
+from eha_core.tables.vendor_headers import read_header
 
 HEAD = 2**18
 """Bytes from which the header is read; that of a measurement system has a few thousand."""
 LONGEST_LINE = 2**20
 """Characters of a line; a thousand columns take 20,000."""
-ROWS = 2**14
+ROWS = 2**16
 """Rows that are turned into numbers at once."""
 
 
 def read_text_table(path: Path) -> Table:
-    """Read a text table; cells that hold no number are NaN.
+    """Read a text table; cells that hold no number are NaN, and counted.
 
     Raises:
         RecordingError: the file is no text, no table, or larger than a table that is read at once.
@@ -33,20 +37,24 @@ def read_text_table(path: Path) -> Table:
     try:
         if path.stat().st_size > LARGEST:
             raise RecordingError(f"{path}: is larger than {LARGEST / 1e9:.1f} GB; cut it, or convert it to MCAP")
-        encoding = _encoding(path)
+        encoding = encoding_of(path)
         with path.open(encoding=encoding, newline=None, errors="replace") as file:
             lines = _lines(path, file)
             head = list(islice(lines, HEAD // 16))
             if not head:
                 raise RecordingError(f"{path}: has no samples; expected a header row and one row for each instant")
             header = read_header(str(path), head[:2000])
-            return _table(path, header, chain(head[header.first :], lines))
+            return _table(str(path), header, head, chain(head[header.first :], lines))
     except OSError as error:
         raise RecordingError(f"{path}: cannot be read ({error.strerror})") from error
 
 
-def _encoding(path: Path) -> str:
-    """UTF-8, UTF-16 where it says so, or the Windows code page that measurement systems write degrees and micro in."""
+def encoding_of(path: Path) -> str:
+    """UTF-8, UTF-16 where it says so, or the Windows code page that measurement systems write degrees and micro in.
+
+    Raises:
+        RecordingError: the file holds no text.
+    """
     with path.open("rb") as file:
         head = file.read(HEAD)
     is_wide = head[:2] in (b"\xff\xfe", b"\xfe\xff") and head[:64].decode("utf-16", "replace").isascii()
@@ -68,67 +76,100 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
     rest = ""
     while part := file.read(LONGEST_LINE):
         *whole, rest = (rest + part).split("\n")
+        if len(rest) > LONGEST_LINE:
+            raise RecordingError(f"{path}: has a line of more than {LONGEST_LINE} characters, which is no table's")
         yield from whole
-        if len(rest) > 2 * LONGEST_LINE:
-            raise RecordingError(f"{path}: has a line of more than {LONGEST_LINE} characters; expected a table")
     if rest:
         yield rest
 
 
-def _table(path: Path, header: Header, lines: Iterator[str]) -> Table:
-    width = len(header.names)
-    blocks: list[NDArray[np.float64]] = []
-    dated: dict[int, list[NDArray[np.int64]]] = {}
+def table_of_lines(where: str, kind: str, lines: Sequence[str], remarks: Sequence[str] = ()) -> Table:
+    """The table of lines that come from another kind of file.
+
+    Raises:
+        RecordingError: they hold no rows of numbers.
+    """
+    header = replace(read_header(where, lines[:2000]), kind=kind)
+    return _table(where, header, lines[:2000], iter(lines[header.first :]), remarks)
+
+
+class _Body:
+    """Takes the rows of a table, block by block."""
+
+    def __init__(self, path: str, header: Header, names_row: str) -> None:
+        self.path, self.header = path, header
+        texts = {*header.long.names, header.long.unit} if header.long else set()
+        self.columns = [
+            GatheredColumn(name, header.decimal, header.units.get(name, ""), k in texts)
+            for k, name in enumerate(header.names)
+        ]
+        self.remarks: list[str] = []
+        self.count = 0
+        self._names_row = names_row
+        self._left_out: tuple[int, str] = (0, "")
+
+    def add(self, block: list[str]) -> bool:
+        """Take a block of lines; False where the table ends in it."""
+        cells = _cells(block, self.header)
+        if self.header.step is not None and len(cells[0]):
+            cells[0] = np.full(len(block), np.nan)
+        read = [column.read(part) for column, part in zip(self.columns, cells, strict=True)]
+        valueless = self._valueless(cells, [values for values, _, _ in read])
+        keep = np.ones(len(block), dtype=bool)
+        ended = False
+        for k in np.flatnonzero(valueless):
+            row = [str(part[k]) for part in cells if isinstance(part[k], str) and part[k].strip()]
+            if not row or not keep[k]:
+                continue
+            keep[k] = False
+            if block[k].strip() == self._names_row:
+                continue
+            if len(row) > max(2, len(self.columns) // 2) and not valueless[k + 1 :].all():
+                self.remarks.append(f"a second table, from row {self.count + k + 1} on, was left out")
+                keep[k:] = False
+                ended = True
+                break
+            self._left_out = (self._left_out[0] + 1, self._left_out[1] or block[k].strip())
+        for column, part, (values, unreadable, other) in zip(self.columns, cells, read, strict=True):
+            column.add(part[keep], values[keep], unreadable[keep], None if other is None else other[keep])
+        self.count += int(np.count_nonzero(keep))
+        if self.count * len(self.columns) > MOST_CELLS:
+            raise RecordingError(f"{self.path}: has more than {MOST_CELLS} cells; cut it, or convert it to MCAP")
+        return not ended
+
+    def _valueless(self, cells: Sequence[NDArray[Any]], values: Sequence[NDArray[Any]]) -> NDArray[np.bool_]:
+        """Which rows have no value in any column."""
+        found = np.ones(len(values[0]), dtype=bool)
+        for column, one in zip(self.columns, values, strict=True):
+            if not column.is_text:
+                found &= ~np.isfinite(one.astype(np.float64))
+        return found if any(part.dtype.kind == "O" for part in cells) else np.zeros(len(found), dtype=bool)
+
+    def table(self, remarks: Sequence[str]) -> Table:
+        """The table of all blocks."""
+        count, first = self._left_out
+        said = [f"{count} lines without a number were left out, the first {first!r}"] if count else []
+        return assembled(
+            self.path, self.header.kind, self.columns, times=self.header.times, rate=self.header.rate,
+            step=self.header.step, long=self.header.long, remarks=(*said, *self.remarks, *remarks),
+        )  # fmt: skip
+
+
+def _table(path: str, header: Header, head: Sequence[str], lines: Iterator[str], remarks: Sequence[str] = ()) -> Table:
+    names_row = next((line.strip() for line in reversed(head[: header.first]) if line.strip()), "")
+    body = _Body(path, header, names_row)
     rows = (line for line in lines if line.strip() and line[:1] != "#")
     ended = ""
-    count = 0
     while block := list(islice(rows, ROWS)):
         if header.skip:
             block, ended = _section(block, header.delimiter)
         elif header.kind == "lvm":
             block, ended = _segment(block)
-        numbers = _fast(block, header)
-        if numbers is None or dated:
-            cells = [cells_of(line, header.delimiter) for line in block]
-            if not blocks:
-                dated = {k: [] for k in range(width) if _is_dated(cells, k)}
-            numbers = _slow(cells, width, header.decimal)
-            for k, parts in dated.items():
-                column = [row[k] if k < len(row) else "" for row in cells]
-                parts.append(nanoseconds(column))
-                numbers[:, k] = np.where([is_date(cell) for cell in column], 0.0, np.nan)
-        blocks.append(numbers)
-        count += len(numbers)
-        if count * width > MOST_CELLS:
-            raise RecordingError(f"{path}: has more than {MOST_CELLS} cells; cut it, or convert it to MCAP")
-        if ended:
+        if not block or not body.add(block) or ended:
             break
-    if not blocks or not count:
+    if not body.count:
         raise RecordingError(f"{path}: has no samples; expected a header row and one row for each instant")
-    dates = {k: np.concatenate(parts) for k, parts in dated.items()}
-    return _made(header, np.concatenate(blocks), dates, (ended,) if ended else ())
-
-
-def _made(
-    header: Header, table: NDArray[np.float64], dates: dict[int, NDArray[np.int64]], left: tuple[str, ...]
-) -> Table:
-    names, remarks = distinct(header.names)
-    units = dict(header.units)
-    columns: dict[str, Column] = {}
-    if header.step is not None:
-        start, spacing = header.step
-        table[:, 0] = start + spacing * np.arange(len(table))
-    for k, name in enumerate(names):
-        values = table[:, k]
-        if np.isnan(values).all() and (name == "Comment" or name not in header.names):
-            continue
-        columns[name] = values
-        if k in dates:
-            sound = ~np.isnan(values)
-            # Every row of a date column without its date has no time, and a recording can use none of its values.
-            columns[name] = dates[k] if sound.all() else np.where(sound, dates[k] * 1e-9, np.nan)
-            units[name] = "ns" if sound.all() else "s"
-    return Table(header.kind, columns, {n: unit for n, unit in units.items() if n in columns}, (*remarks, *left))
+    return body.table((*remarks, ended) if ended else remarks)
 
 
 def _section(block: list[str], delimiter: str) -> tuple[list[str], str]:
@@ -139,7 +180,8 @@ def _section(block: list[str], delimiter: str) -> tuple[list[str], str]:
         label = label.strip().strip('"')
         if label and label != "trace_values":
             return kept, "further groups of traces, recorded at their own times, were left out"
-        kept.append(values)
+        if values.strip(delimiter + " \r"):
+            kept.append(values)
     return kept, ""
 
 
@@ -151,38 +193,31 @@ def _segment(block: list[str]) -> tuple[list[str], str]:
     return block, ""
 
 
-def _fast(block: Sequence[str], header: Header) -> NDArray[np.float64] | None:
-    """The block as numbers; None where a cell holds none, or rows differ in length."""
-    lines: Sequence[str] = block
-    if header.step is not None:
-        lines = [line.partition(header.delimiter)[2] for line in block]
-    if header.decimal == ",":
-        lines = [line.replace(",", ".") for line in lines]
+def _cells(block: Sequence[str], header: Header) -> list[NDArray[Any]]:
+    """The block's columns: numbers where pandas reads all of a column as such, else texts."""
+    import pandas
+
     width = len(header.names)
-    delimiter = None if header.delimiter == SPACES else header.delimiter
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            found = np.loadtxt(lines, dtype=np.float64, delimiter=delimiter, comments=None, quotechar='"', ndmin=2)
-        except (ValueError, IndexError, TypeError):
-            return None
-    lead = int(header.step is not None)
-    if found.shape[0] != len(block) or not 0 < found.shape[1] <= width - lead:
-        return None
-    numbers = np.full((len(block), width), np.nan)
-    numbers[:, lead : lead + found.shape[1]] = found
-    return numbers
+    spaces = header.delimiter == SPACES
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            frame = pandas.read_csv(
+                StringIO("\n".join(block)), sep=r"\s+" if spaces else header.delimiter, decimal=header.decimal,
+                header=None, names=range(width + 1), index_col=False, keep_default_na=False, na_values=[""],
+                skipinitialspace=not spaces, float_precision="round_trip", low_memory=False, skip_blank_lines=False,
+            )  # fmt: skip
+    except (ValueError, pandas.errors.ParserError, OverflowError):
+        return _split(block, header)
+    if len(frame) != len(block) or frame[width].notna().any():
+        return _split(block, header)
+    columns = [frame[k].to_numpy() for k in range(width)]
+    return [part if part.dtype.kind in "iufO" else part.astype(object).astype(str).astype(object) for part in columns]
 
 
-def _slow(cells: Sequence[Sequence[str]], width: int, decimal: str) -> NDArray[np.float64]:
-    table = np.full((len(cells), width), np.nan)
-    for k, row in enumerate(cells):
-        for j, cell in enumerate(row[:width]):
-            if cell:
-                table[k, j] = number(cell.replace(",", ".") if decimal == "," else cell)
-    return table
-
-
-def _is_dated(cells: Sequence[Sequence[str]], k: int) -> bool:
-    filled = [row[k] for row in cells[:100] if k < len(row) and row[k]]
-    return bool(filled) and sum(map(is_date, filled)) > 0.5 * len(filled)
+def _split(block: Sequence[str], header: Header) -> list[NDArray[Any]]:
+    """The block's columns cell by cell, for rows that differ in length and quotes that do not end."""
+    width = len(header.names)
+    rows = [cells_of(line, header.delimiter)[:width] for line in block]
+    padded = [row + [""] * (width - len(row)) for row in rows]
+    return [np.array([row[k] for row in padded], dtype=object) for k in range(width)]

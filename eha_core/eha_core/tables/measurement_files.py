@@ -1,0 +1,90 @@
+"""Reads measurement files whose signals have times of their own: TDMS by npTDMS, MDF by asammdf."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eha_core.errors import RecordingError
+from eha_core.tables.optional import required
+from eha_core.tables.own_times import columns_with_times
+from eha_core.tables.table import LARGEST, MOST_CELLS, MOST_COLUMNS, Column, Table, as_column
+
+Signal = tuple[str, str, Column, "Column | None", str]
+"""A signal's name, unit, values, times where it has some, and those times' unit."""
+
+
+def read_tdms(path: Path) -> Table:
+    """Read the channels of a TDMS file; those with a waveform's increment have their own times [s].
+
+    Raises:
+        RecordingError: the file is damaged, none, or larger than a table that is read at once.
+    """
+    nptdms = required("nptdms", path, "TDMS files")
+    return _table(path, "tdms", lambda: _of_tdms(nptdms, path))
+
+
+def read_mdf(path: Path) -> Table:
+    """Read the signals of an MDF file, each with its own times [s].
+
+    Raises:
+        RecordingError: as `read_tdms`.
+    """
+    asammdf = required("asammdf", path, "MDF files")
+    with path.open("rb") as file:
+        head = file.read(68)
+    # What does not begin like one is not shown to the library, which leaves it open.
+    if not (head.startswith(b"MDF") and head[64:] in (b"##HD", b"HD\xa4\x00", b"HD\xd0\x00")):
+        raise RecordingError(f"{path}: is no MDF file (it starts with other bytes)")
+    return _table(path, "mdf", lambda: _of_mdf(asammdf, path))
+
+
+def _of_tdms(nptdms: Any, path: Path) -> Iterator[Signal]:
+    with path.open("rb") as stream, nptdms.TdmsFile.open(stream) as file:
+        for group in file.groups():
+            for channel in group.channels():
+                values = as_column(channel[:]) if len(channel) else None
+                if values is None:
+                    continue
+                unit = str(channel.properties.get("unit_string", "") or channel.properties.get("unit", ""))
+                increment = float(channel.properties.get("wf_increment", 0.0) or 0.0)
+                time = None
+                if increment > 0.0:
+                    offset = float(channel.properties.get("wf_start_offset", 0.0) or 0.0)
+                    time = offset + increment * np.arange(len(values))
+                if channel[:1].dtype.kind == "M":
+                    unit = "ns"
+                yield f"{group.name}/{channel.name}", unit, values, time, "s"
+
+
+def _of_mdf(asammdf: Any, path: Path) -> Iterator[Signal]:
+    with asammdf.MDF(path) as file:
+        for signal in file.iter_channels(skip_master=True):
+            values = as_column(signal.samples) if np.ndim(signal.samples) == 1 else None
+            if values is not None and len(values):
+                yield signal.name, str(signal.unit or ""), values, np.asarray(signal.timestamps, dtype=np.float64), "s"
+
+
+def _table(path: Path, kind: str, signals: Any) -> Table:
+    try:
+        if path.stat().st_size > LARGEST:
+            raise RecordingError(f"{path}: is larger than {LARGEST / 1e9:.1f} GB; cut it, or convert it to MCAP")
+        found: list[Signal] = []
+        cells = 0
+        for signal in signals():
+            cells += len(signal[2])
+            if cells > MOST_CELLS or len(found) >= MOST_COLUMNS:
+                raise RecordingError(
+                    f"{path}: has more than {MOST_CELLS} numbers or {MOST_COLUMNS} columns; keep fewer"
+                )
+            found.append(signal)
+    except RecordingError:
+        raise
+    except Exception as error:  # damaged bytes lead the libraries to whatever Python can raise
+        raise RecordingError(f"{path}: cannot be read as a {kind.upper()} file ({error})") from error
+    if not found:
+        raise RecordingError(f"{path}: holds no signal with numbers")
+    return columns_with_times(kind, found)
