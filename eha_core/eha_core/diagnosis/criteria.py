@@ -123,6 +123,9 @@ EXPANSIONS, EXPANSIONS_LATER = 8, 3
 """Sets about which the channels are linearised at most, at first, and wherever a search goes on from what another found
 (assumed)."""
 
+IDLE = 3
+"""Expansions in a row that bring no significant improvement after which a search ends (assumed)."""
+
 BEAM = 10
 """Sets of each size that are grown and shrunk in the quadratic model."""
 

@@ -13,7 +13,7 @@ from eha_core.diagnosis.search.best_sets import objective_without, one_more
 from eha_core.diagnosis.search.columns import Column, columns_of, law_columns
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.search.equations import Friction, friction_of
-from eha_core.diagnosis.search.expansion import Search, cost, leader, required, search_sets
+from eha_core.diagnosis.search.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.search.finish import finish, refit_nominal, rivals
 from eha_core.diagnosis.search.pool import Pool, Progress, Trace, in_noise_of
 from eha_core.diagnosis.search.quadratic import QuadraticModel
@@ -35,6 +35,7 @@ class Material:
 
     effects: Sequence[Effect]
     columns: Sequence[Column]
+    laws: Sequence[Column]
     plant: tuple[FreeParameter, ...]
     trace: Trace
     progress: Progress
@@ -53,8 +54,8 @@ def find_sets(
     columns = [
         column for effect in effects for column in columns_of(effect, scales, shooting.per_recording, recordings)
     ]
-    columns += law_columns([effect for effect in shooting.composition.effects if not effect.named], scales)
-    material = Material(effects, columns, _plant(fitted), Trace(), progress)
+    laws = law_columns([effect for effect in shooting.composition.effects if not effect.named], scales)
+    material = Material(effects, columns, laws, _plant(fitted), Trace(), progress)
     progress("locating in the equations")
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
     progress("searching sets over short windows")
@@ -86,15 +87,26 @@ def over_short_windows(
     pool.try_set("nominal", NOTHING, values, states, CARRIED_ON)
     pool.measure_noise(NOTHING)
     if not friction.known:
-        search_sets(Search(pool, material.columns, material.progress, EXPANSIONS))
+        _search(pool, material.columns, material)
         return pool
     others = [column for column in material.columns if not column.effect.kind]
-    search_sets(Search(pool, others, material.progress, EXPANSIONS))
+    _search(pool, others, material)
     if friction.held is None:
         if pool.found[leader(pool)].data > NEAR_NOISE * pool.found[leader(pool)].count:
-            search_sets(Search(pool, material.columns, material.progress, EXPANSIONS))
+            _search(pool, material.columns, material)
         return pool
     return _released(pool, friction, material)
+
+
+def _search(pool: Pool, columns: Sequence[Column], material: Material) -> None:
+    """Search among named effects; where they leave more than noise, among them and laws in no catalogue, from nothing
+    on: what names did wrongly must not stand in a law's way."""
+    search_sets(Search(pool, columns, material.progress, EXPANSIONS))
+    if pool.found[leader(pool)].data < NEAR_NOISE * pool.found[leader(pool)].count:
+        return
+    search = Search(pool, [*columns, *material.laws], material.progress)
+    expand(search, NOTHING, "with laws in no catalogue")
+    search_sets(search)
 
 
 def _released(pool: Pool, friction: Friction, material: Material) -> Pool:

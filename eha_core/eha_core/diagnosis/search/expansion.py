@@ -9,6 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import (
     EXPANSIONS_LATER,
+    IDLE,
     LEADERS,
     MEMBERS_FIRST,
     MOST_EFFECTS,
@@ -79,23 +80,25 @@ class Search:
 
 def search_sets(search: Search) -> Hypothesis:
     """The best set over the pool's windows; every set that was fitted stays in the pool."""
+    idle = 0
     for number in range(search.most):
         base = search.next()
-        if base is None:
+        if base is None or idle == IDLE:
             break
-        _expand(search, base, f"expansion {number + 1}")
+        before = search.pool.found[leader(search.pool)]
+        expand(search, base, f"expansion {number + 1}")
+        after = search.pool.found[leader(search.pool)]
+        idle = idle + 1 if before.objective - after.objective < required(after) else 0
     return leader(search.pool)
 
 
-def _expand(search: Search, base: Hypothesis, step: str) -> None:
+def expand(search: Search, base: Hypothesis, step: str) -> None:
     """Linearise about a set, and fit the best sets that follow from it: the members alone first, then all that is
     free."""
     pool, lead = search.pool, leader(search.pool)
     at = pool.found[base]
     search.expanded[base] = at.objective
     addable = [c for c in search.columns if c.effect.id not in base.ids and c.effect.kind not in base.kinds]
-    if base != lead or at.data < NEAR_NOISE * at.count:
-        addable = [c for c in addable if not c.variable]
     in_time = base == lead and not base.limited
     model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)
     begun = _begun(pool, model, _worth_a_fit(pool, base, model))
