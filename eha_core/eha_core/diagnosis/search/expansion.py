@@ -112,8 +112,9 @@ def expand(search: Search, base: Hypothesis, step: str) -> None:
     for _, hypothesis, result in tried[:LEADERS]:
         pool.try_set(step, hypothesis, result.values, result.states, WITH_THE_PLANT)
     now = leader(pool)
-    if now == lead and base == lead and pool.found[lead].data > NEAR_NOISE * at.count:
-        pool.go_on(step, lead, TO_THE_END, 2)  # it may have stopped short of its optimum
+    if pool.found[now].data > NEAR_NOISE * at.count and (now != lead or base == lead):
+        # what a fit that stopped short leaves would be taken for more effects
+        pool.go_on(step, now, TO_THE_END, 2)
     left = pool.found[now].data / at.count
     search.say(f"{step}: {len(tried)} sets tried, best {_shown(now)}, {left:.4g} times the noise")
     pool.measure_noise(now)
