@@ -9,7 +9,7 @@ from eha_core.diagnosis.criteria import ENOUGH
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.converge import converge
 from eha_core.diagnosis.search.initial_guesses import applicable_effects, initial_guesses
-from eha_core.diagnosis.search.model_comparison import REFINED
+from eha_core.diagnosis.search.comparison import REFINED
 from eha_core.diagnosis.search.planned_refits import planned_refits, refit_with
 from eha_core.diagnosis.search.screening import screen
 from eha_core.effects import effects
