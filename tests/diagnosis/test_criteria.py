@@ -54,8 +54,3 @@ def test_what_must_be_gained_is_more_than_the_best_of_a_thousand_hypotheses_gain
 def test_what_must_be_gained_rises_with_what_nobody_explains():
     assert criteria.chance_gain(40_000, 3.0) == pytest.approx(3.0 * criteria.chance_gain(40_000, 1.0))
     assert criteria.chance_gain(40_000, 0.5) == criteria.chance_gain(40_000, 1.0)
-
-
-def test_a_search_goes_on_for_more_than_chance_and_a_tenth_of_what_is_left():
-    assert criteria.gain_to_go_on(40_000, 1.0, -5.0) == criteria.chance_gain(40_000, 1.0)
-    assert criteria.gain_to_go_on(40_000, 1.0, 1e6) == pytest.approx(1e5)

@@ -12,7 +12,8 @@ from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case
 from eha_core.identification.fit import Ending, fit, fit_in_stages
 from eha_core.identification.observation import observe
-from eha_core.identification.short_windows import HELD, SHORT, VERY_SHORT, from_short_windows, held
+from eha_core.identification.problem import whole
+from eha_core.identification.short_windows import FINER, HELD, SHORT, held, with_finer_slopes
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
@@ -43,7 +44,11 @@ def test_short_windows_lead_nearer_than_long_ones_from_afar(rig, sizes):
     values = {**nominal, **{f"{LAW.id}.{name}": at for name, at in zip(names, (*sizes, 3e-2), strict=True)}}
     free = with_effects(calibration.fitted.free, [LAW], values)
     long = fit_in_stages(calibration.problem, values, free, iterations=30)
-    found = from_short_windows(calibration.problem, calibration.shorter, values, free)
+    found, problem = values, calibration.problem
+    for shooting in calibration.shorter:
+        short = fit(with_finer_slopes(whole(shooting)), found, free, iterations=30, in_a_row=2)
+        found = short.values
+    found = fit(with_finer_slopes(problem), found, free, iterations=30)
     assert found.data < 0.5 * long.data
     assert found.values[f"{LAW.id}.force"] == pytest.approx(800.0, rel=0.1)
     assert found.values[f"{LAW.id}.static_force"] == pytest.approx(1210.0, rel=0.05)
@@ -51,9 +56,8 @@ def test_short_windows_lead_nearer_than_long_ones_from_afar(rig, sizes):
 
 def test_the_recordings_are_the_same_in_windows_of_the_lengths_stated(rig):
     calibration, _ = rig
-    assert (SHORT, VERY_SHORT) == ((0.1, 0.25), (0.05, 0.25))
-    short = (*calibration.shorter, *calibration.shortest)
-    for shooting, length in zip(short, (*SHORT, *VERY_SHORT), strict=True):
+    assert SHORT == (0.1, 0.25)
+    for shooting, length in zip(calibration.shorter, SHORT, strict=True):
         spans = np.diff(shooting.edges) * shooting.step_size
         assert np.median(spans) == pytest.approx(length, rel=0.21)
         assert sum(len(one.values) for one in shooting.samplings) >= 0.99 * calibration.problem.count()
@@ -77,3 +81,11 @@ def test_one_iteration_along_a_ridge_does_not_end_the_fit(rig):
     once, twice = (fit(calibration.problem, values, free, iterations=40, in_a_row=times) for times in (1, 2))
     assert once.ending is Ending.CONVERGED
     assert twice.iterations > once.iterations and twice.objective < once.objective
+
+
+def test_derivatives_are_taken_at_the_finer_step_or_the_problems_own(rig):
+    calibration, _ = rig
+    finer = with_finer_slopes(calibration.problem)
+    assert finer.slope_step == max(FINER, calibration.shooting.step_size) < calibration.problem.slope_step
+    assert finer.slopes.step_size <= calibration.problem.slopes.step_size
+    assert finer.shooting is calibration.problem.shooting

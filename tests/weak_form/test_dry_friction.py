@@ -24,7 +24,9 @@ FLOW = {
 
 
 def found(parameters, nominal=None, **how):
-    return dry_friction(observe(recorded({**(nominal or {}), **parameters}, **how)), {**nominal_values(), **(nominal or {})})
+    return dry_friction(
+        observe(recorded({**(nominal or {}), **parameters}, **how)), {**nominal_values(), **(nominal or {})}
+    )
 
 
 def of(forms, name):
