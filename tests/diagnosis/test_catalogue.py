@@ -1,20 +1,12 @@
 """Every effect of the catalogue, planted in the plant and found again behind wrong parameters."""
 
 import pytest
-from made import recorded
+from made import bench
 
-from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.characteristic_scales import characteristic_scales
-from eha_core.diagnosis.criteria import ENOUGH
-from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.converge import converge
-from eha_core.diagnosis.search.initial_guesses import applicable_effects, initial_guesses
-from eha_core.diagnosis.search.comparison import REFINED
-from eha_core.diagnosis.search.planned_refits import planned_refits, refit_with
-from eha_core.diagnosis.search.screening import screen
+from eha_core.diagnosis.criteria import NEAR_NOISE, TIE
+from eha_core.diagnosis.search.expansion import Search, cost, leader, search_sets
+from eha_core.diagnosis.search.finish import converge
 from eha_core.effects import effects
-from eha_core.identification.observation import observe
-from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
 NAMED = [effect for effect in effects() if effect.named]
@@ -46,24 +38,20 @@ NOT_IDENTIFIABLE = {"position_sensor_scale"}
 
 
 @pytest.mark.parametrize("effect", [one for one in NAMED if one.id not in NOT_IDENTIFIABLE], ids=lambda one: one.id)
-def test_what_is_planted_is_screened_in_and_measured(effect):
+def test_what_is_planted_is_found_and_measured(effect):
     sizes = {**{row.name: row.typical for row in effect.parameters}, **SIZES.get(effect.id, {})}
     planted = {f"{effect.id}.{name}": value for name, value in sizes.items()}
     rig = RIGS.get(effect.id, {})
     nominal = {**nominal_values(), **rig}
     other = {"moving_mass": 1.1 * nominal["moving_mass"], "damping_coefficient": 0.93 * nominal["damping_coefficient"]}
-    observation = observe(recorded({**rig, **planted, **other}, seed=7, duration=DURATIONS.get(effect.id, 6.0)))
-    calibration = calibrate([observation], NominalModel(nominal), 2e-4)
-    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
-    tried = [guess for one in applicable_effects([observation]) for guess in initial_guesses(one, scales)]
-    score_tests = screen(calibration.problem, calibration.fitted, tried)
-    leading = planned_refits(calibration.problem, calibration.fitted, tried, score_tests, REFINED, ENOUGH)
-    planned = next((one for one in leading if one.score_test.guess.effect.id == effect.id), None)
-    assert planned is not None, [one.score_test.guess.effect.id for one in leading]
-    first = refit_with(calibration.problem, planned, float("inf"))
-    (result,) = converge(calibration.problem, {NOTHING.with_effects([effect]): first}).values()
-    assert result.data / result.count < 1.1
-    assert calibration.fitted.objective - result.objective > 50.0
+    made = bench({**planted, **other}, rig, seed=7, duration=DURATIONS.get(effect.id, 4.0))
+    search_sets(Search(made.pool, made.columns))
+    hypothesis = made.set_of(effect.id)
+    assert hypothesis in made.pool.found, made.pool.found.keys()
+    result = converge(made.pool, hypothesis)
+    best = cost(leader(made.pool), made.pool.found[leader(made.pool)])
+    assert cost(hypothesis, result) < best + TIE * result.data / result.count
+    assert result.data / result.count < NEAR_NOISE
     for row in effect.parameters:
         name = f"{effect.id}.{row.name}"
         if row.switches and planted[name] != row.nominal:
