@@ -31,9 +31,7 @@ def test_a_terminal_shows_what_is_tried_and_what_is_left_in_one_line() -> None:
     progress = Progress(out=out, clock=clock)
     clock.now += 12.0
     progress("refitting with coulomb_friction")
-    assert out.getvalue() == (
-        "\r\x1b[K  12 s [##>..] search: refitting with coulomb_friction; left: intervals, report"
-    )
+    assert out.getvalue() == ("\r\x1b[K  12 s [##>..] search: refitting with coulomb_friction; left: intervals, report")
     progress.end()
     assert out.getvalue().endswith("\r\x1b[K")
 

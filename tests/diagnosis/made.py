@@ -3,18 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from eha_core.diagnosis.calibrate import STEPS
+from eha_core.diagnosis.characteristic_scales import Scales, characteristic_scales
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
+from eha_core.diagnosis.sets.columns import Column, applicable_effects, columns_of
+from eha_core.diagnosis.sets.pool import Pool, Trace
+from eha_core.effects import effects
 from eha_core.identification.fit import Ending, Fit
-from eha_core.identification.free_parameters import FreeParameter
+from eha_core.identification.free_parameters import FreeParameter, free_nominal_parameters
+from eha_core.identification.observation import Observation, observe
+from eha_core.identification.problem import whole
+from eha_core.identification.short_windows import SHORT
+from eha_core.identification.together import cut_together
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant
 from eha_core.recording import Channel, Recording
 from eha_core.signals import make_signal
 
 STEP = 5e-5
+LAWS = {effect.id: effect for effect in effects()}
 
 
 def recorded(
@@ -58,3 +70,45 @@ def explanation(changes: Mapping[str, float], free: Sequence[FreeParameter] = ()
     n = len(free)
     q = np.array([one.coordinate(values[one.name]) for one in free])
     return Fit(tuple(free), q, values, np.zeros((1, 4)), 0.0, 0.0, 1, (), np.eye(n), Ending.CONVERGED, 0)
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A recording cut into windows of one length, with the nominal equations fitted, and what could be added."""
+
+    observation: Observation
+    pool: Pool
+    scales: Scales
+    columns: tuple[Column, ...]
+
+    def columns_of(self, *names: str) -> list[Column]:
+        """The columns of these effects alone."""
+        return [column for column in self.columns if column.effect.id in names]
+
+    def set_of(self, *names: str) -> Hypothesis:
+        """The set of these effects."""
+        return NOTHING.with_effects([LAWS[name] for name in names])
+
+    def fitted(self, values: Mapping[str, float], iterations: int = 12) -> Fit:
+        """The set of the effects that have values here, fitted from these on top of the nominal values."""
+        hypothesis = self.set_of(*{name.partition(".")[0] for name in values if "." in name})
+        begun = {**self.pool.found[NOTHING].values, **values}
+        states = self.pool.found[NOTHING].states
+        return self.pool.try_set("made", hypothesis, begun, states, iterations, in_a_row=2)
+
+
+def bench(
+    parameters: Mapping[str, float], nominal: Mapping[str, float] | None = None, length: float = SHORT[0], **how: object
+) -> Bench:
+    """A recording of this plant, made as `recorded` does, in windows of this length [s]."""
+    given = {**nominal_values(), **(nominal or {})}
+    observation = observe(recorded({**(nominal or {}), **parameters}, **how))
+    shooting = cut_together([observation], given, STEPS[0], length)
+    farthest = float(np.max(np.abs(observation.channel("position").values)))
+    plant = free_nominal_parameters(given, shooting.drive, farthest)
+    pool = Pool(whole(shooting), plant, Trace())
+    fitted = pool.try_set("nominal", NOTHING, given, None, 12)
+    pool.measure_noise(NOTHING)
+    scales = characteristic_scales([observation], shooting, fitted)
+    columns = [column for effect in applicable_effects([observation]) for column in columns_of(effect, scales)]
+    return Bench(observation, pool, scales, tuple(columns))

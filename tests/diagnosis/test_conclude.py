@@ -17,8 +17,7 @@ from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.discrimination import RATE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import ChannelFit, Correlation, Explained, Location, UnknownLaw
-from eha_core.diagnosis.search.found import MOST_FITS
-from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison
+from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects
@@ -133,7 +132,7 @@ def test_a_curve_that_is_not_the_law_is_taken_out_of_the_model():
     judged = Judged(9.0, 3, {}, {}), Judged(3.0, 3, {}, {})
     decision = Decision("unknown_physics", curved, (), *judged)
     recovery = Recovery(CURVE, "velocity", curved.hypothesis, curved.fit, 99.0, 0.9, ())
-    evidence = SimpleNamespace(decision=decision, recovery=recovery, comparison=ModelComparison(nominal, (), (), 1.0))
+    evidence = SimpleNamespace(decision=decision, recovery=recovery, comparison=ModelComparison(nominal, (), 1.0))
     same = UnknownLaw("force", "velocity", "", 0.9, ())
     assert conclude._without_another_curve(evidence, same) is decision
     elsewhere = [replace(same, site=site) for site in ("chamber", "valve")]
@@ -185,7 +184,7 @@ def test_remarks_name_their_recording_where_there_are_several_and_the_units_of_w
     units, late = remarks(observed(composition=vane))
     assert late == "late" and "rad/s and N m" in units
     cut, late = remarks(observed(), cut_short=True)
-    assert late == "late" and f"cut short at {MOST_FITS} fits" in cut
+    assert late == "late" and "ended at its limit" in cut
 
 
 def proposed(monkeypatch, observation: Observation):
@@ -195,7 +194,7 @@ def proposed(monkeypatch, observation: Observation):
     sizes = {"constant_load.force": 200.0, "coulomb_friction.force": 250.0}
     two = [effect for effect in effects() if effect.id in ("constant_load", "coulomb_friction")]
     best, near = (Entry(NOTHING.with_effects([one]), explanation(sizes), 90.0) for one in two)
-    comparison = ModelComparison(Entry(NOTHING, explanation({}), 0.0), (best, near), (), 1.0)
+    comparison = ModelComparison(Entry(NOTHING, explanation({}), 0.0), (best, near), 1.0)
     evidence = SimpleNamespace(
         observation=observation, comparison=comparison, calibration=SimpleNamespace(shooting=shooting),
         shown=lambda windows: windows,
@@ -223,7 +222,7 @@ def test_no_experiment_is_proposed_for_a_source_that_no_voltage_drives():
     best = Entry(NOTHING.with_effects([effects()[0]]), explanation({}), 90.0)
     evidence = SimpleNamespace(
         observation=observed(composition=spool, driving=("spool",)),
-        comparison=ModelComparison(Entry(NOTHING, explanation({}), 0.0), (best,), (), 1.0),
+        comparison=ModelComparison(Entry(NOTHING, explanation({}), 0.0), (best,), 1.0),
     )
     experiment = conclude._experiment(evidence, Decision("ambiguous", best, (), None, None))
     assert experiment.reference == {} and "spool of measured_spool come from the rig" in experiment.statement
@@ -259,7 +258,7 @@ def concluded(verdict: str, *names: str, rivals=(), lead: int = 1, damaged=(None
     nominal, winner = Entry(NOTHING, model, 0.0), Entry(NOTHING.with_effects(chosen), model, 90.0)
     evidence = Evidence(
         observations, lead, nominal_values(), Calibration(shooting, None, model, model), None, (), (),
-        ModelComparison(nominal, (winner,), (), 1.0), None, Decision(verdict, winner, rivals, None, None), SEEN,
+        ModelComparison(nominal, (winner,), 1.0), None, Decision(verdict, winner, rivals, None, None), SEEN,
     )  # fmt: skip
     recordings = [
         Recording(one.path, {}, 1000 * number, one.duration, {}, (), hurt, ())

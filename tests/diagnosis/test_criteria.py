@@ -1,9 +1,15 @@
 """The thresholds that decide what is named: none of them moves unnoticed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from made import LAWS, explanation
 
 from eha_core.diagnosis import criteria
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.sets.expansion import Search, leader, required
+from eha_core.diagnosis.sets.pool import Pool, Trace
 
 
 def test_no_threshold_moved():
@@ -12,37 +18,57 @@ def test_no_threshold_moved():
         "FAR_FROM_NOISE": 5.0,
         "NEAR_NOISE": 1.03,
         "MOST_EFFECTS": 8,
+        "OF_EXCESS": 0.01,
         "CHANCE": 25.0,
         "OF_SAMPLES": 0.001,
         "OF_SAMPLES_BESIDE_A_FORM": 0.004,
-        "OF_ITS_FORM": 6e-4,
+        "OF_ITS_FORM": 0.0006,
         "NOISE_KNOWN": 0.02,
         "CONVINCING": 0.63,
         "NEXT_TO_NOTHING": 0.15,
         "WORTH_ADDING": 0.1,
-        "IDENTIFIED": 2.0,
+        "HARDLY": 0.1,
+        "OVER": 0.05,
+        "UNTOUCHED": 0.05,
         "LEFT_IN_A_CHANNEL": 1.2,
         "UNFITTED": 1.3,
         "LEAST_OF_A_LAW": 0.5,
         "COHERENT": 1.5,
         "ENOUGH": 20.0,
         "TIE": 10.0,
-        "CONTENDING": 20.0,
-        "HARDLY": 0.1,
-        "OVER": 0.05,
         "ADEQUATE": 1.05,
         "DEAR": 0.03,
         "HELD_OUT": 5.0,
+        "COLLECTION": 0.95,
+        "ODDS_OF_GAIN": 1.7,
+        "CONTENDING": 20.0,
         "PARTLY": 0.2,
         "NEARLY_ALL": 0.1,
         "ITS_FORM": 0.05,
         "WHATEVER_FORM": 0.005,
         "UNKNOWN_MARGIN": 50.0,
-        "OUTSTANDING": 1.5,
-        "UNTOUCHED": 0.05,
         "LEFT_OVER": 0.05,
         "NOTICEABLE": 4.0,
         "RELEVANT": 0.01,
+        "EXPANSIONS": 8,
+        "EXPANSIONS_LATER": 3,
+        "IDLE": 3,
+        "BEAM": 10,
+        "OF_SIZE": 4,
+        "TRIED": 16,
+        "TRIED_AT_THE_NOISE": 4,
+        "MEMBERS_FIRST": 2,
+        "WITH_THE_PLANT": 3,
+        "TO_THE_END": 12,
+        "LEADERS": 2,
+        "RELATED": 3.0,
+        "WORTHWHILE": 0.9,
+        "SHARES": (1.0, 0.5, 0.25),
+        "CARRIED": 2,
+        "OUTSTANDING": 1.5,
+        "COMPARED_WITHIN": 300.0,
+        "LOOKED_AT": 4.0,
+        "IDENTIFIED": 2.0,
     }
 
 
@@ -55,6 +81,64 @@ def test_what_must_be_gained_is_more_than_the_best_of_a_thousand_hypotheses_gain
 def test_what_must_be_gained_rises_with_what_nobody_explains():
     assert criteria.chance_gain(40_000, 3.0) == pytest.approx(3.0 * criteria.chance_gain(40_000, 1.0))
     assert criteria.chance_gain(40_000, 0.5) == criteria.chance_gain(40_000, 1.0)
+
+
+def leaving(objective: float, count: int = 40_000):
+    return replace(explanation({}), data=objective, objective=objective, count=count)
+
+
+def test_while_a_search_goes_on_a_member_gains_more_than_chance_and_a_share_of_what_is_left():
+    assert required(leaving(40_000.0)) == criteria.chance_gain(40_000, 1.0)
+    far = 3.0 * 40_000.0
+    more = criteria.OF_EXCESS * (far - 40_000.0)
+    assert required(leaving(far)) == pytest.approx(criteria.chance_gain(40_000, 3.0) + more)
+
+
+def pool_of(objectives):
+    """A pool of fits of so many effects, each of which leaves so much."""
+    named = [effect for effect in LAWS.values() if effect.named and not effect.kind]
+    sets = {NOTHING.with_effects(named[:size]): leaving(left) for size, left in objectives.items()}
+    return Pool(None, (), Trace(), sets)
+
+
+def test_of_sets_the_larger_leads_only_where_its_members_gain_more_than_chance():
+    by_chance = criteria.chance_gain(40_000, 1.0)
+    for gained, size in ((0.9, 1), (1.1, 2)):
+        assert len(leader(pool_of({1: 40_000.0, 2: 40_000.0 - gained * by_chance})).members) == size
+
+
+def test_a_search_goes_on_from_the_leader_then_from_what_is_related_and_ends_at_the_noise():
+    times = criteria.RELATED
+    far = pool_of({1: 1e6, 2: 0.95 * times * 1e6, 3: 1.05 * times * 1e6})
+    one, two, _ = far.found
+    search = Search(far, ())
+    assert search.next() == one
+    search.expanded[one] = far.found[one].objective
+    assert search.next() == two
+    search.expanded[two] = far.found[two].objective
+    assert search.next() is None
+    for left, related in ((0.99, False), (1.01, True)):
+        quiet = pool_of({1: left * criteria.NEAR_NOISE * 40_000.0, 2: 1.5 * 40_000.0})
+        one, two = quiet.found
+        assert Search(quiet, (), expanded={one: quiet.found[one].objective}).next() == (two if related else None)
+
+
+def test_a_search_goes_on_from_a_leader_again_that_was_fitted_further():
+    pool = pool_of({1: 41_000.0})
+    (one,) = pool.found
+    needed = required(pool.found[one])
+    for gained, again in ((0.9, None), (1.1, one)):
+        assert Search(pool, (), expanded={one: 41_000.0 + gained * needed}).next() == again
+
+
+def test_a_fit_may_begin_at_the_whole_way_and_at_parts_of_it():
+    assert criteria.SHARES[0] == 1.0 and list(criteria.SHARES) == sorted(criteria.SHARES, reverse=True)
+    assert min(criteria.SHARES) > 0.0
+
+
+def test_fits_of_few_iterations_come_first():
+    assert criteria.MEMBERS_FIRST < criteria.WITH_THE_PLANT < criteria.TO_THE_END
+    assert criteria.LEADERS <= criteria.TRIED_AT_THE_NOISE <= criteria.TRIED
 
 
 def test_a_search_goes_on_for_more_than_chance_and_a_tenth_of_what_is_left():

@@ -12,7 +12,7 @@ from eha_core.diagnosis.conclude import polish
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.ladder import correlation, ladder
-from eha_core.diagnosis.search.candidates import Candidate
+from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
 from eha_core.effects import effects
 from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe
@@ -36,8 +36,8 @@ def evidence():
         observations=(observation,),
         nominal=nominal_values(),
         calibration=calibration,
-        comparison=SimpleNamespace(nominal=Candidate(NOTHING, calibration.fitted), entries=()),
-        decision=SimpleNamespace(winner=Candidate(NOTHING.with_effects(chosen), found)),
+        comparison=ModelComparison(Entry(NOTHING, calibration.fitted, 0.0), (), 1.0),
+        decision=SimpleNamespace(winner=Entry(NOTHING.with_effects(chosen), found, 100.0)),
     )
 
 

@@ -9,7 +9,7 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison, rank, residual_variance
+from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.unknown import recover
 from eha_core.effects import effects
 from eha_core.identification.fit import fit
@@ -40,9 +40,8 @@ def found():
     begun = {**nominal_values(), "spool_hysteresis.half_width": 1.4e-4, "constant_load.force": 50.0}
     free = with_effects(calibration.fitted.free, chosen, begun)
     fits = {NOTHING.with_effects(chosen): fit(calibration.problem, begun, free, iterations=15)}
-    entries = rank(calibration.problem, calibration.fitted, fits)
-    nominal = Entry(NOTHING, calibration.fitted, 0.0)
-    comparison = ModelComparison(nominal, entries, (), residual_variance(calibration.fitted, entries))
+    nominal, variance = calibration.fitted, residual_variance([calibration.fitted, *fits.values()])
+    comparison = ModelComparison(Entry(NOTHING, nominal, 0.0), rank(nominal, fits), variance)
     return recover(calibration.problem, comparison, scales)
 
 

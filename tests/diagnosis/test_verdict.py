@@ -11,7 +11,7 @@ from made import explanation
 
 from eha_core.diagnosis import criteria, verdict
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.model_comparison import Entry, ModelComparison
+from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import effects
 
@@ -54,7 +54,7 @@ def decide(
     *entries: Entry, nominal: Entry = NOMINAL, recovery=None, before: float = 0.0, named=(), residual_variance=1.0
 ):
     calibration = SimpleNamespace(shooting=None, nominal=SimpleNamespace(objective=nominal.fit.objective + before))
-    comparison = ModelComparison(nominal, entries, (), residual_variance)
+    comparison = ModelComparison(nominal, entries, residual_variance)
     return verdict.decide(calibration, dict.fromkeys(named, 1.0), comparison, recovery)
 
 
@@ -78,7 +78,7 @@ def test_what_only_adds_to_the_winner_is_no_rival():
 def test_contenders_lie_within_two_ties_and_at_no_bound():
     best, near, far = entry(500.0, "coulomb_friction"), entry(480.5, "constant_load"), entry(480.0, "end_stop")
     held = replace(entry(499.0, "hardening_spring"), cost=-1.0)
-    found = verdict.contenders(best, ModelComparison(NOMINAL, (best, held, near, far), (), 1.0))
+    found = verdict.contenders(best, ModelComparison(NOMINAL, (best, held, near, far), 1.0))
     assert [one.ids for one in found] == [("coulomb_friction",), ("constant_load",)]
 
 

@@ -19,7 +19,8 @@ FILES = {
     "rate and step": ("eha_sim: {ros__parameters: {publish_rate: 333.0}}", "publish_rate"),
     "a source of no volts": ("eha_sim: {ros__parameters: {plant: {source: measured_flow}}}", "flow_a and flow_b"),
     "another's parameter": (
-        "eha_sim: {ros__parameters: {plant: {cylinder: rotary_vane}, piston_area: 1.0e-3}}", "piston_area",
+        "eha_sim: {ros__parameters: {plant: {cylinder: rotary_vane}, piston_area: 1.0e-3}}",
+        "piston_area",
     ),
     "an effect's": ("eha_sim: {ros__parameters: {coulomb_friction: {force: -5.0}}}", "coulomb_friction.force"),
 }

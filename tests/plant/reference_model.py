@@ -22,9 +22,7 @@ def root(pressure: float) -> float:
     return float(np.sign(pressure) * np.sqrt(abs(pressure)))
 
 
-def derivatives(
-    time: float, state: np.ndarray, voltage: Callable[[float], float], p: dict[str, float]
-) -> list[float]:
+def derivatives(time: float, state: np.ndarray, voltage: Callable[[float], float], p: dict[str, float]) -> list[float]:
     """The paper's right-hand side."""
     current, spool, rate, position, velocity, a, b = state
     if spool >= 0.0:

@@ -74,9 +74,7 @@ def test_a_step_tends_to_the_derivative() -> None:
     assert (after_a - pressures[0]) / tau == pytest.approx(rate.pressure_a, rel=1e-5)
     assert (after_b - pressures[1]) / tau == pytest.approx(rate.pressure_b, rel=1e-5)
     driving = 645e-6 * (pressures[0] - pressures[1]) - 10.0 * state.position
-    velocity = velocity_step(
-        tau, state.position, state.velocity, driving, (0.0, 2000.0, 0.0, 0.0), 1e7, 9.0, 10.0, 0.1
-    )
+    velocity = velocity_step(tau, state.position, state.velocity, driving, (0.0, 2000.0, 0.0, 0.0), 1e7, 9.0, 10.0, 0.1)
     assert (velocity - state.velocity) / tau == pytest.approx(rate.velocity, rel=1e-5)
 
 

@@ -18,9 +18,7 @@ def test_each_is_what_a_plant_of_its_own_gives(jobs: int, columns: tuple[str, ..
         {"moving_mass": generator.uniform(5.0, 20.0), "coulomb_friction.force": float(generator.choice([0.0, 300.0]))}
         for _ in range(53)
     ]
-    found = simulate_many(
-        sets, COMMAND, step_size=2e-4, every=10, initial_position=0.02, columns=columns, jobs=jobs
-    )
+    found = simulate_many(sets, COMMAND, step_size=2e-4, every=10, initial_position=0.02, columns=columns, jobs=jobs)
     assert found.values.shape == (53, 100, len(columns))
     for number, one in enumerate(sets):
         alone = Plant(one, 2e-4, 0.02).run(COMMAND, 10)

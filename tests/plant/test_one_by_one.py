@@ -22,8 +22,13 @@ SETS = [
     {"coulomb_friction.force": 40.0, "effects_from": 0.1, "effects_until": 0.22},
     {"presliding_friction.force": 30.0, "presliding_friction.static_force": 45.0, "bulk_modulus": 1e9},
     {"position_sensor_lag.time_constant": 0.01, "pressure_sensor_lag.time_constant_b": 0.01, "effects_from": 0.05},
-    {"coulomb_friction.force": 40.0, "coulomb_friction.acts_from": 0.08, "position_sensor_lag.time_constant": 0.01,
-     "position_sensor_lag.acts_from": 0.05, "position_sensor_lag.acts_until": 0.2},
+    {
+        "coulomb_friction.force": 40.0,
+        "coulomb_friction.acts_from": 0.08,
+        "position_sensor_lag.time_constant": 0.01,
+        "position_sensor_lag.acts_from": 0.05,
+        "position_sensor_lag.acts_until": 0.2,
+    },
 ]
 
 

@@ -35,8 +35,15 @@ def test_advance_holds_the_voltage() -> None:
     assert plant.state == pytest.approx(tuple(rows.values[-1]), rel=0.0, abs=0.0)
 
 
-@pytest.mark.parametrize("acting", [{}, {"effects_from": 0.0105, "effects_until": 0.0612}, {"effects_until": 0.02},
-                                    {"coulomb_friction.acts_from": 0.0105, "position_sensor_lag.acts_until": 0.07}])
+@pytest.mark.parametrize(
+    "acting",
+    [
+        {},
+        {"effects_from": 0.0105, "effects_until": 0.0612},
+        {"effects_until": 0.02},
+        {"coulomb_friction.acts_from": 0.0105, "position_sensor_lag.acts_until": 0.07},
+    ],
+)
 def test_ticks_of_any_length_are_the_run_to_the_last_bit(acting: dict[str, float]) -> None:
     effects = {"coulomb_friction.force": 300.0, "position_sensor_lag.time_constant": 0.01, **acting}
     ticking, running = Plant(effects), Plant(effects)

@@ -242,9 +242,7 @@ def _sure(document: Document, answer: str, basis: str) -> None:
         assert np.allclose([float(one) for one in shown], [least, document["steps"][-1]["overall"]], rtol=6e-3)
         assert least > document["steps"][-1]["overall"]
         return
-    others = [
-        score for effects, score in scores.items() if effects != chosen and len(effects) >= len(chosen)
-    ]
+    others = [score for effects, score in scores.items() if effects != chosen and len(effects) >= len(chosen)]
     gaps = (scores[frozenset(chosen)] - max(others), scores[frozenset(chosen)])
     for text, gap in zip((answer, basis.rpartition("Nothing added: ")[2]), gaps, strict=True):
         shown = re.search(r"([\d.,]+)( million)? behind", text)

@@ -40,8 +40,7 @@ def test_a_folder_that_is_a_file_is_named(friction: Diagnosis, tmp_path: Path) -
 
 def test_results_and_the_document_wait_for_no_plotting() -> None:
     code = (
-        "import sys, eha_core.report.files, eha_core.report.results\n"
-        "print({'matplotlib', 'plotly'} & set(sys.modules))"
+        "import sys, eha_core.report.files, eha_core.report.results\nprint({'matplotlib', 'plotly'} & set(sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "set()\n"
 

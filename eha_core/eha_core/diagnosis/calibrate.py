@@ -16,7 +16,7 @@ from eha_core.identification.observation import RESOLVED, SHORTEST, Observation,
 from eha_core.identification.per_recording import base_name
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
-from eha_core.identification.short_windows import SHORT
+from eha_core.identification.short_windows import SHORT, VERY_SHORT
 from eha_core.identification.together import cut_together, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
 
@@ -28,10 +28,6 @@ UNNOTICED = 20.0
 """Chi^2 by which the response may change as its step is halved: less than any effect must gain to be named. Of a model
 that is far off, the share WORTH of what it leaves may be more."""
 
-ENOUGH_ITERATIONS = 12
-"""Of the nominal equations. Where they are right they need fewer; where they are not, they are fitted once more from
-what is found."""
-
 NOWHERE_ELSE = 0.8
 AT_ALL = 50.0
 """Where this share of what the nominal equations leave unexplained, and so much chi^2, sits in the last window, that is
@@ -42,13 +38,14 @@ could a law for it be judged on anything that it was not fitted to."""
 @dataclass(frozen=True)
 class Calibration:
     """The windows, the nominal model as given (only starts fitted), and the nominal equations at their best; `shorter`
-    windows of the same recordings, as `short_windows.SHORT` has them."""
+    windows of the same recordings, as `short_windows.SHORT` has them, and `shortest`, as VERY_SHORT has them."""
 
     shooting: Shooting
     problem: Problem
     nominal: Fit
     fitted: Fit
     shorter: tuple[Shooting, ...] = ()
+    shortest: tuple[Shooting, ...] = ()
 
 
 def calibrate(observations: Sequence[Observation], model: NominalModel, step_size: float) -> Calibration:
@@ -60,13 +57,16 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     ]
     farthest = max(float(np.max(np.abs(values))) for values in positions)
     free = free_nominal_parameters(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
-    first = fit_in_stages(whole(shooting), nominal, free, iterations=ENOUGH_ITERATIONS)
+    first = fit_in_stages(whole(shooting), nominal, free)
     shooting = with_noise(shooting, corrected_noise(shooting, first))
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
-    shorter = tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in SHORT)
-    return Calibration(shooting, problem, at_nominal_values, fitted, shorter)
+    shorter, shortest = (
+        tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in lengths)
+        for lengths in (SHORT, VERY_SHORT)
+    )
+    return Calibration(shooting, problem, at_nominal_values, fitted, shorter, shortest)
 
 
 def calibrate_finely_enough(observations: Sequence[Observation], model: NominalModel) -> Calibration:

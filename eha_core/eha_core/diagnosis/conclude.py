@@ -29,7 +29,7 @@ from eha_core.diagnosis.result import (
     NamedEffect,
     UnknownLaw,
 )
-from eha_core.diagnosis.search.comparison import Entry
+from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import effects as every_effect

@@ -11,7 +11,7 @@ from math import exp, log
 
 from eha_core.diagnosis.criteria import COLLECTION, ODDS_OF_GAIN, TIE
 from eha_core.diagnosis.result import ProbableSet
-from eha_core.diagnosis.search.comparison import Entry, ModelComparison, bounded
+from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, bounded
 
 TEMPERATURE = TIE / (2.0 * log(COLLECTION / (1.0 - COLLECTION)))
 """Of the scores' Boltzmann factors: of two sets whose scores are TIE apart the better one holds COLLECTION."""
@@ -31,8 +31,7 @@ def probable_sets(comparison: ModelComparison, winner: Entry) -> tuple[ProbableS
             weight = exp(min((entry.score - winner.score) / (2.0 * TEMPERATURE), 0.0))
             weights[entry.ids] = max(weight, weights.get(entry.ids, 0.0))
     weights[winner.ids] = 1.0
-    for member in winner.hypothesis.members:
-        ratio = comparison.gain_over_required.get(member, 1.0)
+    for member, ratio in comparison.gain_over_required.items():
         without = winner.hypothesis.without(member).ids
         weights[without] = max(weights.get(without, 0.0), max(ratio, 1e-300) ** -ODDS_OF_GAIN)
     total = sum(weights.values())

@@ -27,7 +27,7 @@ EFFECT = Effect(
             ASSUMED,
             typical=0.3,
             relative_to="time",
-            starts=(0.0,),
+            starts=(0.2, 0.35, 0.5, 0.65, 0.8),
         ),
         Parameter(
             "internal_leakage",

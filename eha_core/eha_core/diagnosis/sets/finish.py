@@ -19,11 +19,11 @@ from eha_core.diagnosis.criteria import (
     OF_SAMPLES_BESIDE_A_FORM,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
-from eha_core.diagnosis.search.best_sets import Proposal, best_sets, objective_without
-from eha_core.diagnosis.search.columns import Column
-from eha_core.diagnosis.search.expansion import cost
-from eha_core.diagnosis.search.pool import Pool, Progress
-from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.sets.best_sets import Proposal, best_sets, objective_without
+from eha_core.diagnosis.sets.columns import Column
+from eha_core.diagnosis.sets.expansion import cost
+from eha_core.diagnosis.sets.pool import Pool, Progress
+from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name

@@ -1,0 +1,79 @@
+"""A whole search: what is planted is named and nothing else, and what it cost is told."""
+
+import pytest
+from made import LAWS, recorded
+
+from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.criteria import NEAR_NOISE
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.sets.columns import applicable_effects
+from eha_core.diagnosis.sets.course import find_sets
+from eha_core.identification.observation import observe
+from eha_core.identification.parallel import side_by_side
+from eha_core.nominal import NominalModel
+from eha_core.parameters import nominal_values
+
+PLANTED = {
+    "constant_load.force": 300.0,
+    "coulomb_friction.force": 200.0,
+    "valve_deadband.half_width": 1e-4,
+}
+
+
+@pytest.fixture(scope="module")
+def found():
+    observation = observe(recorded({**PLANTED, "moving_mass": 10.0}, duration=5.0))
+    calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
+    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
+    with side_by_side(2):
+        return calibration, *find_sets([observation], calibration, applicable_effects([observation]), scales)
+
+
+@pytest.mark.timeout(600)
+def test_three_effects_are_named_with_their_values_and_nothing_else(found):
+    _, _, comparison = found
+    best = comparison.entries[0]
+    assert best.ids == ("constant_load", "coulomb_friction", "valve_deadband")
+    assert best.fit.data < NEAR_NOISE * best.fit.count
+    for name, value in PLANTED.items():
+        assert best.fit.values[name] == pytest.approx(value, abs=max(4.0 * best.fit.deviation(name), 0.01 * value))
+    assert best.fit.values["moving_mass"] == pytest.approx(10.0, rel=0.02)
+    assert all(entry.score <= best.score for entry in comparison.entries)
+    assert best.score == pytest.approx(
+        (comparison.nominal.fit.objective - best.fit.objective) / comparison.residual_variance - best.cost
+    )
+
+
+def test_the_nominal_model_is_told_beside_it_in_the_same_noise(found):
+    before, after, comparison = found
+    assert comparison.nominal.hypothesis == NOTHING and comparison.nominal.score == 0.0
+    assert comparison.nominal.fit.objective > comparison.entries[0].fit.objective
+    assert comparison.residual_variance == pytest.approx(1.0, abs=0.03)
+    assert after.problem.shooting is after.shooting
+    assert after.fitted.values == before.fitted.values
+    for sampling in after.shooting.samplings:
+        planted = 1e-5 if sampling.column == 0 else 1e4
+        assert sampling.noise == pytest.approx(planted, rel=0.05)
+
+
+def test_each_site_has_what_its_members_explain_and_each_member_a_fit_without_it(found):
+    _, _, comparison = found
+    best = comparison.entries[0]
+    assert set(comparison.site_gains) == {effect.site for effect in best.effects}
+    assert all(gain > 1000.0 for gain in comparison.site_gains.values())
+    assert all(gain < 100.0 for gain in comparison.left_over.values())
+    for hypothesis, result in comparison.smaller.items():
+        assert len(hypothesis.members) == len(best.effects) - 1
+        assert result.objective > best.fit.objective
+
+
+def test_every_fit_is_in_the_trace(found):
+    _, _, comparison = found
+    steps = [step.step for step in comparison.trace]
+    assert steps[0] == "nominal" and "converge" in steps
+    assert any(step.startswith("expansion") for step in steps)
+    seconds = [step.cpu_s for step in comparison.trace]
+    assert seconds == sorted(seconds)
+    assert any(set(step.effects) == {name.partition(".")[0] for name in PLANTED} for step in comparison.trace)
+    assert {name for step in comparison.trace for name in step.effects} <= LAWS.keys()

@@ -1,0 +1,52 @@
+"""The friction that the search begins with, from the force balance."""
+
+import pytest
+from made import LAWS, recorded
+
+from eha_core.diagnosis.characteristic_scales import QUANTITIES, Scales
+from eha_core.diagnosis.sets.equations import ABOVE, KIND, friction_of
+from eha_core.identification.observation import observe
+from eha_core.parameters import nominal_values
+
+SIZES = (0.02, 6.0, 0.1, 3000.0, 2e-4, 2e6, 1e11, 1e-10)
+SCALES = Scales({quantity: (0.0, size) for quantity, size in zip(QUANTITIES, SIZES, strict=True)}, None)
+FORMS = {effect.id for effect in LAWS.values() if effect.kind == KIND}
+EVERY = tuple(LAWS.values())
+
+
+def asked(*recordings, effects=EVERY):
+    return friction_of([observe(one) for one in recordings], nominal_values(), effects, SCALES)
+
+
+def test_clear_friction_is_held_and_every_form_begins_as_large():
+    found = asked(recorded({"coulomb_friction.force": 250.0, "valve_deadband.half_width": 1e-4}, duration=6.0))
+    assert found.known and found.held == found.forms[0]
+    begun = {start.effect.id: start.values for start in found.forms}
+    assert begun.keys() == FORMS
+    assert begun["coulomb_friction"]["coulomb_friction.force"] == pytest.approx(250.0, rel=0.03)
+    presliding = begun["presliding_friction"]
+    assert presliding["presliding_friction.force"] == pytest.approx(250.0, rel=0.1)
+    assert presliding["presliding_friction.static_force"] >= presliding["presliding_friction.force"]
+    assert ABOVE > 1.0
+    for start in found.forms:
+        rows = dict(zip(start.effect.parameter_names(), start.effect.parameters, strict=True))
+        assert all(rows[name].lower <= value <= rows[name].upper for name, value in start.values.items())
+
+
+def test_where_there_is_none_it_is_known_and_nothing_is_held():
+    found = asked(recorded({"valve_deadband.half_width": 1e-4}, duration=6.0))
+    assert found.known and found.held is None and found.forms == ()
+
+
+def test_without_pressures_it_is_not_known_unless_another_recording_tells_it():
+    planted = {"coulomb_friction.force": 250.0}
+    blind = recorded(planted, duration=4.0, channels=("voltage_command", "position"))
+    found = asked(blind)
+    assert not found.known and found.held is None
+    assert asked(blind, recorded(planted, duration=6.0, seed=2)).held is not None
+
+
+def test_only_forms_that_are_offered_are_held():
+    offered = [effect for effect in EVERY if effect.id == "presliding_friction" or not effect.kind]
+    found = asked(recorded({"coulomb_friction.force": 250.0}, duration=6.0), effects=offered)
+    assert {start.effect.id for start in found.forms} <= {"presliding_friction"}

@@ -1,0 +1,161 @@
+"""The end of a search: what a member is required to explain, and what is dropped and what stays."""
+
+from dataclasses import replace
+
+import pytest
+from made import LAWS, bench, explanation
+
+from eha_core.diagnosis import criteria
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.sets.finish import as_large, finish, meet, predicted_costs, refit_nominal, required_of, rivals
+from eha_core.diagnosis.sets.pool import Pool, Trace
+from eha_core.identification.free_parameters import free_nominal_parameters
+from eha_core.parameters import nominal_values
+
+PLANTED = {"constant_load.force": 60.0, "valve_deadband.half_width": 2e-5}
+COUNT = 20_000
+MEMBERS = {one.id: one for one in NOTHING.with_effects(LAWS.values()).members}
+LOAD, SPRING, DEADBAND, FRICTION, AIR, SCALE = (
+    MEMBERS[one]
+    for one in (
+        "constant_load", "hardening_spring", "valve_deadband", "presliding_friction", "entrained_air",
+        "position_sensor_scale",
+    )
+)  # fmt: skip
+
+
+def fit_that_leaves(times_noise):
+    left = times_noise * COUNT
+    return replace(explanation({}), data=left, objective=left, count=COUNT)
+
+
+def pool_of(nominal_leaves):
+    return Pool(None, (), Trace(), {NOTHING: fit_that_leaves(nominal_leaves)})
+
+
+def by_chance(at, samples=criteria.OF_SAMPLES):
+    return max(1.0, at.data / at.count) * (criteria.CHANCE + samples * COUNT)
+
+
+def test_what_is_required_of_a_member_rises_with_what_is_left():
+    pool, costs = pool_of(1e3), dict.fromkeys((LOAD, SPRING), 1e5)
+    required = [required_of(pool, SPRING, costs, fit_that_leaves(left)) for left in (1.0, 1.1, 1.5, 2.0, 3.0, 5.0)]
+    assert required == sorted(required) and len(set(required)) == len(required)
+    ratio = criteria.CONVINCING / (1.0 - criteria.CONVINCING)
+    assert required[4] == pytest.approx(ratio * (2.0 - criteria.NOISE_KNOWN) * COUNT)
+    assert required[0] < 0.02 * required[4]
+
+
+def test_what_may_pass_for_noise_asks_for_no_more_than_chance_does():
+    quiet = fit_that_leaves(1.0 + 0.9 * criteria.NOISE_KNOWN)
+    found = required_of(pool_of(1e3), SPRING, dict.fromkeys((LOAD, SPRING), 1e5), quiet)
+    assert found == pytest.approx(by_chance(quiet))
+
+
+def test_beside_a_law_of_several_forms_a_small_loss_must_be_larger_by_the_curvature():
+    quiet, least = fit_that_leaves(1.0), criteria.CHANCE + criteria.OF_SAMPLES * COUNT
+    pool = pool_of(1.0)  # nothing is explained, so that no form leaves anything
+    for cost, samples in ((1.01, criteria.OF_SAMPLES), (0.99, criteria.OF_SAMPLES_BESIDE_A_FORM)):
+        costs = dict.fromkeys((LOAD, SPRING, DEADBAND), cost * least)
+        assert DEADBAND.effect.approximate and not LOAD.effect.approximate
+        assert required_of(pool, SPRING, costs, quiet) == pytest.approx(by_chance(quiet, samples))
+    assert required_of(pool, SPRING, dict.fromkeys((LOAD, SPRING), 0.99 * least), quiet) == pytest.approx(least)
+
+
+def test_a_laws_form_leaves_something_for_what_acts_in_the_same_balance():
+    quiet, pool = fit_that_leaves(1.0), pool_of(1e3)
+    costs = dict.fromkeys((FRICTION, AIR, LOAD, SCALE), 1e5)
+    left = {member: required_of(pool, member, costs, quiet) - by_chance(quiet) for member in costs}
+    assert left[LOAD] == pytest.approx(criteria.OF_ITS_FORM * 1e5)  # the friction's form; air acts on the oil's flow
+    assert left[AIR] == left[FRICTION] == pytest.approx(0.0)
+    assert left[SCALE] == pytest.approx(criteria.OF_ITS_FORM * 2e5)
+
+
+def test_a_form_leaves_a_share_of_what_the_whole_set_explains_at_most():
+    """Members that counterbalance each other cost more, each, than all explain together."""
+    quiet, costs = fit_that_leaves(1.0), {FRICTION: 1e7, LOAD: 1e7}
+    found = required_of(pool_of(3.0), LOAD, costs, quiet) - by_chance(quiet)
+    assert found == pytest.approx(criteria.OF_ITS_FORM * 2.0 * COUNT)
+
+
+def test_forces_meet_forces_and_flows_meet_flows_and_a_sensor_shows_both():
+    assert meet(LOAD, FRICTION) and meet(AIR, DEADBAND)
+    assert not meet(LOAD, AIR) and not meet(DEADBAND, FRICTION)
+    assert meet(SCALE, LOAD) and meet(DEADBAND, SCALE)
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return bench(PLANTED, duration=4.0)
+
+
+@pytest.fixture
+def pool(rig):
+    """The nominal fit alone, in a pool of the test's own."""
+    return Pool(rig.pool.problem, rig.pool.plant, Trace(), {NOTHING: rig.pool.found[NOTHING]})
+
+
+def test_what_explains_nothing_beside_the_others_is_dropped_and_they_stay(rig, pool):
+    rig = replace(rig, pool=pool)
+    begun = {**PLANTED, "hardening_spring.coefficient": 1e6, "command_delay.delay": 2e-4}
+    rig.fitted(begun)
+    said: list[str] = []
+    best = finish(pool, rig.set_of("constant_load", "valve_deadband", "hardening_spring", "command_delay"), said.append)
+    assert best == rig.set_of("constant_load", "valve_deadband")
+    at = pool.found[best]
+    for name, value in PLANTED.items():
+        assert at.values[name] == pytest.approx(value, abs=max(4.0 * at.deviation(name), 0.01 * value))
+    for name in ("hardening_spring", "command_delay"):
+        assert any(line.startswith(f"without {name}: ") for line in said)
+
+
+def test_the_costs_of_members_are_those_of_refits(rig, pool):
+    rig = replace(rig, pool=pool)
+    both = rig.set_of("constant_load", "valve_deadband", "hardening_spring")
+    at = rig.fitted({**PLANTED, "hardening_spring.coefficient": 1e6})
+    costs = {member.id: cost for member, cost in predicted_costs(pool, both, at).items()}
+    assert costs["hardening_spring"] < 20.0
+    assert min(costs["constant_load"], costs["valve_deadband"]) > 1e3
+    without = rig.fitted(PLANTED).objective - at.objective
+    assert costs["hardening_spring"] == pytest.approx(without, abs=2.0)
+
+
+def test_of_a_load_against_a_spring_the_offset_that_imitates_it_is_a_rival():
+    """Against a stiff spring a load is a position sensor that is off, as long as the stroke's ends are far."""
+    spring, load = {"spring_stiffness": 2e4}, {"constant_load.force": 30.0}
+    rig = bench(load, spring, duration=4.0)
+    rig.fitted(load)
+    best = finish(rig.pool, rig.set_of("constant_load"), lambda _: None)
+    leading, compared, _ = rivals(rig.pool, best, rig.columns, lambda _: None)
+    offset = rig.set_of("position_sensor_offset")
+    assert {best, offset} <= set(compared) and leading in (best, offset)
+    assert rig.pool.found[offset].objective == pytest.approx(rig.pool.found[best].objective, abs=criteria.TIE)
+    assert abs(rig.pool.found[offset].values["position_sensor_offset.offset"]) == pytest.approx(30.0 / 2e4, rel=0.05)
+    # a set that holds the best and more is no rival of it
+    assert not any(set(best.members) < set(one.members) for one in compared)
+
+
+def test_another_form_of_a_law_begins_as_large(rig):
+    values = {"stribeck_friction.force": 300.0, "stribeck_friction.static_force": 500.0}
+    (coulomb, *_), (stribeck, *_) = (
+        [column for column in rig.columns if column.effect.id == name]
+        for name in ("coulomb_friction", "stribeck_friction")
+    )
+    fitted = explanation({**dict(stribeck.values), **values})
+    assert as_large(coulomb, MEMBERS["stribeck_friction"], fitted) == {"coulomb_friction.force": pytest.approx(400.0)}
+    back = as_large(stribeck, MEMBERS["coulomb_friction"], explanation({"coulomb_friction.force": 120.0}))
+    share = 120.0 / stribeck.values["stribeck_friction.force"]
+    assert back["stribeck_friction.force"] == pytest.approx(120.0)
+    static = share * stribeck.values["stribeck_friction.static_force"]
+    assert back["stribeck_friction.static_force"] == pytest.approx(static)
+    assert back["stribeck_friction.stribeck_velocity"] == stribeck.values["stribeck_friction.stribeck_velocity"]
+
+
+def test_a_nominal_fit_in_a_flat_valley_is_led_out_of_it(rig, pool):
+    at = pool.found[NOTHING]
+    free = free_nominal_parameters(nominal_values(), "voltage", 0.02)
+    assert {one.name for one in at.free} == {one.name for one in free}
+    astray = replace(at, values={**at.values, "moving_mass": 3.0 * at.values["moving_mass"]}, objective=1e9)
+    again = refit_nominal(pool, astray, [at])
+    assert again.objective == pytest.approx(at.objective, rel=1e-2)
+    assert refit_nominal(pool, at, []) is at

@@ -1,0 +1,88 @@
+"""What a search keeps of its fits: the best of each set, in one noise, and a trace of all."""
+
+from dataclasses import replace
+
+import pytest
+from made import LAWS, bench
+
+from eha_core.diagnosis.criteria import FAR_FROM_NOISE
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.sets.pool import REACH, Pool, Trace
+from eha_core.identification.fit import fit
+
+PLANTED = {"constant_load.force": 300.0, "valve_deadband.half_width": 1e-4}
+
+
+@pytest.fixture(scope="module")
+def rig():
+    made = bench(PLANTED, duration=4.0)
+    made.fitted(PLANTED)
+    return made
+
+
+@pytest.fixture
+def pool(rig):
+    """The same fits, in a pool of the test's own."""
+    return Pool(rig.pool.problem, rig.pool.plant, Trace(), dict(rig.pool.found))
+
+
+def test_a_fit_in_another_noise_is_the_same_model(rig, pool):
+    both = rig.set_of("constant_load", "valve_deadband")
+    best = pool.found[both]
+    doubled = [replace(one, noise=0.5 * one.noise) for one in pool.problem.shooting.samplings]
+    pool.problem = replace(pool.problem, shooting=replace(pool.problem.shooting, samplings=tuple(doubled)))
+    loud = tuple(2.0 * one for one in best.residuals)
+    pool.found[both] = replace(best, residuals=loud, data=4.0 * best.data, objective=best.objective + 3.0 * best.data)
+    others = {hypothesis: result for hypothesis, result in pool if hypothesis != both}
+    pool.measure_noise(both)
+    for now, then in zip(pool.problem.shooting.samplings, rig.pool.problem.shooting.samplings, strict=True):
+        assert now.noise == pytest.approx(then.noise, rel=0.1)
+    weighed = pool.found[both]
+    anew = fit(pool.problem, best.values, best.free, best.states, iterations=0)
+    assert weighed.values == best.values
+    assert weighed.objective == pytest.approx(anew.objective, rel=1e-9)
+    assert weighed.data == pytest.approx(anew.data, rel=1e-9)
+    assert all(pool.found[hypothesis].values == result.values for hypothesis, result in others.items())
+
+
+def test_what_a_model_leaves_that_is_far_off_is_no_noise(pool):
+    before = pool.problem
+    far = replace(pool.found[NOTHING], data=1.01 * FAR_FROM_NOISE * pool.found[NOTHING].count)
+    pool.found[NOTHING] = far
+    pool.measure_noise(NOTHING)
+    assert pool.problem is before and pool.found[NOTHING] is far
+
+
+def test_the_best_fit_of_a_set_is_kept_and_every_fit_is_in_the_trace(rig, pool):
+    both = rig.set_of("constant_load", "valve_deadband")
+    best = pool.found[both]
+    far = {**best.values, "constant_load.force": -900.0}
+    assert pool.try_set("from afar", both, far, best.states, 0) is best
+    assert pool.found[both] is best
+    glanced = pool.glance("a glance", rig.set_of("coulomb_friction"), {**best.values, "coulomb_friction.force": 50.0},
+                          best.states, 1)  # fmt: skip
+    assert rig.set_of("coulomb_friction") not in pool.found
+    assert {parameter.name for parameter in glanced.free} == {"coulomb_friction.force"}
+    further = pool.go_on("further", both, 2)
+    assert further.objective <= best.objective
+    steps = [(step.step, tuple(step.effects)) for step in pool.trace.steps]
+    assert steps == [("from afar", both.ids), ("a glance", ("coulomb_friction",)), ("further", both.ids)]
+    seconds = [step.cpu_s for step in pool.trace.steps]
+    assert seconds == sorted(seconds) and seconds[0] > 0.0
+
+
+def test_a_fit_moves_the_plant_its_members_and_when_a_limited_one_acts(pool):
+    limited = NOTHING.with_effects([LAWS["constant_load"]], limited=True)
+    values = {**pool.found[NOTHING].values, "constant_load.acts_from": 0.4, "constant_load.acts_until": 2.5}
+    free = {parameter.name: parameter for parameter in pool.free(limited, values)}
+    plant = {parameter.name for parameter in pool.plant}
+    instants = {"constant_load.acts_from", "constant_load.acts_until"}
+    assert free.keys() == plant | {"constant_load.force"} | instants
+    longest = float(pool.problem.shooting.local_edges.max())
+    spans = [(free[name].lower, free[name].upper) for name in sorted(instants)]
+    assert spans == [(0.0, pytest.approx(0.4 + REACH)), (pytest.approx(1.5), pytest.approx(min(3.5, longest)))]
+
+
+def test_where_a_member_sticks_derivatives_are_taken_more_finely(rig, pool):
+    assert pool.posed(rig.set_of("constant_load")) is pool.problem
+    assert pool.posed(rig.set_of("coulomb_friction")).slope_step < pool.problem.slope_step
