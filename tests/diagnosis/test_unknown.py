@@ -47,7 +47,7 @@ def found():
 
 def test_the_law_stands_beside_the_effect_that_is_there_and_takes_the_place_of_the_one_that_is_not(found):
     assert found.hypothesis.ids == ("recovered_force", "spool_hysteresis")
-    assert found.hypothesis.law == ("recovered_force", "position")
+    assert (found.hypothesis.law.id, found.hypothesis.law.variable) == ("recovered_force", "position")
     assert [effect.id for effect in found.named] == ["spool_hysteresis"]
 
 

@@ -37,7 +37,8 @@ def recovered(
     score: float, data: float = 1.0 * COUNT, objective: float | None = None, beside: tuple[str, ...] = (), share=1.0
 ) -> Recovery:
     law = LAWS["recovered_force"]
-    hypothesis = replace(NOTHING.with_effects([LAWS[name] for name in (*beside, law.id)]), law=(law.id, "velocity"))
+    named = NOTHING.with_effects([LAWS[name] for name in beside])
+    hypothesis = named.with_effects([law], variable="velocity")
     return Recovery(law, "velocity", hypothesis, fit(data, objective=objective), score, share, ())
 
 

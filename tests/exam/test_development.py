@@ -1,0 +1,40 @@
+"""Development cases: made without the oracle, answered in turn, and paired with what was answered before."""
+
+import numpy as np
+
+from eha_core.exam.drawing import draw_case
+from eha_core.exam.files import read_answer, recording_name
+from eha_core.exam.measuring import measure, simulate_case
+from eha_core.recording import read_recording
+from tools.development import answer, in_turn, make_development_case, paired
+
+
+def test_a_case_is_the_exams_own_and_nothing_is_missing_in_it_by_either_search(tmp_path):
+    known = {"decidable": True, "seen": []}
+    assert make_development_case("null-0001", 70219, known, str(tmp_path)) == "null-0001"
+    case = read_answer((tmp_path / "sealed" / "null-0001.json").read_text())
+    assert case.plant == draw_case("null", 1, 70219).plant
+    read = read_recording(tmp_path / "recordings" / recording_name(case)).channels["position"]
+    _, values = measure(case, simulate_case(case))["position"]
+    assert np.allclose(read.values, values)
+    row = answer(case, tmp_path / "recordings", "whole-sets")
+    assert (row["outcome"], row["named"], row["message"]) == ("right", (), "")
+    assert row["cpu_s"] > 0.0 and row["fits"] > 0
+
+
+def test_every_tier_comes_early():
+    names = [f"rig-{k:04d}" for k in range(16)] + [f"null-{k:04d}" for k in range(3)]
+    ordered = in_turn(names)
+    assert sorted(ordered) == sorted(names)
+    assert {name.partition("-")[0] for name in ordered[:3]} == {"null", "rig"}
+
+
+def test_answers_are_paired_case_by_case():
+    before = {"rig-0000": {"outcome": "right"}, "rig-0001": {"outcome": "wrong"}, "null-0000": {"outcome": "right"}}
+    after = {
+        name: {"outcome": "right", "cpu_s": seconds, "named": [], "verdict": "consistent", "concealed": ["a"]}
+        for name, seconds in (("rig-0000", 4.0), ("rig-0001", 6.0))
+    }
+    lines = list(paired(before, after))
+    assert "| all | 2 | 1 | 2 | 6.0 | 6 |" in lines
+    assert lines[-1] == "rig-0001: wrong before, right after (a: consistent)"
