@@ -100,8 +100,10 @@ def test_what_explains_nothing_beside_the_others_is_dropped_and_they_stay(rig, p
     begun = {**PLANTED, "hardening_spring.coefficient": 1e6, "command_delay.delay": 2e-4}
     rig.fitted(begun)
     said: list[str] = []
-    best = finish(pool, rig.set_of("constant_load", "valve_deadband", "hardening_spring", "command_delay"), said.append)
+    whole = rig.set_of("constant_load", "valve_deadband", "hardening_spring", "command_delay")
+    best, gains = finish(pool, whole, said.append)
     assert best == rig.set_of("constant_load", "valve_deadband")
+    assert set(gains) == set(best.members) and min(gains.values()) > 1.0
     at = pool.found[best]
     for name, value in PLANTED.items():
         assert at.values[name] == pytest.approx(value, abs=max(4.0 * at.deviation(name), 0.01 * value))
@@ -125,7 +127,7 @@ def test_of_a_load_against_a_spring_the_offset_that_imitates_it_is_a_rival():
     spring, load = {"spring_stiffness": 2e4}, {"constant_load.force": 30.0}
     rig = bench(load, spring, duration=4.0)
     rig.fitted(load)
-    best = finish(rig.pool, rig.set_of("constant_load"), lambda _: None)
+    best, _ = finish(rig.pool, rig.set_of("constant_load"), lambda _: None)
     leading, compared, _ = rivals(rig.pool, best, rig.columns, lambda _: None)
     offset = rig.set_of("position_sensor_offset")
     assert {best, offset} <= set(compared) and leading in (best, offset)
