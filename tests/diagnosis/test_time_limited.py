@@ -27,7 +27,6 @@ def test_friction_that_acts_for_a_while_is_named_with_its_span() -> None:
     (when,) = located.when
     assert when == pytest.approx((2.37, 6.71), abs=0.02)
     assert located.share > 0.9  # what friction that always acts would take away is a tenth of that
-    assert f"from {when[0]:.4g} s to {when[1]:.4g} s" in located.statement
     assert "from 2.37 s to 6.71 s only" in result.effects[0].statement
     # what is handed to the simulator has the effect in that span alone
     friction = Plant(result.fitted_values, 1e-4)
