@@ -11,7 +11,7 @@ import pytest
 
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.diagnosis.document import document
+from eha_core.report.document import document
 from eha_core.errors import RecordingError
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
