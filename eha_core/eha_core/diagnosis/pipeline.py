@@ -137,7 +137,10 @@ def _freed(calibration: Calibration, at: Fit, bounds: frozenset[str], give_up_ab
     return fit(calibration.problem, at.values, free, at.states, iterations=BEYOND, give_up_above=give_up_above)
 
 
-def _single_effects(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> _Singles:
+def _calibrated(
+    recordings: Sequence[Recording], model: NominalModel, progress: Progress
+) -> tuple[NominalModel, tuple[Observation, ...], Calibration]:
+    """The recordings read and aligned, and the nominal equations calibrated; the model with a stroke that suffices."""
     progress("reading and aligning")
     seen = [observe(recording, model.composition) for recording in recordings]
     check_alike(seen)
@@ -145,6 +148,11 @@ def _single_effects(recordings: Sequence[Recording], model: NominalModel, progre
         seen[number], model = with_sufficient_stroke(observation, model)
     progress("calibrating the nominal equations")
     observations, calibration = calibrate_but_for_the_ends(seen, model)
+    return model, observations, calibration
+
+
+def _single_effects(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> _Singles:
+    model, observations, calibration = _calibrated(recordings, model, progress)
     scales = characteristic_scales(observations, calibration.shooting, calibration.fitted)
     applicable = applicable_effects(observations)
     comparison = compete(calibration.problem, calibration.fitted, applicable, scales, progress)
@@ -163,13 +171,7 @@ def _with_sets(singles: _Singles, progress: Progress) -> Evidence:
 
 def _over_whole_sets(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:
     """The same stages with the search over whole sets."""
-    progress("reading and aligning")
-    seen = [observe(recording, model.composition) for recording in recordings]
-    check_alike(seen)
-    for number, observation in enumerate(seen):
-        seen[number], model = with_sufficient_stroke(observation, model)
-    progress("calibrating the nominal equations")
-    observations, calibration = calibrate_but_for_the_ends(seen, model)
+    model, observations, calibration = _calibrated(recordings, model, progress)
     shooting, fitted = calibration.shooting, calibration.fitted
     scales = characteristic_scales(observations, shooting, fitted)
     lead = telling_most(shooting, fitted)
