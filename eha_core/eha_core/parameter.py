@@ -17,7 +17,8 @@ class Parameter:
     A search tries each of `starts`, in units of the observed quantity that `relative_to` names (one of
     `eha_core.diagnosis.characteristic_scales.QUANTITIES`), or of `typical` where it names none. `above` names a
     parameter of the same effect that a fit takes this one never to be smaller than. `switches` marks the
-    parameters that turn an effect on by leaving their nominal value. `logarithmic` says that a fit moves the quantity
+    parameters that turn an effect on by leaving their nominal value. `replaces` names a parameter of the plant in whose
+    place this one comes: with the same value it changes nothing. `logarithmic` says that a fit moves the quantity
     by factors; it can then not reach zero.
     """
 
@@ -34,6 +35,7 @@ class Parameter:
     switches: bool = False
     relative_to: str = ""
     above: str = ""
+    replaces: str = ""
     starts: tuple[float, ...] = (1.0,)
 
     def check(self, value: object, name: str | None = None) -> float:

@@ -20,7 +20,8 @@ def test_a_violent_recording_is_calibrated_at_a_shorter_one():
     calibration = calibrate_finely_enough([observation], NominalModel(nominal_values()))
     coarse = calibrate([observation], NominalModel(nominal_values()), LONGEST)
     assert calibration.shooting.step_size < LONGEST
-    assert step_error([observation], coarse) > 10.0 * step_error([observation], calibration)
+    chosen = calibration.shooting.step_size
+    assert step_error([observation], coarse, LONGEST) > 10.0 * step_error([observation], calibration, chosen)
     # the shorter step leaves noise alone; the longer one leaves its own error, whatever the parameters do
     assert calibration.fitted.data < 1.03 * calibration.fitted.count
     assert coarse.fitted.data - calibration.fitted.data > UNNOTICED

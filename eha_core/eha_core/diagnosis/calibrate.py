@@ -48,8 +48,13 @@ class Calibration:
     shortest: tuple[Shooting, ...] = ()
 
 
-def calibrate(observations: Sequence[Observation], model: NominalModel, step_size: float) -> Calibration:
-    """Fit the nominal equations; correct each channel's noise by what the residual's roughness shows; fit again."""
+def calibrate(
+    observations: Sequence[Observation], model: NominalModel, step_size: float, begun: Fit | None = None
+) -> Calibration:
+    """Fit the nominal equations; correct each channel's noise by what the residual's roughness shows; fit again.
+
+    `begun`: a fit at another step, to begin with in place of the nominal values.
+    """
     nominal = model.values
     shooting = cut_together(observations, nominal, step_size, per_recording=model.per_recording)
     positions = [
@@ -57,7 +62,10 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     ]
     farthest = max(float(np.max(np.abs(values))) for values in positions)
     free = free_nominal_parameters(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
-    first = fit_in_stages(whole(shooting), nominal, free)
+    if begun is None:
+        first = fit_in_stages(whole(shooting), nominal, free)
+    else:
+        first = fit(whole(shooting), begun.values, free, begun.states, iterations=8)
     shooting = with_noise(shooting, corrected_noise(shooting, first))
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
@@ -70,19 +78,26 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
 
 
 def calibrate_finely_enough(observations: Sequence[Observation], model: NominalModel) -> Calibration:
-    """Calibrate at the longest of STEPS that is short enough."""
-    for step_size in STEPS:
-        calibration = calibrate(observations, model, step_size)
-        left = calibration.fitted.objective - calibration.fitted.count
-        if step_error(observations, calibration) < max(UNNOTICED, WORTH * left):
+    """Calibrate at the longest of STEPS that is short enough for the model that the first of them leads to."""
+    calibration = calibrate(observations, model, STEPS[0])
+    fitted = calibration.fitted
+    noticed = max(UNNOTICED, WORTH * (fitted.objective - fitted.count))
+    for step_size in STEPS[:-1]:
+        if step_error(observations, calibration, step_size) < noticed:
             break
-    return calibration
+    else:
+        step_size = STEPS[-1]
+    return calibration if step_size == STEPS[0] else calibrate(observations, model, step_size, fitted)
 
 
-def step_error(observations: Sequence[Observation], calibration: Calibration) -> float:
-    """Chi^2 between the calibrated plant's response and the same at half the step, at the samples that both have."""
-    coarse, fitted = calibration.shooting, calibration.fitted
-    fine = cut_together(observations, fitted.values, 0.5 * coarse.step_size)
+def step_error(observations: Sequence[Observation], calibration: Calibration, step_size: float) -> float:
+    """Chi^2 between the calibrated plant's response at a step and at half of it, at the samples that both have."""
+    fitted, known = calibration.fitted, calibration.shooting
+    noise = [sampling.noise for sampling in known.samplings]
+    coarse, fine = (
+        with_noise(cut_together(observations, fitted.values, size, per_recording=known.per_recording), noise)
+        for size in (step_size, 0.5 * step_size)
+    )
     responses = [shooting.sample(shooting.simulate(fitted.values, fitted.states)[0]) for shooting in (coarse, fine)]
     total = 0.0
     for sampling, other, first, second in zip(coarse.samplings, fine.samplings, *responses, strict=True):

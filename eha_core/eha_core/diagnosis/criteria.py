@@ -20,6 +20,10 @@ start, and what is proposed must be significant. Tuned on development cases (see
 MOST_EFFECTS = 8
 """Members that a set may have: more than a rig of every kind of wear has at once (assumed)."""
 
+MOST_TRIED = 12
+"""Members of a set while the search goes on: what is wrongly in it keeps what is missing from being seen only until it
+may stand beside it (assumed)."""
+
 OF_EXCESS = 0.01
 """Share of the chi^2 beyond noise that a member must gain while the search goes on, so that a set that is far off is
 not filled up with what only bends it (assumed)."""
@@ -150,19 +154,14 @@ OF_SIZE, TRIED, TRIED_AT_THE_NOISE = 4, 16, 4
 """Proposals of one size, and of all, of which the members are fitted. The true set of a development rig was fifth of
 its size by prediction, and at the noise after two iterations."""
 
-MEMBERS_FIRST, WITH_THE_PLANT, TO_THE_END = 2, 3, 12
-"""Iterations of a proposal's members alone, of the best of them with all that is free, and of a leader that nothing
-improved on."""
+WITH_THE_PLANT, TO_THE_END = 3, 12
+"""Iterations of a proposal, and of a leader that nothing improved on."""
 
-LEADERS = 2
-"""Proposals that are fitted with all that is free."""
+FITTED = 6
+"""Proposals that are fitted, those that begin lowest."""
 
 RELATED = 3.0
 """The search goes on from a set that is worse than the leader by this factor at most."""
-
-WORTHWHILE = 0.9
-"""Share of a smaller set's chi^2 beyond noise that a larger one may leave, by prediction, to be tried far from the
-noise (assumed)."""
 
 SHARES = (1.0, 0.5, 0.25)
 """Shares of the predicted way at which a fit may begin: far from the optimum the whole way leads too far."""

@@ -41,6 +41,7 @@ EFFECT = Effect(
             typical=1e-10,
             switches=True,
             relative_to="leakage_flow",
+            replaces="internal_leakage",
             starts=(0.3,),
         ),
     ),

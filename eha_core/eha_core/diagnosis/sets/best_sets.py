@@ -10,6 +10,7 @@ import numpy as np
 from eha_core.compiled import compiled
 from eha_core.diagnosis.criteria import BEAM
 from eha_core.diagnosis.hypothesis import Member
+from eha_core.diagnosis.sets.box import within_bounds
 from eha_core.diagnosis.sets.quadratic import Option, QuadraticModel
 from eha_core.identification.numbers import Array, Flags, Integers
 
@@ -29,9 +30,9 @@ def best_sets(model: QuadraticModel, most: int) -> Mapping[int, list[Proposal]]:
     rivals = _exclusive(options)
     sizes = [option.member.size for option in options]
     levels: list[dict[tuple[int, ...], float]] = [{} for _ in range(most + 1)]
-    levels[0][()] = 0.0
+    levels[0][()] = model.gain(())[0]
     present = tuple(k for k, option in enumerate(options) if option.present)
-    _add(levels, sizes, present, _gain(model, table, present))
+    _add(levels, sizes, present, model.gain([options[k] for k in present])[0])
     expanded: set[tuple[int, ...]] = set()
     while True:
         leading = [sorted(level, key=level.__getitem__, reverse=True)[:BEAM] for level in levels]
@@ -41,13 +42,13 @@ def best_sets(model: QuadraticModel, most: int) -> Mapping[int, list[Proposal]]:
         for chosen in fresh:
             expanded.add(chosen)
             allowed = ~np.any(rivals[list(chosen)], axis=0)
-            gains = _extended(model.matrix, model.gradient, model.one_way, table, np.array(chosen, np.int64), allowed)
+            gains = _with_each(model, table, chosen, allowed)
             for k in np.argsort(gains)[::-1][: 2 * BEAM]:
                 _add(levels, sizes, tuple(sorted((*chosen, int(k)))), float(gains[k]))
             for k in chosen:
                 smaller = tuple(other for other in chosen if other != k)
                 if smaller not in levels[sum(sizes[other] for other in smaller)]:
-                    _add(levels, sizes, smaller, _gain(model, table, smaller))
+                    _add(levels, sizes, smaller, model.gain([options[k] for k in smaller])[0])
     return {
         size: [
             Proposal(tuple(options[k] for k in chosen), model.empty - level[chosen])
@@ -69,19 +70,15 @@ def _add(
 
 def objective_without(model: QuadraticModel, members: Collection[Member]) -> float:
     """The objective that is predicted of the set about which the model was made, without some of its members."""
-    options = model.options
-    table = _table(options)
-    kept = tuple(k for k, option in enumerate(options) if option.present and option.member not in members)
-    return model.empty - _gain(model, table, kept)
+    return model.empty - model.gain([o for o in model.options if o.present and o.member not in members])[0]
 
 
 def one_more(model: QuadraticModel) -> list[Proposal]:
     """The set about which the model was made, with each option more that gains anything."""
     options = model.options
-    table = _table(options)
     present = tuple(k for k, option in enumerate(options) if option.present)
     allowed = np.array([not option.present for option in options], dtype=np.bool_)
-    gains = _extended(model.matrix, model.gradient, model.one_way, table, np.array(present, np.int64), allowed)
+    gains = _with_each(model, _table(options), present, allowed)
     chosen = [options[k] for k in present]
     return [Proposal((*chosen, options[k]), model.empty - float(gain)) for k, gain in enumerate(gains) if gain > 0.0]
 
@@ -108,87 +105,36 @@ def _exclusive(options: tuple[Option, ...]) -> Flags:
     ).reshape(len(ids), len(ids))
 
 
-def _gain(model: QuadraticModel, table: Integers, chosen: tuple[int, ...]) -> float:
-    if not chosen:
-        return 0.0
-    allowed = np.zeros(len(table), dtype=np.bool_)
-    allowed[chosen[-1]] = True
-    rest = np.array(chosen[:-1], np.int64)
-    return float(_extended(model.matrix, model.gradient, model.one_way, table, rest, allowed)[chosen[-1]])
+def _with_each(model: QuadraticModel, table: Integers, chosen: tuple[int, ...], allowed: Flags) -> Array:
+    """What a set gains with each allowed option more; -1 where a new coefficient ends at nothing."""
+    options = [model.options[k] for k in chosen]
+    return _extended(
+        model.matrix, model.gradient, model.lower, model.upper, table, model.places_of(options),
+        allowed,
+    )  # fmt: skip
 
 
 @compiled
 def _extended(
-    matrix: Array, gradient: Array, one_way: Integers, table: Integers, chosen: Integers, allowed: Flags
+    matrix: Array, gradient: Array, lower: Array, upper: Array, table: Integers, given: Integers, allowed: Flags
 ) -> Array:
-    """What a set gains over the empty one with each allowed option more; -1 where a coefficient has the wrong sign."""
-    width = table.shape[1]
-    room = (len(chosen) + 1) * width
-    places = np.empty(room, np.int64)
-    lower = np.zeros((room, room))
-    z = np.zeros(room)
-    count = 0
-    for option in chosen:
-        for w in range(width):
-            if table[option, w] >= 0:
-                places[count] = table[option, w]
-                count += 1
+    width, count = table.shape[1], len(given)
+    places = np.empty(count + width, np.int64)
+    places[:count] = given
+    found = np.empty(count + width)
     gains = np.full(len(table), -1.0)
-    base = 0.0
-    for row in range(count):
-        for column in range(row + 1):
-            total = matrix[places[row], places[column]]
-            for k in range(column):
-                total -= lower[row, k] * lower[column, k]
-            if column < row:
-                lower[row, column] = total / lower[column, column]
-            else:
-                if total <= 1e-12:
-                    return gains
-                lower[row, row] = np.sqrt(total)
-        total = gradient[places[row]]
-        for k in range(row):
-            total -= lower[row, k] * z[k]
-        z[row] = total / lower[row, row]
-        base += z[row] * z[row]
-    x = np.zeros(room)
     for option in range(len(table)):
         if not allowed[option]:
             continue
-        size, gain, sound = count, base, True
+        size = count
         for w in range(width):
-            place = table[option, w]
-            if place < 0:
-                continue
-            places[size] = place
-            for column in range(size + 1):
-                total = matrix[place, places[column]]
-                for k in range(column):
-                    total -= lower[size, k] * lower[column, k]
-                if column < size:
-                    lower[size, column] = total / lower[column, column]
-                elif total <= 1e-12:
-                    sound = False
-                else:
-                    lower[size, size] = np.sqrt(total)
-            if not sound:
-                break
-            total = gradient[place]
-            for k in range(size):
-                total -= lower[size, k] * z[k]
-            z[size] = total / lower[size, size]
-            gain += z[size] * z[size]
-            size += 1
-        if not sound:
-            continue
-        for row in range(size - 1, -1, -1):
-            total = z[row]
-            for k in range(row + 1, size):
-                total -= lower[k, row] * x[k]
-            x[row] = total / lower[row, row]
-            if one_way[places[row]] * x[row] < 0.0:
-                sound = False
-                break
-        if sound:
+            if table[option, w] >= 0:
+                places[size] = table[option, w]
+                size += 1
+        gain = within_bounds(matrix, gradient, lower, upper, places, size, found)
+        acts = False
+        for k in range(count, size):
+            acts |= found[k] != 0.0
+        if acts:
             gains[option] = gain
     return gains

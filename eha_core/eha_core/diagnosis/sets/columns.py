@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -28,6 +28,10 @@ HATS = 9
 
 LAW_SIZE = 0.1
 """Height of such a column, in units of the usual force, opening or leakage (assumed)."""
+
+SIZES = {1.0: 100.0, 0.1: 3.0}
+"""Shares of a guess's size at which an effect is tried, and the largest factor on each: what an effect does is seldom
+in proportion to its size (assumed)."""
 
 SITES_OF_DRIVE = {
     "voltage": ("command", "spool", "orifice", "supply", "chamber", "force", "sensor", "schedule"),
@@ -58,8 +62,10 @@ class Column:
         alternative: columns of one effect with the same number belong together, each with a coefficient of its own;
             columns with different numbers exclude each other.
         one_way: the coefficient cannot be negative.
+        most: the largest coefficient.
         limited: the effect acts over an interval only, whose ends are in `values`.
         variable: of a law that is in no catalogue, what its curve is over.
+        nothing: where a size changes nothing, of those of which that is not the nominal value.
     """
 
     effect: Effect
@@ -67,8 +73,31 @@ class Column:
     sizes: tuple[str, ...]
     alternative: int
     one_way: bool
+    most: float = 100.0
     limited: bool = False
     variable: str = ""
+    nothing: Mapping[str, float] = field(default_factory=dict)
+
+    def beside(self, values: Mapping[str, float]) -> Column:
+        """The column in a model of these values: what takes the place of a parameter there is counted from it."""
+        rows = dict(zip(self.effect.parameter_names(), self.effect.parameters, strict=True))
+        nothing = {name: values[rows[name].replaces] for name in self.sizes if name in rows and rows[name].replaces}
+        if not nothing:
+            return self
+        shifted = {name: self.values[name] + at for name, at in nothing.items()}
+        return replace(self, values={**self.values, **shifted}, nothing=nothing)
+
+    def factors(self) -> tuple[float, float]:
+        """The least and the largest factor on the sizes that their bounds, and the linear model, allow."""
+        rows = dict(zip(self.effect.parameter_names(), self.effect.parameters, strict=True))
+        least, most = 0.0 if self.one_way else -self.most, self.most
+        for name in self.sizes:
+            row = rows[name.partition("@")[0]]
+            nothing = self.nothing.get(name, row.nominal)
+            step = self.values[name] - nothing
+            ends = sorted(((row.lower - nothing) / step, (row.upper - nothing) / step))
+            least, most = max(least, ends[0]), min(most, ends[1])
+        return min(least, 0.0), max(most, 0.0)
 
     def sized(self, factor: float) -> dict[str, float]:
         """The values with the sizes at so many times what they are, within their bounds."""
@@ -76,7 +105,8 @@ class Column:
         values = dict(self.values)
         for name in self.sizes:
             row = rows[name.partition("@")[0]]
-            values[name] = min(max(row.nominal + factor * (values[name] - row.nominal), row.lower), row.upper)
+            nothing = self.nothing.get(name, row.nominal)
+            values[name] = min(max(nothing + factor * (values[name] - nothing), row.lower), row.upper)
         return values
 
 
@@ -94,7 +124,8 @@ def columns_of(
     groups = [[name] for name in switching] if apart else [switching]
     one_way = not all(rows[name].lower < rows[name].nominal for name in switching)
     found: list[Column] = []
-    for alternative, chosen in enumerate(_starts(effect, rows, scales, one_way)):
+    starts = product(_starts(effect, rows, scales, one_way), SIZES.items())
+    for alternative, (chosen, (share, most)) in enumerate(starts):
         off = {name: rows[name].nominal for name in switching}
         for group in groups:
             differs = any(name in per_recording for name in group)
@@ -102,8 +133,8 @@ def columns_of(
                 on = {named(name, number) if name in per_recording else name: chosen[name] for name in group}
                 everywhere = {named(name, n): off[name] for name in group if name in per_recording
                               for n in range(1, recordings + 1)}  # fmt: skip
-                values = {**chosen, **off, **everywhere, **on}
-                found.append(Column(effect, values, tuple(on), alternative, one_way))
+                column = Column(effect, {**chosen, **off, **everywhere, **on}, tuple(on), alternative, one_way, most)
+                found.append(replace(column, values=column.sized(share)))
     return tuple(found)
 
 

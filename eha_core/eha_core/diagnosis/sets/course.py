@@ -59,10 +59,10 @@ def find_sets(
     progress("locating in the equations")
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
     progress("searching sets over short windows")
-    pool = over_short_windows(calibration.shorter[0], calibration.nominal.values, friction, material)
+    pool = over_short_windows(calibration.shortest[0], calibration.nominal.values, friction, material)
     best = leader(pool)
     if pool.found[best].data > NEAR_NOISE * pool.found[best].count:
-        pool = carried(pool, whole(calibration.shorter[1]), material)
+        pool = carried(pool, whole(calibration.shortest[1]), material)
         search_sets(Search(pool, columns, progress))
     progress("searching sets over long windows")
     pool = carried(pool, calibration.problem, material)
@@ -84,28 +84,33 @@ def over_short_windows(
     pool = Pool(whole(shooting), plant, material.trace)
     values = {**nominal, **friction.held.values} if friction.held else dict(nominal)
     states = fit(pool.problem, values, (), iterations=OF_STATES).states
-    pool.try_set("nominal", NOTHING, values, states, CARRIED_ON)
+    given = fit(pool.problem, values, plant, states, iterations=0)
+    calibrated = pool.try_set("nominal", NOTHING, values, states, CARRIED_ON)
     pool.measure_noise(NOTHING)
+    # nominal values that were fitted without what is missing are bent to it, and all that is seen from there with them
+    begin = pool.found[NOTHING] if calibrated.data < NEAR_NOISE * calibrated.count else given
     if not friction.known:
-        _search(pool, material.columns, material)
+        _search(pool, begin, material.columns, material)
         return pool
     others = [column for column in material.columns if not column.effect.kind]
-    _search(pool, others, material)
+    _search(pool, begin, others, material)
     if friction.held is None:
         if pool.found[leader(pool)].data > NEAR_NOISE * pool.found[leader(pool)].count:
-            _search(pool, material.columns, material)
+            _search(pool, begin, material.columns, material)
         return pool
     return _released(pool, friction, material)
 
 
-def _search(pool: Pool, columns: Sequence[Column], material: Material) -> None:
-    """Search among named effects; where they leave more than noise, among them and laws in no catalogue, from nothing
-    on: what names did wrongly must not stand in a law's way."""
-    search_sets(Search(pool, columns, material.progress, EXPANSIONS))
+def _search(pool: Pool, begin: Fit, columns: Sequence[Column], material: Material) -> None:
+    """Search among named effects from the nominal equations of `begin` on; where they leave more than noise, among them
+    and laws in no catalogue, from there again: what names did wrongly must not stand in a law's way."""
+    search = Search(pool, columns, material.progress, EXPANSIONS)
+    expand(search, NOTHING, "first expansion", begin)
+    search_sets(search)
     if pool.found[leader(pool)].data < NEAR_NOISE * pool.found[leader(pool)].count:
         return
     search = Search(pool, [*columns, *material.laws], material.progress)
-    expand(search, NOTHING, "with laws in no catalogue")
+    expand(search, NOTHING, "with laws in no catalogue", begin)
     search_sets(search)
 
 

@@ -9,10 +9,9 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import (
     EXPANSIONS_LATER,
+    FITTED,
     IDLE,
-    LEADERS,
-    MEMBERS_FIRST,
-    MOST_EFFECTS,
+    MOST_TRIED,
     NEAR_NOISE,
     OF_EXCESS,
     OF_SIZE,
@@ -22,7 +21,6 @@ from eha_core.diagnosis.criteria import (
     TRIED,
     TRIED_AT_THE_NOISE,
     WITH_THE_PLANT,
-    WORTHWHILE,
     chance_gain,
 )
 from eha_core.diagnosis.hypothesis import Hypothesis
@@ -92,31 +90,26 @@ def search_sets(search: Search) -> Hypothesis:
     return leader(search.pool)
 
 
-def expand(search: Search, base: Hypothesis, step: str) -> None:
-    """Linearise about a set, and fit the best sets that follow from it: the members alone first, then all that is
-    free."""
+def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -> None:
+    """Linearise about a set, at its best fit unless another is given, and fit the best sets that follow from it."""
     pool, lead = search.pool, leader(search.pool)
-    at = pool.found[base]
+    at = pool.found[base] if at is None else at
     search.expanded[base] = at.objective
     addable = [c for c in search.columns if c.effect.id not in base.ids and c.effect.kind not in base.kinds]
     in_time = base == lead and not base.limited
     model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)
-    begun = _begun(pool, model, _worth_a_fit(pool, base, model))
-    tried: list[tuple[float, Hypothesis, Fit]] = []
-    for hypothesis, values, states in begun:
-        result = pool.glance(step, hypothesis, values, states, MEMBERS_FIRST)
-        tried.append((cost(hypothesis, result), hypothesis, result))
+    tried = 0
+    for _, hypothesis, values, states in _begun(pool, model, _worth_a_fit(pool, base, model))[:FITTED]:
+        result = pool.try_set(step, hypothesis, values, states, WITH_THE_PLANT)
+        tried += 1
         if result.data < NEAR_NOISE * result.count:
             break  # what is larger is proposed from there, if it is needed
-    tried.sort(key=lambda item: item[0])
-    for _, hypothesis, result in tried[:LEADERS]:
-        pool.try_set(step, hypothesis, result.values, result.states, WITH_THE_PLANT)
     now = leader(pool)
     if pool.found[now].data > NEAR_NOISE * at.count and (now != lead or base == lead):
         # what a fit that stopped short leaves would be taken for more effects
         pool.go_on(step, now, TO_THE_END, 2)
     left = pool.found[now].data / at.count
-    search.say(f"{step}: {len(tried)} sets tried, best {_shown(now)}, {left:.4g} times the noise")
+    search.say(f"{step}: {tried} sets tried, best {_shown(now)}, {left:.4g} times the noise")
     pool.measure_noise(now)
 
 
@@ -127,15 +120,14 @@ def _shown(hypothesis: Hypothesis) -> str:
 def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tuple[Hypothesis, Proposal]]:
     """The proposals of a quadratic model: at the noise what is significant, else the best few of each size that
     explains noticeably more than a smaller one."""
-    at = pool.found[base]
+    at = model.at
     needed, at_noise = required(at), at.data < NEAR_NOISE * at.count
     chosen: dict[Hypothesis, tuple[int, float, Proposal]] = {}
     least = np.inf
-    for size, level in best_sets(model, MOST_EFFECTS).items():
-        excess = max(level[0].predicted - at.count, 0.0)
-        if not at_noise and excess > WORTHWHILE * least and size > base.size:
+    for size, level in best_sets(model, MOST_TRIED).items():
+        if level[0].predicted + needed * size > least:
             continue
-        least = min(least, excess)
+        least = level[0].predicted + needed * size
         more = needed * (size - base.size) - 0.5 * needed * (size <= base.size)
         of_size = 0
         for proposal in level:
@@ -157,8 +149,9 @@ def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tu
 
 def _begun(
     pool: Pool, model: QuadraticModel, proposals: Sequence[tuple[Hypothesis, Proposal]]
-) -> list[tuple[Hypothesis, dict[str, float], Array]]:
-    """Where the fits of proposals begin: the share of each predicted way that leads lowest."""
+) -> list[tuple[float, Hypothesis, dict[str, float], Array]]:
+    """The objectives, sets, values and states at which fits of proposals begin, the lowest first: of each the share of
+    the predicted way that leads lowest."""
     starts = [model.start(proposal.options, share) for _, proposal in proposals for share in SHARES]
     problem = replace(pool.problem, shooting=pool.problem.slopes)
     objectives = []
@@ -167,8 +160,9 @@ def _begun(
         rows, ends = problem.shooting.simulate_many(some)
         for lane, (_, states) in enumerate(some):
             objectives.append(objective_of(problem, (), np.zeros(0), states, rows[:, :, lane], ends[:, :, lane]))
-    best = np.argmin(np.reshape(objectives, (-1, len(SHARES))), axis=1) if starts else []
-    return [
-        (hypothesis, *starts[len(SHARES) * k + share])
-        for k, ((hypothesis, _), share) in enumerate(zip(proposals, best, strict=True))
-    ]
+    found = []
+    for k, (hypothesis, _) in enumerate(proposals):
+        shares = range(len(SHARES) * k, len(SHARES) * (k + 1))
+        best = min(shares, key=lambda place: objectives[place])
+        found.append((objectives[best], hypothesis, *starts[best]))
+    return sorted(found, key=lambda start: start[0])

@@ -1,8 +1,8 @@
 """The quadratic model of chi^2 about a fitted set: every other set of effects is a point in it.
 
 One Jacobian of the nominal parameters, the windows' states and the members' parameters, and one secant for each column
-of the catalogue. States and nominal parameters are eliminated from the Gram matrix; what is left is small, and a set
-costs microseconds.
+of the catalogue. The states are eliminated from the Gram matrix; what is left is small, and a set costs microseconds. A
+move beyond a bound is no way to explain anything, so each is kept within its bounds.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from scipy.linalg import cho_solve_banded
 
 from eha_core.diagnosis.hypothesis import Hypothesis, Member, neutral
+from eha_core.diagnosis.sets.box import within_bounds
 from eha_core.diagnosis.sets.columns import Column
 from eha_core.diagnosis.sets.intervals import best_intervals, in_interval, restricted
 from eha_core.identification.fit import Fit
@@ -28,8 +29,8 @@ RIDGE = 1e-7
 ITS_OWN = 1e-6
 """Share of a column's energy that the nominal parameters must not be able to imitate for it to be an option."""
 
-LARGEST, SMALLEST = 10.0, 0.03
-"""Factors on a guess's size within which the linear model is believed for the start of a fit."""
+SMALLEST = 0.03
+"""Factor on a guess's size with which a fit begins at least: at nothing an effect has no slope of its shape."""
 
 
 @dataclass(frozen=True)
@@ -49,64 +50,63 @@ class Option:
 
 @dataclass(frozen=True)
 class QuadraticModel:
-    """Chi^2 about a fitted set, over the coordinates of the members and the columns of what could be added.
+    """Chi^2 about a fitted set, with the windows' states eliminated: over moves of the nominal parameters, of the
+    members' parameters and of the columns of what could be added, in this order, each within its bounds.
 
     Attributes:
         options: what a set can be made of.
-        matrix: (columns, columns) the curvature, scaled to a unit diagonal, with all else free.
-        gradient: (columns,) at the empty set.
-        one_way: (columns,) 1 where the coefficient cannot be negative, -1 where it cannot be positive, 0 else.
-        empty: predicted objective of the nominal equations alone.
+        nominal: how many nominal parameters come first; they belong to every set.
+        matrix: (moves, moves) the curvature, scaled to a unit diagonal.
+        gradient: (moves,) where what could be absent is absent.
+        lower, upper: (moves,) bounds, scaled.
+        scale: (moves,) a move is its scaled value over this.
+        empty: objective of the nominal parameters as they are, without any member.
+        to_neutral: (moves,) from where the model was made to where what could be absent is absent.
+        states_move, carried: what the states do by themselves, and per move.
     """
 
     at: Fit
     hypothesis: Hypothesis
     options: tuple[Option, ...]
+    nominal: int
     matrix: Array
     gradient: Array
-    one_way: Integers
-    empty: float
+    lower: Array
+    upper: Array
     scale: Array
+    empty: float
     to_neutral: Array
-    nominal_places: Integers
-    nominal_move: Array
-    nominal_by_column: Array
     states_move: Array
     carried: Array
 
-    def coefficients(self, chosen: Sequence[Option]) -> Array:
-        """The coefficients of a set's columns, in their order (of its options), unscaled."""
-        places = [place for option in chosen for place in option.places]
-        block = self.matrix[np.ix_(places, places)]
-        return np.asarray(np.linalg.solve(block, self.gradient[places]) / self.scale[places])
+    def places_of(self, chosen: Sequence[Option]) -> Integers:
+        """The moves that a set can make."""
+        own = [place for option in chosen for place in option.places]
+        return np.array([*range(self.nominal), *own], dtype=np.int64)
+
+    def gain(self, chosen: Sequence[Option]) -> tuple[float, Array]:
+        """What a set is predicted to gain over `empty`, and its moves (of `places_of`), unscaled."""
+        places = self.places_of(chosen)
+        found = np.empty(len(places))
+        gain = within_bounds(self.matrix, self.gradient, self.lower, self.upper, places, len(places), found)
+        return gain, found / self.scale[places]
 
     def start(self, chosen: Sequence[Option], share: float = 1.0) -> tuple[dict[str, float], Array]:
         """Values and states at a `share` of the way to a set's predicted optimum; what is not in the set is out."""
         free = self.at.free
+        places, (_, found) = self.places_of(chosen), self.gain(chosen)
         moves = self.to_neutral.copy()
-        places = [place for option in chosen for place in option.places]
-        found = self.coefficients(chosen)
         moves[places] += found
         moves *= share
-        nominal = share * self.nominal_move - self.nominal_by_column @ moves
-        states = self.at.states + (share * self.states_move - self.carried @ np.concatenate([nominal, moves])).reshape(
-            self.at.states.shape
-        )
-        count = len(self.nominal_places)
-        q = self.at.q.copy()
-        q[:count] += nominal
-        q[count:] += moves[: len(q) - count]
-        longest = np.array([parameter.longest_move for parameter in free])
-        q = self.at.q + np.clip(q - self.at.q, -longest, longest)
+        states = self.at.states + (share * self.states_move - self.carried @ moves).reshape(self.at.states.shape)
         values = dict(self.at.values)
-        for parameter, at in zip(free, q, strict=True):
+        for parameter, at in zip(free, self.at.q + moves[: len(free)], strict=True):
             values[parameter.name] = parameter.value(float(at))
         for parameter in free:
             if parameter.above:
                 values[parameter.name] = values[parameter.above] * (1.0 + values[parameter.name])
-        return with_options(
-            self.hypothesis, values, chosen, dict(zip(places, (share * found).tolist(), strict=True))
-        ), states
+        factors = dict(zip(places.tolist(), (share * found).tolist(), strict=True))
+        return with_options(self.hypothesis, values, chosen, factors), states
 
 
 def with_options(
@@ -127,7 +127,7 @@ def with_options(
             continue
         for k, (place, column) in enumerate(zip(option.places, option.columns, strict=True)):
             factor = factors[place]
-            sized = column.sized(float(np.sign(factor) or 1.0) * float(np.clip(abs(factor), SMALLEST, LARGEST)))
+            sized = column.sized(float(np.sign(factor) or 1.0) * max(abs(factor), SMALLEST))
             made |= sized if k == 0 else {name: sized[name] for name in column.sizes}
     return made
 
@@ -159,6 +159,7 @@ def quadratic_model(
     free = (*nominal, *(parameter for parameter in own if parameter.name not in names))
     q = coordinates(free, at.values)
     at = replace(at, free=free, q=q)
+    columns = [column.beside(at.values) for column in columns]
     linear = linearise(problem, at.values, free, q, at.states)
     moved, shifts = changes(
         problem, (at.values, at.states), [({**at.values, **column.values}, at.states) for column in columns]
@@ -179,35 +180,46 @@ def quadratic_model(
     everything = np.concatenate([q, np.zeros(len(columns))])
     matrix, gradient = normal_equations(problem, extended, everything, at.states, linear)
     system = matrix.eliminate(1e-9)
-    size = len(extended)
+    size, count = len(extended), len(nominal)
     states = np.asarray(cho_solve_banded((system.factor, True), gradient[size:] / system.scale[size:]))
     scaled = gradient / system.scale
-    towards = (scaled[:size] - system.carried.T @ scaled[size:]) * system.scale[:size]
+    slope = (scaled[:size] - system.carried.T @ scaled[size:]) * system.scale[:size]
     curvature = system.schur * np.outer(system.scale[:size], system.scale[:size])
-    count = len(nominal)
-    first, rest = np.arange(count), np.arange(count, size)
-    block = curvature[np.ix_(first, first)]
-    solved = (
-        np.linalg.solve(block, np.column_stack([towards[first], curvature[np.ix_(first, rest)]]))
-        if count
-        else (np.zeros((0, 1 + len(rest))))
-    )
-    reduced = curvature[np.ix_(rest, rest)] - curvature[np.ix_(rest, first)] @ solved[:, 1:]
-    slope = towards[rest] - curvature[np.ix_(rest, first)] @ solved[:, 0]
-    # what the plant's own parameters can do as well is no option
-    told = np.diag(reduced) > ITS_OWN * np.diag(curvature)[rest]
-    usable &= told[len(free) - count :]
-    gained = float(scaled[size:] @ states) + float(towards[first] @ solved[:, 0])
-    options, one_way, to_neutral = _options(hypothesis, free, q, count, columns, usable)
-    constant = float(2.0 * slope @ to_neutral - to_neutral @ reduced @ to_neutral)
-    slope = slope - reduced @ to_neutral
-    scale = np.sqrt(np.maximum(np.diag(reduced), 1e-300))
+    usable &= _own_share(curvature, count)[len(free) - count :] > ITS_OWN
+    options, to_neutral = _options(hypothesis, at, count, columns, usable)
+    constant = float(2.0 * slope @ to_neutral - to_neutral @ curvature @ to_neutral)
+    lower, upper = _bounds(free, q, columns)
+    slope = slope - curvature @ to_neutral
+    scale = np.sqrt(np.maximum(np.diag(curvature), 1e-300))
     return QuadraticModel(
-        at, hypothesis, options, reduced / np.outer(scale, scale) + RIDGE * np.eye(len(rest)), slope / scale, one_way,
-        at.objective - gained - constant, scale, to_neutral, first, solved[:, 0], solved[:, 1:],
+        at, hypothesis, options, count,
+        curvature / np.outer(scale, scale) + RIDGE * np.eye(size), slope / scale,
+        (lower - to_neutral) * scale, (upper - to_neutral) * scale, scale,
+        at.objective - float(scaled[size:] @ states) - constant, to_neutral,
         states / system.scale[size:],
         system.carried * (system.scale[None, :size] / system.scale[size:, None]),
     )  # fmt: skip
+
+
+def _own_share(curvature: Array, count: int) -> Array:
+    """Of each column beyond the first `count`, the share of its energy that those cannot imitate."""
+    energy = np.diag(curvature)[count:]
+    if not count:
+        return np.ones(len(energy))
+    border = curvature[:count, count:]
+    imitated = np.sum(border * np.linalg.solve(curvature[:count, :count], border), axis=0)
+    return np.asarray(1.0 - imitated / np.where(energy > 0.0, energy, 1.0))
+
+
+def _bounds(free: Sequence[FreeParameter], q: Array, columns: Sequence[Column]) -> tuple[Array, Array]:
+    """How far each parameter may move, and the factors that each column may have."""
+    longest = np.array([parameter.longest_move for parameter in free])
+    lowest = np.array([parameter.coordinate(max(parameter.lower, -1e300)) for parameter in free])
+    highest = np.array([parameter.coordinate(min(parameter.upper, 1e300)) for parameter in free])
+    factors = np.array([column.factors() for column in columns]).reshape(-1, 2)
+    lower = np.concatenate([np.clip(lowest - q, -longest, 0.0), factors[:, 0]])
+    upper = np.concatenate([np.clip(highest - q, 0.0, longest), factors[:, 1]])
+    return lower, upper
 
 
 def _with_intervals(
@@ -228,37 +240,31 @@ def _with_intervals(
 
 
 def _options(
-    hypothesis: Hypothesis,
-    free: Sequence[FreeParameter],
-    q: Array,
-    count: int,
-    columns: Sequence[Column],
-    usable: Array,
-) -> tuple[tuple[Option, ...], Integers, Array]:
-    """What a set can be made of, the signs that coefficients may have, and the members' moves to their neutral
-    values."""
-    size = len(free) - count + len(columns)
-    one_way, to_neutral = np.zeros(size, dtype=np.int64), np.zeros(size)
+    hypothesis: Hypothesis, at: Fit, count: int, columns: Sequence[Column], usable: Array
+) -> tuple[tuple[Option, ...], Array]:
+    """What a set can be made of, and the members' moves to their neutral values."""
+    free, q = at.free, at.q
+    to_neutral = np.zeros(len(free) + len(columns))
     options = []
     for member in hypothesis.members:
         rows = dict(zip(member.effect.parameter_names(), member.effect.parameters, strict=True))
         instants = set(member.effect.acting_names())
         places = []
-        for place, parameter in enumerate(free[count:]):
+        for place, parameter in enumerate(free[count:], start=count):
             name = base_name(parameter.name)
             if name not in rows and name not in instants:
                 continue
             places.append(place)
             if name in rows and rows[name].switches and not parameter.above and not parameter.logarithmic:
-                to_neutral[place] = parameter.coordinate(rows[name].nominal) - q[count + place]
+                nothing = at.values[rows[name].replaces] if rows[name].replaces else rows[name].nominal
+                to_neutral[place] = parameter.coordinate(nothing) - q[place]
         options.append(Option(member, tuple(places)))
     groups: dict[tuple[str, int, bool], list[int]] = {}
     for k, column in enumerate(columns):
         if usable[k]:
             groups.setdefault((column.effect.id, column.alternative, column.limited), []).append(k)
-            one_way[len(free) - count + k] = int(column.one_way)
     for places in groups.values():
         chosen = tuple(columns[k] for k in places)
         member = Member(chosen[0].effect.id, chosen[0].limited, chosen[0].variable, effect=chosen[0].effect)
-        options.append(Option(member, tuple(len(free) - count + k for k in places), chosen))
-    return tuple(options), one_way, to_neutral
+        options.append(Option(member, tuple(len(free) + k for k in places), chosen))
+    return tuple(options), to_neutral
