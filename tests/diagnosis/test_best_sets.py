@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 from made import LAWS, explanation
+from scipy.optimize import lsq_linear
 
 from eha_core.diagnosis.hypothesis import NOTHING, Member
 from eha_core.diagnosis.sets.best_sets import best_sets, objective_without, one_more
@@ -29,24 +30,25 @@ def model_of(options, seed, one_way=(), correlated=1.0):
     factor = generator.standard_normal((3 * size, size)) + correlated * generator.standard_normal((3 * size, 1))
     factor /= np.linalg.norm(factor, axis=0)
     gradient = factor.T @ (20.0 * generator.standard_normal(3 * size))
-    signs = np.zeros(size, dtype=np.int64)
-    signs[list(one_way)] = 1
-    nothing, none = np.zeros(0), np.zeros((0, size))
+    lower = np.full(size, -1e9)
+    lower[list(one_way)] = 0.0
     return QuadraticModel(
-        explanation({}), NOTHING, tuple(options), factor.T @ factor, gradient, signs, EMPTY, np.ones(size),
-        np.zeros(size), np.zeros(0, dtype=np.int64), nothing, none, nothing, none,
+        explanation({}), NOTHING, tuple(options), 0, factor.T @ factor, gradient, lower, np.full(size, 1e9),
+        np.ones(size), EMPTY, np.zeros(size), np.zeros(0), np.zeros((0, size)),
     )  # fmt: skip
 
 
 def predicted(model, chosen):
-    """The least objective of a set by elimination of its own, None where a coefficient has the wrong sign."""
+    """The least objective of a set by a solver of its own, None where an effect comes to nothing at its bound."""
     places = [place for one in chosen for place in one.places]
     if not places:
         return model.empty
-    found = np.linalg.lstsq(model.matrix[np.ix_(places, places)], model.gradient[places], rcond=None)[0]
-    if np.any(model.one_way[places] * found < 0.0):
+    root = np.linalg.cholesky(model.matrix[np.ix_(places, places)])
+    right = np.linalg.solve(root, model.gradient[places])
+    found = lsq_linear(root.T, right, (model.lower[places], model.upper[places]), tol=1e-14)
+    if np.any(np.isclose(found.x, model.lower[places], atol=1e-7)):
         return None
-    return model.empty - float(model.gradient[places] @ found)
+    return model.empty - float(right @ right - 2.0 * found.cost)
 
 
 def enumerated(model, size):
@@ -91,14 +93,14 @@ def test_a_coefficient_that_may_not_be_negative_is_not():
     for seed in range(12):
         options = [option(name, [k]) for k, name in enumerate(NAMED[:7])]
         model = model_of(options, seed, one_way=range(7), correlated=1.5)
-        free = replace(model, one_way=np.zeros(7, dtype=np.int64))
+        free = replace(model, lower=np.full(7, -1e9))
         for size, level in best_sets(model, 3).items():
             whole = enumerated(model, size)
             refused += len(enumerated(free, size)) - len(whole)
             for proposal in level:
                 places = frozenset(one.places for one in proposal.options)
                 assert proposal.predicted == pytest.approx(whole[places] if size else EMPTY)
-                assert np.all(model.coefficients(proposal.options) >= 0.0)
+                assert np.all(model.gain(proposal.options)[1] >= 0.0)
             if size == 1:
                 assert level[0].predicted == pytest.approx(min(whole.values()))
     assert refused > 100

@@ -8,6 +8,7 @@ from made import LAWS, recorded
 
 from eha_core.diagnosis.characteristic_scales import QUANTITIES, Scales
 from eha_core.diagnosis.effect_parameters import MOST_ABOVE
+from eha_core.diagnosis.sets import columns
 from eha_core.diagnosis.sets.columns import SITES_OF_DRIVE, applicable_effects, columns_of
 from eha_core.identification.observation import observe
 
@@ -23,12 +24,44 @@ def sizes_of(effect):
 
 @pytest.mark.parametrize("name", ["pressure_sensor_bias", "pressure_sensor_scale", "pressure_sensor_lag"])
 def test_each_chamber_has_a_column_of_its_own_and_both_together_are_one_set(name):
-    a, b = columns_of(LAWS[name], SCALES)
-    assert a.alternative == b.alternative
-    (only_a,), (only_b,) = a.sizes, b.sizes
-    assert only_a.endswith("_a") and only_b.endswith("_b")
-    assert a.values[only_a] != 0.0 and a.values[only_b] == 0.0
-    assert b.values[only_b] != 0.0 and b.values[only_a] == 0.0
+    found = columns_of(LAWS[name], SCALES)
+    assert len(found) == 2 * len(columns.SIZES)
+    for a, b in zip(found[::2], found[1::2], strict=True):
+        assert a.alternative == b.alternative
+        (only_a,), (only_b,) = a.sizes, b.sizes
+        assert only_a.endswith("_a") and only_b.endswith("_b")
+        assert a.values[only_a] != 0.0 and a.values[only_b] == 0.0
+        assert b.values[only_b] != 0.0 and b.values[only_a] == 0.0
+
+
+def test_an_effect_is_tried_at_several_sizes_and_at_none_twice():
+    name = "valve_null_offset.offset"
+    first, small = columns_of(LAWS["valve_null_offset"], SCALES)
+    assert small.values[name] == pytest.approx(0.1 * first.values[name])
+    assert small.factors()[1] * small.values[name] < first.factors()[1] * first.values[name]
+    starts = next(row.starts for row in LAWS["hardening_spring"].parameters if row.switches)
+    sizes = [column.values["hardening_spring.coefficient"] for column in columns_of(LAWS["hardening_spring"], SCALES)]
+    assert len(sizes) < len(columns.SIZES) * len(starts)
+    assert len(set(sizes)) == len(sizes)
+
+
+def test_what_takes_the_place_of_a_parameter_is_counted_from_it():
+    name = "leakage_onset.internal_leakage"
+    column = columns_of(LAWS["leakage_onset"], SCALES)[0]
+    beside = column.beside({"internal_leakage": 3e-12})
+    assert beside.values[name] == pytest.approx(3e-12 + column.values[name])
+    assert beside.sized(0.0)[name] == 3e-12
+    assert beside.sized(2.0)[name] == pytest.approx(3e-12 + 2.0 * column.values[name])
+    assert beside.sized(-1e9)[name] == 0.0
+
+
+def test_factors_end_where_the_parameter_may_not_go_on():
+    row = next(row for row in LAWS["valve_deadband"].parameters if row.switches)
+    for column in columns_of(LAWS["valve_deadband"], SCALES):
+        least, most = column.factors()
+        assert least == 0.0
+        assert most <= column.most
+        assert column.sized(most)[f"valve_deadband.{row.name}"] <= row.upper
 
 
 def test_forms_of_one_law_with_several_sizes_scale_them_together():
@@ -38,9 +71,9 @@ def test_forms_of_one_law_with_several_sizes_scale_them_together():
 
 def test_what_differs_between_recordings_has_a_column_in_each_and_is_off_in_the_others():
     name = "constant_load.force"
-    alone, *others = columns_of(LAWS["constant_load"], SCALES, (), 3)
-    assert alone.sizes == (name,) and not others
-    each = columns_of(LAWS["constant_load"], SCALES, (name,), 3)
+    alone, small = columns_of(LAWS["constant_load"], SCALES, (), 3)
+    assert alone.sizes == small.sizes == (name,)
+    each = columns_of(LAWS["constant_load"], SCALES, (name,), 3)[:3]
     names = (name, f"{name}@2", f"{name}@3")
     assert [column.sizes for column in each] == [(one,) for one in names]
     assert len({column.alternative for column in each}) == 1
@@ -50,7 +83,7 @@ def test_what_differs_between_recordings_has_a_column_in_each_and_is_off_in_the_
 
 def test_in_two_recordings_two_chambers_are_four_columns():
     marked = [f"pressure_sensor_bias.bias_{chamber}" for chamber in "ab"]
-    each = columns_of(LAWS["pressure_sensor_bias"], SCALES, marked, 2)
+    each = columns_of(LAWS["pressure_sensor_bias"], SCALES, marked, 2)[:4]
     assert {column.sizes for column in each} == {(name + end,) for name in marked for end in ("", "@2")}
     assert len(each) == 4
     for column in each:

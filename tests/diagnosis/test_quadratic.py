@@ -38,9 +38,8 @@ def model(rig):
 
 
 def predicted(model, chosen):
-    """The objective that the model predicts of a set, by hand."""
-    places = [place for option in chosen for place in option.places]
-    return model.empty - float(model.coefficients(chosen) * model.scale[places] @ model.gradient[places])
+    """The objective that the model predicts of a set."""
+    return model.empty - model.gain(chosen)[0]
 
 
 def best_of(model, names):
@@ -73,7 +72,7 @@ def test_what_is_predicted_of_a_set_is_what_a_fit_reaches(rig, model, names):
 
 
 def test_of_no_set_the_nominal_fit_is_predicted(rig, model):
-    assert model.empty == pytest.approx(rig.pool.found[NOTHING].objective, rel=5e-3)
+    assert predicted(model, ()) == pytest.approx(rig.pool.found[NOTHING].objective, rel=5e-3)
 
 
 def test_a_fit_begins_near_its_optimum_and_on_the_way_as_a_parabola_has_it(rig, model):
@@ -120,3 +119,19 @@ def test_a_guess_that_changes_nothing_is_no_option(model):
     stops = [option.columns[0].values for option in model.options if option.member.id == "end_stop"]
     assert stops
     assert all(min(values["end_stop.upper"], -values["end_stop.lower"]) < 0.5 for values in stops)
+
+
+def test_no_parameter_is_predicted_beyond_its_bounds(rig, model):
+    """A return pressure at nothing cannot go lower, whatever it would gain there."""
+    rows = {parameter.name: parameter for parameter in model.at.free}
+    told = 0
+    for option in model.options:
+        values, _ = model.start((option,))
+        for name, parameter in rows.items():
+            assert parameter.lower <= values[name] <= parameter.upper
+        _, moves = model.gain((option,))
+        for place, parameter in enumerate(model.at.free):
+            reached = model.at.q[place] + moves[place]
+            assert parameter.coordinate(parameter.lower) - 1e-6 <= reached if np.isfinite(parameter.lower) else True
+            told += parameter.lower == values[parameter.name]
+    assert told > 0

@@ -106,35 +106,47 @@ def _exclusive(options: tuple[Option, ...]) -> Flags:
 
 
 def _with_each(model: QuadraticModel, table: Integers, chosen: tuple[int, ...], allowed: Flags) -> Array:
-    """What a set gains with each allowed option more; -1 where a new coefficient ends at nothing."""
-    options = [model.options[k] for k in chosen]
+    """What a set gains with each allowed option more; -1 where one of its options ends at nothing."""
+    given = model.places_of([model.options[k] for k in chosen])
+    absent = np.array([k for k in chosen if not model.options[k].present], dtype=np.int64)
     return _extended(
-        model.matrix, model.gradient, model.lower, model.upper, table, model.places_of(options),
-        allowed,
+        model.matrix, model.gradient, model.lower, model.upper, table, given, absent, allowed
     )  # fmt: skip
 
 
 @compiled
 def _extended(
-    matrix: Array, gradient: Array, lower: Array, upper: Array, table: Integers, given: Integers, allowed: Flags
-) -> Array:
+    matrix: Array, gradient: Array, lower: Array, upper: Array, table: Integers, given: Integers, absent: Integers,
+    allowed: Flags,
+) -> Array:  # fmt: skip
     width, count = table.shape[1], len(given)
     places = np.empty(count + width, np.int64)
     places[:count] = given
-    found = np.empty(count + width)
+    found, moves = np.empty(count + width), np.zeros(len(gradient))
     gains = np.full(len(table), -1.0)
     for option in range(len(table)):
         if not allowed[option]:
             continue
         size = count
-        for w in range(width):
-            if table[option, w] >= 0:
-                places[size] = table[option, w]
+        for place in table[option]:
+            if place >= 0:
+                places[size] = place
                 size += 1
         gain = within_bounds(matrix, gradient, lower, upper, places, size, found)
-        acts = False
-        for k in range(count, size):
-            acts |= found[k] != 0.0
-        if acts:
+        moves[places[:size]] = found[:size]
+        sound = _acts(moves, table[option])
+        for other in absent:
+            sound &= _acts(moves, table[other])
+        if sound:
             gains[option] = gain
     return gains
+
+
+@compiled
+def _acts(moves: Array, places: Integers) -> bool:
+    """Whether one of an option's moves is not nothing."""
+    acts = False
+    for place in places:
+        if place >= 0:
+            acts |= moves[place] != 0.0
+    return acts

@@ -113,7 +113,8 @@ class Column:
 def columns_of(
     effect: Effect, scales: Scales, per_recording: Sequence[str] = (), recordings: int = 1
 ) -> tuple[Column, ...]:
-    """Every column of an effect: a combination of starting shapes each, and in it a column for each independent size.
+    """Every column of an effect: a combination of starting shapes at each of SIZES, unless the starts that the effect
+    declares hold it already, and in it a column for each independent size.
 
     Sizes are independent where the effect may have either of them alone, as the biases of two sensors, or where they
     differ between recordings.
@@ -124,8 +125,12 @@ def columns_of(
     groups = [[name] for name in switching] if apart else [switching]
     one_way = not all(rows[name].lower < rows[name].nominal for name in switching)
     found: list[Column] = []
-    starts = product(_starts(effect, rows, scales, one_way), SIZES.items())
-    for alternative, (chosen, (share, most)) in enumerate(starts):
+    starts = list(_starts(effect, rows, scales, one_way))
+    shares = [*product(SIZES.items(), starts)]
+    for alternative, ((share, most), chosen) in enumerate(shares):
+        sized = Column(effect, chosen, tuple(switching), alternative, one_way, most).sized(share)
+        if share < 1.0 and any(np.allclose(list(sized.values()), list(other.values()), atol=0.0) for other in starts):
+            continue
         off = {name: rows[name].nominal for name in switching}
         for group in groups:
             differs = any(name in per_recording for name in group)
