@@ -1,8 +1,16 @@
 """The calibration simulates at a step at which its own error does not show."""
 
+import pytest
 from made import recorded
 
-from eha_core.diagnosis.calibrate import UNNOTICED, calibrate, calibrate_finely_enough, step_error
+from eha_core.diagnosis.calibrate import (
+    UNNOTICED,
+    at_a_finer_step,
+    calibrate,
+    calibrate_finely_enough,
+    step_error,
+    step_needed,
+)
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
@@ -21,7 +29,11 @@ def test_a_violent_recording_is_calibrated_at_a_shorter_one():
     coarse = calibrate([observation], NominalModel(nominal_values()), LONGEST)
     assert calibration.shooting.step_size < LONGEST
     chosen = calibration.shooting.step_size
-    assert step_error([observation], coarse, LONGEST) > 10.0 * step_error([observation], calibration, chosen)
+    errors = [step_error([observation], at.shooting, at.fitted, at.shooting.step_size) for at in (coarse, calibration)]
+    assert errors[0] > 10.0 * errors[1]
+    assert step_needed([observation], coarse.shooting, coarse.fitted) == chosen
+    finer = at_a_finer_step([observation], coarse, chosen)
+    assert finer.fitted.data == pytest.approx(calibration.fitted.data, rel=2e-3)
     # the shorter step leaves noise alone; the longer one leaves its own error, whatever the parameters do
     assert calibration.fitted.data < 1.03 * calibration.fitted.count
     assert coarse.fitted.data - calibration.fitted.data > UNNOTICED

@@ -3,8 +3,8 @@ physics."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,7 +49,10 @@ class Calibration:
 
 
 def calibrate(
-    observations: Sequence[Observation], model: NominalModel, step_size: float, begun: Fit | None = None
+    observations: Sequence[Observation],
+    model: NominalModel,
+    step_size: float = STEPS[0],
+    begun: Fit | None = None,
 ) -> Calibration:
     """Fit the nominal equations; correct each channel's noise by what the residual's roughness shows; fit again.
 
@@ -80,25 +83,29 @@ def calibrate(
 def calibrate_finely_enough(observations: Sequence[Observation], model: NominalModel) -> Calibration:
     """Calibrate at the longest of STEPS that is short enough for the model that the first of them leads to."""
     calibration = calibrate(observations, model, STEPS[0])
-    fitted = calibration.fitted
-    noticed = max(UNNOTICED, WORTH * (fitted.objective - fitted.count))
+    step_size = step_needed(observations, calibration.shooting, calibration.fitted)
+    if step_size == STEPS[0]:
+        return calibration
+    return calibrate(observations, model, step_size, calibration.fitted)
+
+
+def step_needed(observations: Sequence[Observation], shooting: Shooting, model: Fit) -> float:
+    """The longest of STEPS [s] at which a model's response is its own, with the windows and the noise of `shooting`."""
+    noticed = max(UNNOTICED, WORTH * (model.objective - model.count))
     for step_size in STEPS[:-1]:
-        if step_error(observations, calibration, step_size) < noticed:
-            break
-    else:
-        step_size = STEPS[-1]
-    return calibration if step_size == STEPS[0] else calibrate(observations, model, step_size, fitted)
+        if step_error(observations, shooting, model, step_size) < noticed:
+            return step_size
+    return STEPS[-1]
 
 
-def step_error(observations: Sequence[Observation], calibration: Calibration, step_size: float) -> float:
-    """Chi^2 between the calibrated plant's response at a step and at half of it, at the samples that both have."""
-    fitted, known = calibration.fitted, calibration.shooting
-    noise = [sampling.noise for sampling in known.samplings]
+def step_error(observations: Sequence[Observation], shooting: Shooting, model: Fit, step_size: float) -> float:
+    """Chi^2 between a model's response at a step and at half of it, at the samples that both have."""
+    noise = [sampling.noise for sampling in shooting.samplings]
     coarse, fine = (
-        with_noise(cut_together(observations, fitted.values, size, per_recording=known.per_recording), noise)
+        with_noise(cut_together(observations, model.values, size, per_recording=shooting.per_recording), noise)
         for size in (step_size, 0.5 * step_size)
     )
-    responses = [shooting.sample(shooting.simulate(fitted.values, fitted.states)[0]) for shooting in (coarse, fine)]
+    responses = [cut.sample(cut.simulate(model.values, model.states)[0]) for cut in (coarse, fine)]
     total = 0.0
     for sampling, other, first, second in zip(coarse.samplings, fine.samplings, *responses, strict=True):
         stamps, others = np.round(1e9 * coarse.times(sampling)), np.round(1e9 * fine.times(other))
@@ -107,11 +114,24 @@ def step_error(observations: Sequence[Observation], calibration: Calibration, st
     return total
 
 
+def at_a_finer_step(observations: Sequence[Observation], calibration: Calibration, step_size: float) -> Calibration:
+    """A calibration gone on with at another step, in the noise that it has."""
+    before, given, fitted = calibration.shooting, calibration.nominal, calibration.fitted
+    cut = cut_together(observations, given.values, step_size, per_recording=before.per_recording)
+    shooting = with_noise(cut, [sampling.noise for sampling in before.samplings])
+    problem = whole(shooting)
+    again = fit(problem, fitted.values, fitted.free, fitted.states, iterations=8)
+    nominal = fit(problem, given.values, (), again.states, iterations=5)
+    return replace(calibration, shooting=shooting, problem=problem, nominal=nominal, fitted=again)
+
+
 def calibrate_but_for_the_ends(
-    observations: Sequence[Observation], model: NominalModel
+    observations: Sequence[Observation],
+    model: NominalModel,
+    calibrated: Callable[[Sequence[Observation], NominalModel], Calibration] = calibrate_finely_enough,
 ) -> tuple[tuple[Observation, ...], Calibration]:
     """Calibrate, and once more without a recording's last window where only that departs from the model."""
-    calibration = calibrate_finely_enough(observations, model)
+    calibration = calibrated(observations, model)
     rest = tuple(
         _but_for_its_end(observation, calibration, number) for number, observation in enumerate(observations, 1)
     )

@@ -54,7 +54,6 @@ NEXT_TO_NOTHING = 0.15
 of: no recording tells it from none (assumed; weak effects of the exam have as much of their typical size)."""
 
 
-
 WORTH_ADDING = 0.1
 """Share of what is left over that an effect must explain to be added, or an exchange: the first of several does, and it
 ends a search that only bends what is there (assumed)."""
@@ -94,7 +93,6 @@ TIE = 10.0
 """Rivals within this of the best score are not told apart."""
 
 
-
 ADEQUATE = 1.05
 DEAR = 0.03
 """Where even the best model leaves more than ADEQUATE times the noise, its residual is no noise but more physics, and
@@ -128,7 +126,6 @@ whatever curve has knots enough."""
 UNKNOWN_MARGIN = 50.0
 """A recovered curve must beat the best of the catalogue by this, its many knots paid for, before the catalogue is
 refused."""
-
 
 
 LEFT_OVER = 0.05
@@ -194,6 +191,8 @@ def gain_to_go_on(samples: int, times_noise: float, left: float) -> float:
 def parameter_cost(count: int, left_over: float) -> float:
     """What a hypothesis pays for each of its parameters, where the best model leaves `left_over` chi^2 a sample."""
     return log(count) + DEAR * count * max(0.0, 1.0 - ADEQUATE / left_over)
+
+
 IDENTIFIED = 2.0
 """Standard deviations by which a value of a named effect must differ from what leaves the effect out, for the result to
 be complete: the 95 % interval excludes that nothing is there."""

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
 from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.attribution import attribute
-from eha_core.diagnosis.calibrate import Calibration, calibrate_but_for_the_ends
+from eha_core.diagnosis.calibrate import (
+    Calibration,
+    calibrate,
+    calibrate_but_for_the_ends,
+    calibrate_finely_enough,
+)
 from eha_core.diagnosis.characteristic_scales import Scales, characteristic_scales
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, NEAR_NOISE, OVER, chance_gain
@@ -138,7 +143,10 @@ def _freed(calibration: Calibration, at: Fit, bounds: frozenset[str], give_up_ab
 
 
 def _calibrated(
-    recordings: Sequence[Recording], model: NominalModel, progress: Progress
+    recordings: Sequence[Recording],
+    model: NominalModel,
+    progress: Progress,
+    calibrated: Callable[[Sequence[Observation], NominalModel], Calibration] = calibrate_finely_enough,
 ) -> tuple[NominalModel, tuple[Observation, ...], Calibration]:
     """The recordings read and aligned, and the nominal equations calibrated; the model with a stroke that suffices."""
     progress("reading and aligning")
@@ -147,7 +155,7 @@ def _calibrated(
     for number, observation in enumerate(seen):
         seen[number], model = with_sufficient_stroke(observation, model)
     progress("calibrating the nominal equations")
-    observations, calibration = calibrate_but_for_the_ends(seen, model)
+    observations, calibration = calibrate_but_for_the_ends(seen, model, calibrated)
     return model, observations, calibration
 
 
@@ -171,7 +179,7 @@ def _with_sets(singles: _Singles, progress: Progress) -> Evidence:
 
 def _over_whole_sets(recordings: Sequence[Recording], model: NominalModel, progress: Progress) -> Evidence:
     """The same stages with the search over whole sets."""
-    model, observations, calibration = _calibrated(recordings, model, progress)
+    model, observations, calibration = _calibrated(recordings, model, progress, calibrate)
     shooting, fitted = calibration.shooting, calibration.fitted
     scales = characteristic_scales(observations, shooting, fitted)
     lead = telling_most(shooting, fitted)

@@ -28,6 +28,7 @@ REFITTED = 8
 FULLY_FITTED = 2
 """How many of the curves with the largest predicted gain are fitted in full."""
 
+
 @dataclass(frozen=True)
 class Recovery:
     """The best curve: the effect that carries it, what it is over, the hypothesis (with the named effects beside it),

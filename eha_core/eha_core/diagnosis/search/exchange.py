@@ -62,9 +62,7 @@ def rivals_for(search: Search, best: Candidate, member: Member) -> list[Proposal
     ]
     chosen, others = rivals[:FOR_ONE_PLACE], rivals[FOR_ONE_PLACE:]
     if search.short:
-        after_one = {
-            candidate.hypothesis: candidate.fit.objective for candidate in search.try_proposals(others, 1)
-        }
+        after_one = {candidate.hypothesis: candidate.fit.objective for candidate in search.try_proposals(others, 1)}
         chosen += sorted(others, key=lambda proposal: after_one[proposal.hypothesis])[:AHEAD_AFTER_ONE]
     return chosen
 

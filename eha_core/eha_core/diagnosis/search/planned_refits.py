@@ -82,4 +82,3 @@ def refit_with(problem: Problem, planned: PlannedRefit, best: float) -> Fit:
     values = {**base.values, **scaled(score_test)}
     free = with_effects(base.free, [effect], values)
     return fit(problem, values, free, base.states, iterations=25, give_up_above=best + OUT_OF_REACH)
-

@@ -66,9 +66,7 @@ def _each_form(
     return reached
 
 
-def _over_short(
-    search: Search, values: Mapping[str, float], free: tuple[FreeParameter, ...], effect: Effect
-) -> Fit:
+def _over_short(search: Search, values: Mapping[str, float], free: tuple[FreeParameter, ...], effect: Effect) -> Fit:
     own = first_guess(effect, search.scales)
     return over_the_shortest(search.shorter, {**values, **own}, with_effects(free, [effect], own))
 

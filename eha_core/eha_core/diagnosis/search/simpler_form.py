@@ -42,9 +42,7 @@ def from_a_simpler_form(search: Search, best: Candidate) -> Candidate:
     return for_its_cost(search, list(search))
 
 
-def try_forms(
-    search: Search, best: Candidate, proposals: Iterable[Proposal], behind: float = CLOSE
-) -> list[Candidate]:
+def try_forms(search: Search, best: Candidate, proposals: Iterable[Proposal], behind: float = CLOSE) -> list[Candidate]:
     """The proposals fitted, each given up where it must stay further behind the best set."""
     return search.try_proposals(list(proposals), ITERATIONS, give_up_above=best.fit.objective + behind)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from eha_core.diagnosis.calibrate import Calibration
+from eha_core.diagnosis.calibrate import Calibration, at_a_finer_step, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
@@ -68,6 +68,12 @@ def find_sets(
     pool = carried(pool, calibration.problem, material)
     pool.keep(NOTHING, in_noise_of(pool.problem, shooting, fitted))
     search_sets(Search(pool, columns, progress))
+    step_size = step_needed(observations, pool.problem.shooting, pool.found[leader(pool)])
+    if step_size != shooting.step_size:
+        progress(f"the best set at a step of {1e3 * step_size:g} ms")
+        calibration = at_a_finer_step(observations, calibration, step_size)
+        pool = carried(pool, calibration.problem, material)
+        pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
     return finished(pool, calibration, material)
 
 

@@ -146,14 +146,14 @@ def rivals(
     addable = [c for c in addable if left or not c.variable]
     model = quadratic_model(pool.posed(best), at, best, pool.plant, addable)
     within = COMPARED_WITHIN * max(1.0, at.data / at.count)
-    near: list[tuple[float, Hypothesis, Proposal]] = []
+    near: dict[Hypothesis, Proposal] = {}
     for size, level in best_sets(model, best.size + 1).items():
         for proposal in level if abs(size - best.size) <= 1 else ():
             hypothesis = Hypothesis(tuple(sorted(option.member for option in proposal.options)))
             adds_only = set(best.members) <= set(hypothesis.members)
             if hypothesis != best and not adds_only and proposal.predicted < at.objective + within:
-                near.append((proposal.predicted, hypothesis, proposal))
-    for _, hypothesis, proposal in sorted(near, key=lambda item: item[0])[:RIVALS]:
+                near.setdefault(hypothesis, proposal)
+    for hypothesis, proposal in sorted(near.items(), key=lambda item: item[1].predicted)[:RIVALS]:
         values, states = model.start(proposal.options)
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
     for hypothesis, values in (*_other_forms(pool, best, columns), *_named_instead(pool, best, columns)):
