@@ -28,6 +28,10 @@ UNNOTICED = 20.0
 """Chi^2 by which the response may change as its step is halved: less than any effect must gain to be named. Of a model
 that is far off, the share WORTH of what it leaves may be more."""
 
+SAMPLES_A_WINDOW = 45.0
+"""Samples of all channels that the shortest window holds: eleven for each state that is free at its start, or these
+explain whatever is there (assumed)."""
+
 NOWHERE_ELSE = 0.8
 AT_ALL = 50.0
 """Where this share of what the nominal equations leave unexplained, and so much chi^2, sits in the last window, that is
@@ -73,9 +77,10 @@ def calibrate(
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
+    rate = min(sum(len(channel.values) for channel in seen.measured) / seen.duration for seen in observations)
     shorter, shortest = (
         tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in lengths)
-        for lengths in (SHORT, VERY_SHORT)
+        for lengths in (SHORT, [max(length, SAMPLES_A_WINDOW / rate) for length in VERY_SHORT])
     )
     return Calibration(shooting, problem, at_nominal_values, fitted, shorter, shortest)
 

@@ -60,12 +60,14 @@ def find_sets(
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
     progress("searching sets over short windows")
     pool = over_short_windows(calibration.shortest[0], calibration.nominal.values, friction, material)
-    best = leader(pool)
-    if pool.found[best].data > NEAR_NOISE * pool.found[best].count:
+    longer = carried(pool, calibration.problem, material)
+    if not at_the_noise(longer):
+        progress("searching sets over longer windows")
         pool = carried(pool, whole(calibration.shortest[1]), material)
-        search_sets(Search(pool, columns, progress))
+        search_sets(Search(pool, columns, progress, EXPANSIONS))
+        longer = carried(pool, calibration.problem, material)
+    pool = longer
     progress("searching sets over long windows")
-    pool = carried(pool, calibration.problem, material)
     pool.keep(NOTHING, in_noise_of(pool.problem, shooting, fitted))
     search_sets(Search(pool, columns, progress))
     step_size = step_needed(observations, pool.problem.shooting, pool.found[leader(pool)])
@@ -75,6 +77,12 @@ def find_sets(
         pool = carried(pool, calibration.problem, material)
         pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
     return finished(pool, calibration, material)
+
+
+def at_the_noise(pool: Pool) -> bool:
+    """Whether the best set leaves no more than noise."""
+    at = pool.found[leader(pool)]
+    return at.data < NEAR_NOISE * at.count
 
 
 def _plant(fitted: Fit) -> tuple[FreeParameter, ...]:
@@ -101,7 +109,7 @@ def over_short_windows(
     others = [column for column in material.columns if not column.effect.kind]
     _search(pool, begin, others, material)
     if friction.held is None:
-        if pool.found[leader(pool)].data > NEAR_NOISE * pool.found[leader(pool)].count:
+        if not at_the_noise(pool):
             _search(pool, begin, material.columns, material)
         return pool
     return _released(pool, friction, material)
@@ -113,7 +121,7 @@ def _search(pool: Pool, begin: Fit, columns: Sequence[Column], material: Materia
     search = Search(pool, columns, material.progress, EXPANSIONS)
     expand(search, NOTHING, "first expansion", begin)
     search_sets(search)
-    if pool.found[leader(pool)].data < NEAR_NOISE * pool.found[leader(pool)].count:
+    if at_the_noise(pool):
         return
     search = Search(pool, [*columns, *material.laws], material.progress)
     expand(search, NOTHING, "with laws in no catalogue", begin)
