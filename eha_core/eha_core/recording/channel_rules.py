@@ -99,10 +99,10 @@ def entry_text(rule: ChannelRule | None) -> str:
         if value is not None:
             parts.append(f"{name}: {quoted(value)}")
     if rule.points:
-        pairs = ", ".join(f"[{raw:g}, {'null' if value is None else f'{value:g}'}]" for raw, value in rule.points)
+        pairs = ", ".join(f"[{raw:.12g}, {'null' if value is None else f'{value:.12g}'}]" for raw, value in rule.points)
         parts.append(f"points: [{pairs}]")
     if rule.rate is not None:
-        parts.append(f"rate: {f'{rule.rate:g}' if isfinite(rule.rate) else 'null'}")
+        parts.append(f"rate: {f'{rule.rate:.12g}' if isfinite(rule.rate) else 'null'}")
     if rule.unit is not None:
         parts.append(f"unit: {quoted(rule.unit) if not rule.unit.isalpha() else rule.unit}")
     elif rule.scale != 1.0:
