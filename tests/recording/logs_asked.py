@@ -2,12 +2,30 @@
 
 from __future__ import annotations
 
+import datetime as dt
 from typing import Any
 
 import numpy as np
 from example_run import COUNT, RUN
 from numpy.typing import NDArray
-from peoples_logs import BAR, GAUGE, MILLIMETRES, PA, PB, REST, TIMES, Log, U, X, cells, json_lines, matrix, text, timed
+from peoples_logs import (
+    BAR,
+    GAUGE,
+    MILLIMETRES,
+    PA,
+    PB,
+    REST,
+    TIMES,
+    Log,
+    U,
+    X,
+    cells,
+    json_lines,
+    matrix,
+    stamped,
+    text,
+    timed,
+)  # fmt: skip
 
 PERCENT = {"points": [[0, 0], [100, 10]], "unit": "V"}
 RATE = {"rate": 1000}
@@ -92,6 +110,23 @@ ASKED: dict[str, Log] = {
         "a.csv",
         timed("Time", [f"21:04:52.{2 * (k // 2):03d}" for k in range(COUNT)]),
         {"time": {"column": "Time", "rate": 1000}},
+    ),
+    "dates_over_midnight_day_or_month_first": Log(
+        "a.csv",
+        timed("Time", stamped("%d/%m/%Y %H:%M:%S.%L", dt.datetime(2026, 5, 4, 23, 59, 59, 800_000))),
+        {"time": {"column": "Time", "day_first": True}},
+    ),
+    "dates_of_the_us_over_midnight_beside_clocks": Log(
+        "a.csv",
+        text(
+            ["Date", "Time", *REST],
+            [
+                stamped("%m/%d/%Y", dt.datetime(2026, 4, 5, 23, 59, 59, 800_000)),
+                stamped("%H:%M:%S.%L", dt.datetime(2026, 4, 5, 23, 59, 59, 800_000)),
+                U, X, PA, PB,
+            ],
+        ),
+        {"time": {"column": "Time", "day_first": False}},
     ),
     "percent": Log(
         "a.csv",

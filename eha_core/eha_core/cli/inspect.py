@@ -11,6 +11,7 @@ from eha_core.cli._ask import answered
 from eha_core.errors import EhaError, printable
 from eha_core.recording.inspection import KINDS, Field, Inspection, inspect_file
 from eha_core.recording.suggestions import Suggestions, rate_of, suggest, used
+from eha_core.recording.topics_file import assumptions
 from eha_core.recording.topics_text import topics_text, write_topics
 from eha_core.tables import READABLE
 
@@ -103,17 +104,8 @@ def _listing(inspection: Inspection, suggestions: Suggestions) -> list[str]:
     lines += [f"note: {remark}" for remark in inspection.remarks]
     lines += [f"note: not usable: {field.path!r}: {field.problem}" for field in inspection.fields if field.problem]
     lines += [f"question: {question.channel}: {printable(question.text)}" for question in suggestions.questions]
-    lines += _assumed(suggestions)
+    lines += assumptions({reading.channel: reading.assumed for reading in suggestions.certain})
     return lines + ([f"damaged: {inspection.damaged}"] if inspection.damaged else [])
-
-
-def _assumed(suggestions: Suggestions) -> list[str]:
-    """What was taken without a question, one line for channels alike."""
-    channels: dict[str, list[str]] = {}
-    for reading in suggestions.certain:
-        if reading.assumed:
-            channels.setdefault(reading.assumed, []).append(reading.channel)
-    return [f"assumed: {' and '.join(names)} {assumed}" for assumed, names in channels.items()]
 
 
 def _row(field: Field, rate: float, channel: str) -> tuple[str, ...]:

@@ -60,6 +60,7 @@ class Field:
         repeated: rows in a second, by its first and last, of a column that often stands and never goes back.
         time: the column of its own times; empty where the table's time serves.
         problem: why it cannot be used; empty where it can.
+        day_first: of dates that both orders of day and month fit, the one that makes the shorter record; else None.
         outline: lowest and highest value of each of some hundred stretches, as recorded.
     """
 
@@ -76,6 +77,7 @@ class Field:
     repeated: float = 0.0
     time: str = ""
     problem: str = ""
+    day_first: bool | None = None
     outline: Pairs = field(default=(), compare=False, repr=False)
 
 
@@ -144,6 +146,7 @@ def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
         usual_step(times), repeated=(len(times) - 1) / float(times[-1] - times[0]) if repeats(times) else 0.0,
         time=table.times.get(name, ""),
         problem=str(loss) if loss is not None and loss.by_value else "",
+        day_first=table.other_orders[name].day_first if name in table.other_orders else None,
         outline=outline.pairs(),
     )  # fmt: skip
 

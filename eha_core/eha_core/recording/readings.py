@@ -47,6 +47,7 @@ class Reading:
         points: what a sensor's numbers mean, in `unit`; None where that is still to be said.
         minus: a second field that is taken from the first.
         rate: of the time, rows in a second; NaN where that is still to be said.
+        day_first: of the time, whether the day stands before the month in its dates; None where nothing hangs on it.
         is_certain: whether nothing of it was guessed.
         assumed: what was taken without a question, for want of a word; empty where nothing was.
         hint: what helps to answer.
@@ -59,6 +60,7 @@ class Reading:
     points: Points = ()
     minus: Field | None = None
     rate: float | None = None
+    day_first: bool | None = None
     is_certain: bool = True
     assumed: str = ""
     hint: str = ""

@@ -269,5 +269,5 @@ def rule_of(reading: Reading) -> ChannelRule:
         scale=1.0, reference=reading.reference, unit=reading.unit, points=reading.points,
         minus=reading.minus.path if reading.minus else None,
         time=field.time or None if reading.channel != "time" else None,
-        rate=reading.rate,
+        rate=reading.rate, day_first=reading.day_first, assumed=reading.assumed if reading.is_certain else "",
     )  # fmt: skip

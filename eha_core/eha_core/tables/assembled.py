@@ -74,6 +74,7 @@ def assembled(
     units = {name: column.unit for name, column in zip(names, columns, strict=True) if column.unit}
     gathered = dict(zip(names, columns, strict=True))
     said += _clocks_joined(values, gathered, units)
+    orders = {name: order for name in values if (order := gathered[name].other_order) is not None}
     losses: dict[str, Loss] = {}
     for name in list(values):
         column = gathered[name]
@@ -87,7 +88,8 @@ def assembled(
             losses[name] = loss
     stated = {name: unit for name, unit in units.items() if name in values}
     own = {name: time for name, time in own.items() if name in values and time in values}
-    return Table(kind, values, stated, tuple(said), own, rate, losses)
+    orders = {name: order for name, order in orders.items() if name in values}
+    return Table(kind, values, stated, tuple(said), own, rate, losses, orders)
 
 
 def _own_times(names: Sequence[str], plain: Sequence[str], values: Mapping[str, Column]) -> dict[str, str]:
@@ -136,6 +138,8 @@ def _clocks_joined(
     clocks = [name for name in instants if gathered[name].has_clock and not gathered[name].has_date]
     if len(dates) == 1 and len(clocks) == 1:
         date, clock = dates[0], clocks[0]
+        if (order := gathered[date].other_order) is not None:
+            gathered[clock].other_order = replace(order, swapped=order.swapped // DAY * DAY + values[clock])
         values[clock] = values[date] // DAY * DAY + values[clock]
         gathered[clock].has_date = True
         del values[date]
@@ -144,7 +148,10 @@ def _clocks_joined(
         for size, called in _FRACTIONS.items():
             fraction = next((other for other in values if called.fullmatch(other.strip(" []()"))), None)
             if fraction is not None and _fills(values[name], values[fraction], size):
-                values[name] = values[name] + np.round(values[fraction]).astype(np.int64) * size
+                added = np.round(values[fraction]).astype(np.int64) * size
+                values[name] = values[name] + added
+                if (order := gathered[name].other_order) is not None:
+                    gathered[name].other_order = replace(order, swapped=order.swapped + added)
                 del values[fraction]
                 said.append(f"{name} and {fraction} are one time, called {name}")
     for name in list(units):
@@ -186,6 +193,11 @@ def _long(where: str, kind: str, columns: Sequence[GatheredColumn], long: LongFo
     loss = columns[long.value].loss(value)
     said = [*remarks, f"each row holds one value of one signal; its {len(signals)} signals are columns here"]
     said += [f"of the values, {loss}"] if loss is not None else []
+    said += [
+        f"assumed: {column.name}: the {'day' if column.other_order.day_first else 'month'} stands first, which makes"
+        " the shorter record"
+        for column in columns if column.other_order is not None
+    ]  # fmt: skip
     found = columns_with_times(kind, signals)
     return replace(found, remarks=(*said, *found.remarks))
 
