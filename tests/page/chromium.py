@@ -8,6 +8,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,14 @@ OPTIONS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--remote-debugging-pipe",
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
 )  # fmt: skip
+_ON_ITS_PIPES = """
+import fcntl, os, sys
+ends = [fcntl.fcntl(int(number), fcntl.F_DUPFD, 10) for number in sys.argv[1:3]]
+for place, end in zip((3, 4), ends):
+    os.dup2(end, place)
+os.execvp(sys.argv[3], sys.argv[3:])
+"""
+"""Becomes the browser, which reads commands from file descriptor 3 and writes answers to 4."""
 PATIENCE = 60.0
 """s that an answer or a change of the page may take."""
 
@@ -27,13 +36,11 @@ class Chromium:
     def __init__(self, profile: Path, width: int = 1150, height: int = 900) -> None:
         to_browser, self._out = os.pipe()
         self._in, from_browser = os.pipe()
-        # the browser reads from 3 and writes to 4
-        script = f'exec "$@" 3<&{to_browser} 4>&{from_browser}'
         size = f"--window-size={width},{height}"
         command = [str(PROGRAM), *OPTIONS, f"--user-data-dir={profile}", size, "about:blank"]
         self._process = subprocess.Popen(
-            ["sh", "-c", script, "sh", *command], pass_fds=(to_browser, from_browser),
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            [sys.executable, "-S", "-c", _ON_ITS_PIPES, str(to_browser), str(from_browser), *command],
+            pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
         os.close(to_browser)
         os.close(from_browser)

@@ -159,6 +159,15 @@ ASKED: dict[str, Log] = {
             "pressure_b": {"column": "pB [mA]", **LOOPS["pressure_b"]},
         },
     ),
+    "one_loop_current": Log(
+        "a.csv",
+        text(
+            ["t [s]", "u [V]", "x [mm]", "pA [mA]", "pB [bar]"],
+            [cells(TIMES), U, X, loop(GAUGE[0], 250.0), PB],
+            ";",
+        ),
+        {"pressure_a": {"column": "pA [mA]", **LOOPS["pressure_a"]}},
+    ),
     "valve_in_a_loop": Log(
         "a.csv",
         text(

@@ -25,6 +25,7 @@ from peoples_logs import (
     json_lines,
     mat_of_rates,
     matrix,
+    one_timeline,
     side_by_side,
     stamped,
     suffixed,
@@ -60,6 +61,7 @@ AS_THEY_ARE: dict[str, Log] = {
         ),
     ),
     "twincat_all_timelines": Log("a.csv", twincat, lost=True),
+    "twincat_one_timeline": Log("a.csv", one_timeline, lost=True),
     "twincat_filetime": Log(
         "a.csv", timed("Time", [str(134087426922340000 + 10_000 * k) for k in range(COUNT)], delimiter="\t")
     ),

@@ -312,7 +312,8 @@ function showResult(run) {
     return;
   }
   at("result-step").hidden = false;
-  at("downloads").replaceChildren(...run.files.map((name) => made("a", {href: `download/${name}`, download: name}, name)));
+  at("downloads").replaceChildren(...run.files.flatMap((name) =>
+    [made("a", {href: `download/${name}`, download: name}, name), " "]));
   const report = at("report");
   report.hidden = !run.files.includes("report.html");
   if (!report.hidden) report.src = `report?${Date.now()}`;
