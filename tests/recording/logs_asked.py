@@ -6,7 +6,7 @@ import datetime as dt
 from typing import Any
 
 import numpy as np
-from example_run import COUNT, RUN
+from example_run import COUNT, RUN, TIME
 from numpy.typing import NDArray
 from peoples_logs import (
     BAR,
@@ -28,6 +28,7 @@ from peoples_logs import (
 )  # fmt: skip
 
 PERCENT = {"points": [[0, 0], [100, 10]], "unit": "V"}
+NAMES = (("u", "V"), ("x", "mm"), ("pA", "bar"), ("pB", "bar"))
 RATE = {"rate": 1000}
 UP, DOWN = np.maximum(RUN.voltage, 0.0) * 10.0, np.maximum(-RUN.voltage, 0.0) * 10.0
 LOOPS = {
@@ -167,6 +168,40 @@ ASKED: dict[str, Log] = {
             ";",
         ),
         {"pressure_a": {"column": "pA [mA]", **LOOPS["pressure_a"]}},
+    ),
+    "two_cylinders": Log(
+        "a.csv",
+        text(
+            ["t [s]", *(f"{name}{k} [{unit}]" for k in (1, 2) for name, unit in NAMES)],
+            [cells(TIMES), U, X, PA, PB, cells(-RUN.voltage), cells(5.0 + MILLIMETRES), PB, PA],
+        ),
+        {
+            "voltage_command": {"column": "u1 [V]", "unit": "V"},
+            "position": {"column": "x1 [mm]", "unit": "mm"},
+            "pressure_a": {"column": "pA1 [bar]", **BAR},
+            "pressure_b": {"column": "pB1 [bar]", **BAR},
+        },
+    ),
+    "ports_by_their_letters": Log(
+        "a.csv",
+        text(
+            ["time", "valve_cmd_V", "pos_mm", "P_bar", "T_bar", "A_bar", "B_bar"],
+            [cells(TIMES), U, X, cells(210.0 + RUN.voltage), cells(2.0 + 0.01 * RUN.voltage), PA, PB],
+        ),
+        {"supply_pressure": None},
+    ),
+    "inputs_of_a_card": Log(
+        "a.csv",
+        text(
+            ["Time [ms]", *(f"Channel {letter} [V]" for letter in "ABCD")],
+            [cells(1e3 * TIME), U, cells(MILLIMETRES / 10.0), cells(GAUGE[0] / 25.0), cells(GAUGE[1] / 25.0)],
+        ),
+        {
+            "voltage_command": {"column": "Channel A [V]", "unit": "V"},
+            "position": {"column": "Channel B [V]", "points": [[0, 0], [10, 100]], "unit": "mm"},
+            "pressure_a": {"column": "Channel C [V]", "points": [[0, 0], [10, 250]], **BAR},
+            "pressure_b": {"column": "Channel D [V]", "points": [[0, 0], [10, 250]], **BAR},
+        },
     ),
     "valve_in_a_loop": Log(
         "a.csv",

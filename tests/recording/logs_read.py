@@ -210,6 +210,33 @@ AS_THEY_ARE: dict[str, Log] = {
             ],
         ),
     ),
+    "references_in_the_names": Log(
+        "a.csv",
+        text(
+            ["t_s", "u_V", "x_mm", "pA_kPa_abs", "pB_kPa_abs"],
+            [cells(TIMES), U, X, *(cells(1e2 * values + 101.325) for values in GAUGE)],
+        ),
+    ),
+    "ends_of_a_cylinder": Log(
+        "a.csv",
+        text(
+            ["Elapsed Time (sec)", "Cmd (volts)", "Stroke (inches)", "Blind End PSIG", "Rod End PSIG"],
+            [
+                cells(TIMES),
+                U,
+                cells(RUN.position / 0.0254),
+                cells(RUN.pressure_a / 6894.757293168),
+                cells(RUN.pressure_b / 6894.757293168),
+            ],
+        ),
+    ),
+    "oil_that_warms": Log(
+        "a.csv",
+        text(
+            ["time", "u_V", "x_mm", "T_oil", "pA_bar", "pB_bar"],
+            [cells(TIMES), U, X, [f"{41.0 + 0.1 * (k // 50):.1f}" for k in range(COUNT)], PA, PB],
+        ),
+    ),
     "french": Log(
         "a.csv",
         text(

@@ -25,7 +25,7 @@ BELOW_ZERO = -2e4
 """Pa: below this a pressure is gauge; a sensor's zero is not that far off."""
 _ATMOSPHERE_MATTERS = 20e5
 """Pa: a pressure that reaches more is read as gauge without a question: an atmosphere is 5 % of it at most."""
-_RARE = frozenset(("mbar", "kgf/cm^2", "100ns", "daN", "kgf", "m^3/h", "Hz", "deg/s"))
+_RARE = frozenset(("mbar", "kgf/cm^2", "100ns", "daN", "kgf", "m^3/h", "Hz", "deg/s", "GPa"))
 """Units that are taken where they are stated, and not offered where none is."""
 _VALUE_UNITS = {
     "Pa": "bar", "m": "mm", "m/s": "mm/s", "V": "V", "A": "A", "N": "kN", "m^3/s": "l/min", "rad/s": "rpm",

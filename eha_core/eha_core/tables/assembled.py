@@ -24,6 +24,8 @@ _TIME = re.compile(
 )
 _CLOCKS = ("time", "zeit", "timestamp")
 """Words with which a name of times ends."""
+_MOSTLY, _OFTEN = 0.99, 0.5
+"""Shares of steps of a column of times that do not go down, and that go up (assumed: clocks begin anew and stand)."""
 _ALIKE = 0.02
 """Share by which the usual steps of two clocks of the same rows may differ."""
 _FRACTIONS = {
@@ -94,7 +96,7 @@ def assembled(
 
 def _own_times(names: Sequence[str], plain: Sequence[str], values: Mapping[str, Column]) -> dict[str, str]:
     """The column of times before each column, in a file that has one before each signal or each of several tables."""
-    is_time = [_is_time(_bare(name)) for name in plain]
+    is_time = [_is_time(_bare(bare)) and _rises(values[name]) for name, bare in zip(names, plain, strict=True)]
     places = [k for k, one in enumerate(is_time) if one]
     if len(places) < 2 or places[0] != 0 or is_time[-1] or any(b - a == 1 for a, b in pairwise(places)):
         return {}
@@ -106,6 +108,12 @@ def _own_times(names: Sequence[str], plain: Sequence[str], values: Mapping[str, 
 def _is_time(bare: str) -> bool:
     words = re.split(r"[^a-z]+", bare)
     return _TIME.fullmatch(bare) is not None or _TIME.fullmatch(words[0]) is not None or words[-1] in _CLOCKS
+
+
+def _rises(values: Column) -> bool:
+    """Whether values go up as times do, which the pressure of a tank or the oil's temperature, `T_oil`, does not."""
+    steps = np.diff(values[np.isfinite(values.astype(np.float64))])
+    return len(steps) == 0 or bool(np.mean(steps >= 0) >= _MOSTLY and np.mean(steps > 0) >= _OFTEN)
 
 
 def _are_alike(clocks: Sequence[Column]) -> bool:
