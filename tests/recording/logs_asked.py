@@ -137,6 +137,19 @@ ASKED: dict[str, Log] = {
         ),
         {"voltage_command": {"column": "valve_pct", **PERCENT}},
     ),
+    "per_mille": Log(
+        "a.csv",
+        text(
+            ["t [s]", "valve [\u2030]", "x [cm]", "pA [kgf/cm2]", "pB [kgf/cm2]"],
+            [
+                cells(TIMES),
+                cells(RUN.voltage * 100.0),
+                cells(RUN.position * 1e2),
+                *(cells(values / 98_066.5) for values in (RUN.pressure_a, RUN.pressure_b)),
+            ],
+        ),
+        {"voltage_command": {"column": "valve [\u2030]", "points": [[0, 0], [1000, 10]], "unit": "V"}},
+    ),
     "percent_counts": Log(
         "a.csv",
         text(

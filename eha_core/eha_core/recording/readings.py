@@ -168,7 +168,7 @@ def _through_points(channel: str, one: MeantField, unit: Unit) -> list[Reading] 
         return None
     first, last = places
     if channel == "voltage_command" and unit.si == "%":
-        points: Points = ((0.0, 0.0), (last, _RATED_VOLTAGE * last / 100.0))
+        points: Points = ((0.0, 0.0), (last, _RATED_VOLTAGE * last * unit.scale / 100.0))
         hint = f" ({_RATED_VOLTAGE:g} V at 100 % is usual)"
         return [Reading(channel, field, value, None, points, is_certain=False, hint=hint)]
     zero = 0.0 if unit.si in ("counts", "%") or (unit.si == "A" and first == 0.0) else None
@@ -187,7 +187,7 @@ def _places(channel: str, one: MeantField, unit: Unit) -> tuple[float, float] | 
     if unit.si == "V":
         return 0.0, 10.0 / unit.scale
     if unit.si == "%":
-        return 0.0, 100.0
+        return 0.0, 100.0 / unit.scale
     if unit.si == "counts":
         return 0.0, 1000.0
     if unit.si == "rad" and channel in ("position", "pump_speed"):
