@@ -42,10 +42,14 @@ def test_the_package_allows_what_is_tested_and_nothing_older() -> None:
 def test_what_is_optional_allows_what_is_tested() -> None:
     settings = configparser.ConfigParser()
     settings.read(ROOT / "eha_core" / "setup.cfg")
-    optional = [Requirement(row) for row in settings["options.extras_require"]["files"].split("\n") if row]
+    extras = {name: rows.split("\n") for name, rows in settings["options.extras_require"].items()}
+    optional = {name: [Requirement(row) for row in rows if row] for name, rows in extras.items()}
     develop = pins("develop.txt")
-    assert {one.name for one in optional} == {"h5py", "pyarrow", "openpyxl", "npTDMS", "asammdf"}
-    assert all(one.specifier.contains(develop[one.name]) for one in optional)
+    assert {name: {one.name for one in ones} for name, ones in optional.items()} == {
+        "files": {"h5py", "pyarrow", "openpyxl", "npTDMS", "asammdf"},
+        "page": {"starlette", "uvicorn"},
+    }
+    assert all(one.specifier.contains(develop[one.name]) for ones in optional.values() for one in ones)
 
 
 def test_the_container_makes_the_environment() -> None:

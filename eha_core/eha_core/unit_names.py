@@ -42,7 +42,7 @@ UNITS: dict[str, Unit] = {
     "ohm": Unit("ohm", 1.0), "kohm": Unit("ohm", 1e3), "henry": Unit("H", 1.0), "mH": Unit("H", 1e-3),
     "N/m": Unit("N/m", 1.0), "N/mm": Unit("N/m", 1e3), "Ns/m": Unit("N s/m", 1.0), "GPa": Unit("Pa", 1e9),
     "rad": Unit("rad", 1.0), "deg": Unit("rad", pi / 180.0), "Nm": Unit("N m", 1.0), "kNm": Unit("N m", 1e3),
-    "%": Unit("%", 1.0), "counts": Unit("counts", 1.0),
+    "%": Unit("%", 1.0), "permille": Unit("%", 0.1), "counts": Unit("counts", 1.0),
     "m/s^2": Unit("m/s^2", 1.0), "K": Unit("K", 1.0), "degC": Unit("K", 1.0), "degF": Unit("K", 5.0 / 9.0),
     "W": Unit("W", 1.0), "kW": Unit("W", 1e3),
 }  # fmt: skip
@@ -57,7 +57,8 @@ _ALSO = {
     "in": "inch inches", "m/s": "mps m_s", "mm/s": "mmps", "in/s": "ips",
     "Pa": "pascal", "bar": "bars", "barg": "bar(g) bar_g bar|rel bar|g bar(gauge)",
     "bara": "bar(a) bar_a bar(abs) bar|abs barabs bar|a", "psi": "lbf/in^2 lb/in^2",
-    "kgf/cm^2": "kp/cm^2 kg/cm^2 at", "N": "newton newtons", "lbf": "lbs", "kgf": "kp",
+    "kgf/cm^2": "kgf/cm2 kp/cm^2 kp/cm2 kg/cm^2 kg/cm2 at", "permille": "\u2030 promille",
+    "N": "newton newtons", "lbf": "lbs", "kgf": "kp",
     "l/min": "lpm l/m ltr/min lit/min dm^3/min liter/min litre/min", "m^3/s": "m3/s", "cm^3/s": "cm3/s ccm/s cc/s",
     "ml/min": "cm^3/min cc/min", "gpm": "usgpm gal/min", "cm^3": "cc cm3", "m^3": "m3",
     "rpm": "1/min min^-1 u/min rev/min r/min", "ohm": "\u03c9 ohms", "Ns/m": "n|s/m n*s/m",

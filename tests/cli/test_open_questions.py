@@ -95,7 +95,7 @@ def test_what_is_assumed_is_listed_with_the_recording(tmp_path: Path) -> None:
     main(["inspect", str(path), "--topics", str(topics)])
     recording = read_recording(path, load_topics_file(topics, assume=True))
     np.testing.assert_allclose(recording.channels["voltage_command"].values, RUN.voltage, atol=1e-8)
-    (remark,) = [one for one in recording.remarks if one.startswith("assumed: ")]
+    (remark,) = [one for one in recording.remarks if one.startswith("assumed: voltage_command")]
     assert remark.startswith(
         'assumed: voltage_command: {column: "valve_pct", points: [[0, 0], [100, 10]], unit: V} ("valve_pct":'
     )
@@ -162,3 +162,12 @@ def test_points_of_a_linkage_are_a_smooth_monotone_curve() -> None:
     assert np.all(np.diff(values) > 0.0)
     beyond = rule.in_si(np.array([50.0, 60.0]))
     assert beyond[1] - beyond[0] == pytest.approx(stroke(np.array(40.0)) - stroke(np.array(30.0)))
+
+
+def test_what_was_taken_without_a_question_is_listed_with_the_recording(tmp_path: Path) -> None:
+    path, topics = log(tmp_path, "percent"), tmp_path / "topics.yaml"
+    main(["inspect", str(path), "--topics", str(topics)])
+    entries = yaml.safe_load(topics.read_text())["channels"]
+    assert entries["pressure_a"]["assumed"] == "gauge, for want of a word on it"
+    recording = read_recording(path, load_topics_file(topics, assume=True))
+    assert "assumed: pressure_a and pressure_b gauge, for want of a word on it" in recording.remarks

@@ -2,14 +2,33 @@
 
 from __future__ import annotations
 
+import datetime as dt
 from typing import Any
 
 import numpy as np
-from example_run import COUNT, RUN
+from example_run import COUNT, RUN, TIME
 from numpy.typing import NDArray
-from peoples_logs import BAR, GAUGE, MILLIMETRES, PA, PB, REST, TIMES, Log, U, X, cells, json_lines, matrix, text, timed
+from peoples_logs import (
+    BAR,
+    GAUGE,
+    MILLIMETRES,
+    PA,
+    PB,
+    REST,
+    TIMES,
+    Log,
+    U,
+    X,
+    cells,
+    json_lines,
+    matrix,
+    stamped,
+    text,
+    timed,
+)  # fmt: skip
 
 PERCENT = {"points": [[0, 0], [100, 10]], "unit": "V"}
+NAMES = (("u", "V"), ("x", "mm"), ("pA", "bar"), ("pB", "bar"))
 RATE = {"rate": 1000}
 UP, DOWN = np.maximum(RUN.voltage, 0.0) * 10.0, np.maximum(-RUN.voltage, 0.0) * 10.0
 LOOPS = {
@@ -93,6 +112,23 @@ ASKED: dict[str, Log] = {
         timed("Time", [f"21:04:52.{2 * (k // 2):03d}" for k in range(COUNT)]),
         {"time": {"column": "Time", "rate": 1000}},
     ),
+    "dates_over_midnight_day_or_month_first": Log(
+        "a.csv",
+        timed("Time", stamped("%d/%m/%Y %H:%M:%S.%L", dt.datetime(2026, 5, 4, 23, 59, 59, 800_000))),
+        {"time": {"column": "Time", "day_first": True}},
+    ),
+    "dates_of_the_us_over_midnight_beside_clocks": Log(
+        "a.csv",
+        text(
+            ["Date", "Time", *REST],
+            [
+                stamped("%m/%d/%Y", dt.datetime(2026, 4, 5, 23, 59, 59, 800_000)),
+                stamped("%H:%M:%S.%L", dt.datetime(2026, 4, 5, 23, 59, 59, 800_000)),
+                U, X, PA, PB,
+            ],
+        ),
+        {"time": {"column": "Time", "day_first": False}},
+    ),
     "percent": Log(
         "a.csv",
         text(
@@ -100,6 +136,19 @@ ASKED: dict[str, Log] = {
             [cells(TIMES), cells(RUN.voltage * 10.0), X, PA, PB],
         ),
         {"voltage_command": {"column": "valve_pct", **PERCENT}},
+    ),
+    "per_mille": Log(
+        "a.csv",
+        text(
+            ["t [s]", "valve [\u2030]", "x [cm]", "pA [kgf/cm2]", "pB [kgf/cm2]"],
+            [
+                cells(TIMES),
+                cells(RUN.voltage * 100.0),
+                cells(RUN.position * 1e2),
+                *(cells(values / 98_066.5) for values in (RUN.pressure_a, RUN.pressure_b)),
+            ],
+        ),
+        {"voltage_command": {"column": "valve [\u2030]", "points": [[0, 0], [1000, 10]], "unit": "V"}},
     ),
     "percent_counts": Log(
         "a.csv",
@@ -122,6 +171,49 @@ ASKED: dict[str, Log] = {
             "position": {"column": "x [mA]", "points": [[4, 0], [20, 100]], "unit": "mm"},
             "pressure_a": {"column": "pA [mA]", **LOOPS["pressure_a"]},
             "pressure_b": {"column": "pB [mA]", **LOOPS["pressure_b"]},
+        },
+    ),
+    "one_loop_current": Log(
+        "a.csv",
+        text(
+            ["t [s]", "u [V]", "x [mm]", "pA [mA]", "pB [bar]"],
+            [cells(TIMES), U, X, loop(GAUGE[0], 250.0), PB],
+            ";",
+        ),
+        {"pressure_a": {"column": "pA [mA]", **LOOPS["pressure_a"]}},
+    ),
+    "two_cylinders": Log(
+        "a.csv",
+        text(
+            ["t [s]", *(f"{name}{k} [{unit}]" for k in (1, 2) for name, unit in NAMES)],
+            [cells(TIMES), U, X, PA, PB, cells(-RUN.voltage), cells(5.0 + MILLIMETRES), PB, PA],
+        ),
+        {
+            "voltage_command": {"column": "u1 [V]", "unit": "V"},
+            "position": {"column": "x1 [mm]", "unit": "mm"},
+            "pressure_a": {"column": "pA1 [bar]", **BAR},
+            "pressure_b": {"column": "pB1 [bar]", **BAR},
+        },
+    ),
+    "ports_by_their_letters": Log(
+        "a.csv",
+        text(
+            ["time", "valve_cmd_V", "pos_mm", "P_bar", "T_bar", "A_bar", "B_bar"],
+            [cells(TIMES), U, X, cells(210.0 + RUN.voltage), cells(2.0 + 0.01 * RUN.voltage), PA, PB],
+        ),
+        {"supply_pressure": None},
+    ),
+    "inputs_of_a_card": Log(
+        "a.csv",
+        text(
+            ["Time [ms]", *(f"Channel {letter} [V]" for letter in "ABCD")],
+            [cells(1e3 * TIME), U, cells(MILLIMETRES / 10.0), cells(GAUGE[0] / 25.0), cells(GAUGE[1] / 25.0)],
+        ),
+        {
+            "voltage_command": {"column": "Channel A [V]", "unit": "V"},
+            "position": {"column": "Channel B [V]", "points": [[0, 0], [10, 100]], "unit": "mm"},
+            "pressure_a": {"column": "Channel C [V]", "points": [[0, 0], [10, 250]], **BAR},
+            "pressure_b": {"column": "Channel D [V]", "points": [[0, 0], [10, 250]], **BAR},
         },
     ),
     "valve_in_a_loop": Log(

@@ -25,6 +25,7 @@ from peoples_logs import (
     json_lines,
     mat_of_rates,
     matrix,
+    one_timeline,
     side_by_side,
     stamped,
     suffixed,
@@ -60,6 +61,7 @@ AS_THEY_ARE: dict[str, Log] = {
         ),
     ),
     "twincat_all_timelines": Log("a.csv", twincat, lost=True),
+    "twincat_one_timeline": Log("a.csv", one_timeline, lost=True),
     "twincat_filetime": Log(
         "a.csv", timed("Time", [str(134087426922340000 + 10_000 * k) for k in range(COUNT)], delimiter="\t")
     ),
@@ -106,9 +108,6 @@ AS_THEY_ARE: dict[str, Log] = {
     "dates_of_the_us": Log("a.csv", timed("Time", stamped("%m/%d/%Y %I:%M:%S.%L %p"))),
     "dates_of_the_us_early": Log(
         "a.csv", timed("Time", stamped("%m/%d/%Y %I:%M:%S.%L %p", START.replace(month=4, day=5)))
-    ),
-    "dates_over_midnight_day_or_month_first": Log(
-        "a.csv", timed("Time", stamped("%d/%m/%Y %H:%M:%S.%L", dt.datetime(2026, 5, 4, 23, 59, 59, 800_000)))
     ),
     "dates_with_month_names": Log("a.csv", timed("Date", stamped("%d-%b-%Y %H:%M:%S.%L"))),
     "date_and_clock_apart": Log(
@@ -209,6 +208,33 @@ AS_THEY_ARE: dict[str, Log] = {
                 cells(RUN.pressure_a / 6894.757293168),
                 cells(RUN.pressure_b / 6894.757293168),
             ],
+        ),
+    ),
+    "references_in_the_names": Log(
+        "a.csv",
+        text(
+            ["t_s", "u_V", "x_mm", "pA_kPa_abs", "pB_kPa_abs"],
+            [cells(TIMES), U, X, *(cells(1e2 * values + 101.325) for values in GAUGE)],
+        ),
+    ),
+    "ends_of_a_cylinder": Log(
+        "a.csv",
+        text(
+            ["Elapsed Time (sec)", "Cmd (volts)", "Stroke (inches)", "Blind End PSIG", "Rod End PSIG"],
+            [
+                cells(TIMES),
+                U,
+                cells(RUN.position / 0.0254),
+                cells(RUN.pressure_a / 6894.757293168),
+                cells(RUN.pressure_b / 6894.757293168),
+            ],
+        ),
+    ),
+    "oil_that_warms": Log(
+        "a.csv",
+        text(
+            ["time", "u_V", "x_mm", "T_oil", "pA_bar", "pB_bar"],
+            [cells(TIMES), U, X, [f"{41.0 + 0.1 * (k // 50):.1f}" for k in range(COUNT)], PA, PB],
         ),
     ),
     "french": Log(

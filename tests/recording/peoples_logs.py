@@ -123,6 +123,15 @@ def twincat(path: Path) -> None:
     path.write_text("\n".join([*lines, "EOF"]) + "\n")
 
 
+def one_timeline(path: Path) -> None:
+    """The same on one time: cells of slower signals stay empty between their samples."""
+    lines = ["\t".join(["Time [ms]", *REST])]
+    for k in range(COUNT):
+        row = [str(k), U[k], X[k] if k % 2 == 0 else "", PA[k], PB[k] if k % 5 == 0 else ""]
+        lines.append("\t".join(commas(row)))
+    path.write_text("\n".join(lines) + "\n")
+
+
 def side_by_side(path: Path) -> None:
     """Two tables in one sheet, the second recorded at half the rate, an empty column between them."""
     lines = ["Time [s],u [V],x [mm],,Time [s],pA [bar],pB [bar]"]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eha_core.recording.time_units import unwrapped, usual_step
-from eha_core.tables.gathered_columns import loses_by_value
+from eha_core.tables.gathered_columns import GatheredColumn, loses_by_value
 from eha_core.tables.number_cells import is_number, number_of
 from eha_core.tables.stated import rate_in, unit_in
 from eha_core.tables.time_cells import instants_of, is_instant
@@ -198,3 +198,43 @@ def test_gaps_at_the_edge_are_told_from_gaps_anywhere() -> None:
     assert taken <= 2
     lost = values > 0.9
     assert loses_by_value(np.where(lost, np.nan, values), lost)
+
+
+def gathered(*blocks: list[str]) -> GatheredColumn:
+    column = GatheredColumn("Time")
+    for block in blocks:
+        cells = np.array(block, dtype=object)
+        column.add(cells, *column.read(cells))
+    return column
+
+
+def seconds(*days: datetime) -> list[int]:
+    return [round((day - datetime(1970, 1, 1)).total_seconds()) for day in days]
+
+
+def test_a_date_further_on_tells_the_order_of_all_before_it() -> None:
+    column = gathered(["04/05/2026 10:00:00", "04/05/2026 10:00:01"], ["04/13/2026 10:00:00"])
+    values, remark = column.values("a.csv")
+    april = datetime(2026, 4, 5, 10)
+    expected = seconds(april, april + timedelta(seconds=1), april + timedelta(days=8))
+    assert (values // 10**9).tolist() == expected and not remark and column.other_order is None
+
+
+def test_an_order_that_moves_no_sample_is_assumed_and_said() -> None:
+    column = gathered(["04/05/2026 10:00:00", "04/05/2026 10:00:01"])
+    values, remark = column.values("a.csv")
+    assert (values // 10**9).tolist() == seconds(datetime(2026, 5, 4, 10), datetime(2026, 5, 4, 10, 0, 1))
+    assert remark == "assumed: Time: the day stands before the month (2026-05-04), which moves no sample"
+    assert column.other_order is None
+
+
+@pytest.mark.parametrize("day_first", [True, False])
+def test_an_order_that_moves_samples_is_open(day_first: bool) -> None:
+    form = "%d/%m/%Y %H:%M:%S" if day_first else "%m/%d/%Y %H:%M:%S"
+    instants = [datetime(2026, 4, 5, 23, 59, 59), datetime(2026, 4, 6)]
+    column = gathered([instant.strftime(form) for instant in instants])
+    values, _ = column.values("a.csv")
+    assert (values // 10**9).tolist() == seconds(*instants)
+    assert column.other_order is not None and column.other_order.day_first is day_first
+    other = [datetime(2026, 5, 4, 23, 59, 59), datetime(2026, 6, 4)]
+    assert (column.other_order.swapped // 10**9).tolist() == seconds(*other)

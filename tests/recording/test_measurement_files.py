@@ -9,7 +9,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from asammdf import MDF, Signal
+from asammdf import MDF, Signal, Source
+from asammdf.blocks.v4_constants import BUS_TYPE_CAN, SOURCE_BUS
 from example_run import COUNT, PERIOD, RUN, TIME
 from nptdms import ChannelObject, TdmsWriter
 from openpyxl import Workbook
@@ -96,6 +97,63 @@ def test_an_mdf_file_gives_each_signal_on_its_own_time(tmp_path: Path, every: in
             file.append([Signal(values[::step], TIME[::step], unit=unit, name=name)])
         file.save(path)
     require_run(read_back(path), every)
+
+
+DATABASE = """VERSION ""
+NS_ :
+BS_:
+BU_: Rig
+BO_ 257 Motion: 8 Rig
+ SG_ ValveVoltage : 0|32@1- (1e-9,0) [-2|2] "V" Rig
+ SG_ PistonPosition : 32|32@1- (1e-6,0) [-2000|2000] "mm" Rig
+BO_ 258 Pressures: 8 Rig
+ SG_ PressureA : 0|32@1- (1e-6,0) [-2000|2000] "bar" Rig
+ SG_ PressureB : 32|32@1- (1e-6,0) [-2000|2000] "bar" Rig
+"""
+"""A network's database: what the bytes of two messages mean."""
+
+
+def bus_log(path: Path) -> Path:
+    """The run as a bus logger writes it: two frames at each instant, not decoded."""
+    pairs = ((257, RUN.voltage / 1e-9, MILLIMETRES / 1e-6), (258, GAUGE[0] / 1e-6, GAUGE[1] / 1e-6))
+    heads = [("BusChannel", "<u1"), ("ID", "<u4"), ("IDE", "<u1"), ("DLC", "<u1"), ("DataLength", "<u1")]
+    kind = np.dtype([*((f"CAN_DataFrame.{name}", one) for name, one in heads), ("CAN_DataFrame.DataBytes", "(8,)u1")])
+    frames = np.zeros(2 * COUNT, kind)
+    frames["CAN_DataFrame.BusChannel"] = 1
+    frames["CAN_DataFrame.DLC"] = frames["CAN_DataFrame.DataLength"] = 8
+    for k, (number, *values) in enumerate(pairs):
+        frames["CAN_DataFrame.ID"][k::2] = number
+        counts = np.round(np.stack(values, axis=1)).astype("<i4")
+        frames["CAN_DataFrame.DataBytes"][k::2] = counts.view(np.uint8)
+    bus = Source(name="CAN1", path="CAN1", comment="", source_type=SOURCE_BUS, bus_type=BUS_TYPE_CAN)
+    with MDF() as file:
+        file.append([Signal(frames, np.repeat(TIME, 2), name="CAN_DataFrame", source=bus)])
+        file.save(path)
+    return path
+
+
+def test_frames_of_a_bus_are_decoded_by_the_database_beside_them(tmp_path: Path) -> None:
+    path = bus_log(tmp_path / "run.mf4")
+    (tmp_path / "run.dbc").write_text(DATABASE)
+    require_run(read_back(path))
+
+
+@pytest.mark.parametrize(
+    ("database", "message"),
+    [
+        (None, "run.mf4: holds raw CAN frames; put their database beside it as run.dbc"),
+        (DATABASE.replace("257", "357").replace("258", "358"), "run.dbc describes none of its CAN frames"),
+    ],
+)
+def test_frames_of_a_bus_without_their_database_are_refused_by_what_they_are(
+    tmp_path: Path, database: str | None, message: str
+) -> None:
+    path = bus_log(tmp_path / "run.mf4")
+    if database is not None:
+        (tmp_path / "run.dbc").write_text(database)
+    with pytest.raises(RecordingError, match=message) as caught:
+        read_table(path)
+    assert "\n" not in str(caught.value)
 
 
 def test_an_hdf5_file_is_read_like_matlab_s(tmp_path: Path) -> None:

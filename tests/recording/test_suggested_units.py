@@ -155,7 +155,7 @@ LIMITS = [
 
 @pytest.mark.parametrize(("name", "unit", "least", "most"), LIMITS)
 def test_a_unit_is_usual_from_the_least_to_the_most_of_rigs(name: str, unit: str, least: float, most: float) -> None:
-    rare = {"mbar", "kgf/cm^2", "daN", "kgf", "m^3/h", "Hz", "deg/s"}  # taken where stated, and not offered
+    rare = {"mbar", "kgf/cm^2", "daN", "kgf", "m^3/h", "Hz", "deg/s", "GPa"}  # taken where stated, and not offered
     kinds = {
         kind: one.scale for kind, one in UNITS.items() if one.si == unit and one.reference is None and kind not in rare
     }

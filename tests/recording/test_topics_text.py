@@ -43,7 +43,7 @@ def test_what_is_certain_is_an_entry_what_is_open_a_comment_and_the_rest_is_name
         "# a null inside an answer is a number to fill in, an answer `null` means that there is no such channel.",
         "channels:",
         '  time: {column: "time", unit: s}',
-        '  pressure_a: {column: "p_head", unit: bar, reference: gauge}  # assumed: gauge, for want of a word on it',
+        '  pressure_a: {column: "p_head", unit: bar, reference: gauge, assumed: "gauge, for want of a word on it"}',
         '  position: {column: "weg", unit: mm}',
         "  voltage_command:",
         '    question: "which number is voltage_command, if any?"',

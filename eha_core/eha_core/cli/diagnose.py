@@ -106,8 +106,10 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
     )
     for recording in () if arguments.as_recorded else (*recordings, *tests):
         require_travel(recording, model, given is not None)
-    if line := assumed_cylinder(given is not None, recordings[0], model):
+    if cylinder := assumed_cylinder(given is not None, recordings[0], model):
+        line = f"no --nominal: the catalogue's cylinder is assumed, {cylinder}; `eha init-rig` makes the file of a rig"
         print(f"eha diagnose: {line}", file=sys.stderr)
+        recordings[0] = with_assumed(recordings[0], cylinder)
     for warning in (
         remark for recording in (*recordings, *tests) for remark in recording.remarks if remark.startswith("warning")
     ):
@@ -148,14 +150,17 @@ def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Prog
 
 
 def assumed_cylinder(is_given: bool, recording: Recording, model: NominalModel) -> str:
-    """What is assumed in place of a nominal file, in a line; empty where one is given, or the recording has values."""
+    """The cylinder that is assumed in place of a nominal file; empty where one is given or the recording has values."""
     if is_given or recording.parameters or recording.parts:
         return ""
     values = model.values
-    return (
-        f"no --nominal: the catalogue's cylinder is assumed, of {values['piston_area'] * 1e4:.3g} cm^2 and"
-        f" {2e3 * values['actuator_displacement']:.3g} mm stroke; `eha init-rig` makes the file of a rig"
-    )
+    return f"of {values['piston_area'] * 1e4:.3g} cm^2 and {2e3 * values['actuator_displacement']:.3g} mm stroke"
+
+
+def with_assumed(recording: Recording, cylinder: str) -> Recording:
+    """The recording with a remark on the cylinder that is assumed, which the report lists."""
+    remark = f"assumed: the catalogue's cylinder, {cylinder}, for want of a nominal file"
+    return replace(recording, remarks=(*recording.remarks, remark))
 
 
 def require_travel(recording: Recording, model: NominalModel, is_given: bool) -> None:
@@ -268,6 +273,8 @@ def diagnose_alone(
         recordings = [admit(recording, model.values, as_recorded, model.composition) for recording in record.recordings]
         for recording in () if as_recorded else recordings:
             require_travel(recording, model, given is not None)
+        if cylinder := assumed_cylinder(given is not None, recordings[0], model):
+            recordings[0] = with_assumed(recordings[0], cylinder)
         diagnosis = judged(diagnose_together(recordings, model, jobs=1), [record], model)
         diagnosis = with_provenance(diagnosis, [record], nominal)
         (write_report if with_report else write_document)(diagnosis, folder)

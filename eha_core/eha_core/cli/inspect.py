@@ -9,8 +9,9 @@ from pathlib import Path
 
 from eha_core.cli._ask import answered
 from eha_core.errors import EhaError, printable
-from eha_core.recording.inspection import Field, Inspection, inspect_file
+from eha_core.recording.inspection import KINDS, Field, Inspection, inspect_file
 from eha_core.recording.suggestions import Suggestions, rate_of, suggest, used
+from eha_core.recording.topics_file import assumptions
 from eha_core.recording.topics_text import topics_text, write_topics
 from eha_core.tables import READABLE
 
@@ -20,11 +21,6 @@ DAMAGED = 3
 """Exit status where the file was damaged and the list rests on the part that could be read."""
 WIDEST = 60
 """Characters of a name in the list; the topics file has it in full."""
-_KINDS = {
-    "csv": "text table", "lvm": "LabVIEW measurement file", "mat": "MAT file", "parquet": "Parquet file",
-    "json": "JSON records", "xlsx": "workbook", "tdms": "TDMS file", "mdf": "MDF file",
-    "bag": "recording of ROS 2 messages",
-}  # fmt: skip
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -98,7 +94,7 @@ def _listing(inspection: Inspection, suggestions: Suggestions) -> list[str]:
         rows.append(_row(field, rate, likely if place in sure or place not in channels else f"{likely}?"))
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     right = (False, True, True, True, True, False, False)
-    lines = [f"{printable(str(inspection.path))}: {_KINDS[inspection.kind]}"]
+    lines = [f"{printable(str(inspection.path))}: {KINDS[inspection.kind]}"]
     for row in rows:
         cells = [
             cell.rjust(width) if to_right else cell.ljust(width)
@@ -108,17 +104,8 @@ def _listing(inspection: Inspection, suggestions: Suggestions) -> list[str]:
     lines += [f"note: {remark}" for remark in inspection.remarks]
     lines += [f"note: not usable: {field.path!r}: {field.problem}" for field in inspection.fields if field.problem]
     lines += [f"question: {question.channel}: {printable(question.text)}" for question in suggestions.questions]
-    lines += _assumed(suggestions)
+    lines += assumptions({reading.channel: reading.assumed for reading in suggestions.certain})
     return lines + ([f"damaged: {inspection.damaged}"] if inspection.damaged else [])
-
-
-def _assumed(suggestions: Suggestions) -> list[str]:
-    """What was taken without a question, one line for channels alike."""
-    channels: dict[str, list[str]] = {}
-    for reading in suggestions.certain:
-        if reading.assumed:
-            channels.setdefault(reading.assumed, []).append(reading.channel)
-    return [f"assumed: {' and '.join(names)} {assumed}" for assumed, names in channels.items()]
 
 
 def _row(field: Field, rate: float, channel: str) -> tuple[str, ...]:

@@ -34,6 +34,9 @@ class ChannelRule:
         time: the column of the channel's own times; None where the table's time, or that which the file states, serves.
         rate: of the time, rows in a second where the table has no instants [Hz]; None where it has, NaN where it is
             open.
+        day_first: of the time, whether the day stands before the month in dates that both orders fit; None where
+            nothing was said.
+        assumed: what of it was taken without a question, in words; empty where nothing was.
     """
 
     topic: str | None = None
@@ -47,6 +50,8 @@ class ChannelRule:
     minus: str | None = None
     time: str | None = None
     rate: float | None = None
+    day_first: bool | None = None
+    assumed: str = ""
 
     @property
     def is_open(self) -> bool:
@@ -99,16 +104,20 @@ def entry_text(rule: ChannelRule | None) -> str:
         if value is not None:
             parts.append(f"{name}: {quoted(value)}")
     if rule.points:
-        pairs = ", ".join(f"[{raw:g}, {'null' if value is None else f'{value:g}'}]" for raw, value in rule.points)
+        pairs = ", ".join(f"[{raw:.12g}, {'null' if value is None else f'{value:.12g}'}]" for raw, value in rule.points)
         parts.append(f"points: [{pairs}]")
     if rule.rate is not None:
-        parts.append(f"rate: {f'{rule.rate:g}' if isfinite(rule.rate) else 'null'}")
+        parts.append(f"rate: {f'{rule.rate:.12g}' if isfinite(rule.rate) else 'null'}")
+    if rule.day_first is not None:
+        parts.append(f"day_first: {str(rule.day_first).lower()}")
     if rule.unit is not None:
         parts.append(f"unit: {quoted(rule.unit) if not rule.unit.isalpha() else rule.unit}")
     elif rule.scale != 1.0:
         parts.append(f"scale: {rule.scale:g}")
     if rule.reference is not None:
         parts.append(f"reference: {rule.reference}")
+    if rule.assumed:
+        parts.append(f"assumed: {quoted(rule.assumed)}")
     return f"{{{', '.join(parts)}}}"
 
 

@@ -97,6 +97,12 @@ def reference_in(name: str) -> str | None:
     return next(iter(said)) if len(said) == 1 else None
 
 
+def without_reference(name: str) -> str:
+    """A name without the word at its end that says against what its pressure is measured, as in `pA_kPa_abs`."""
+    start, mark, last = re.fullmatch(r"(.*?)([\s_-]*)([A-Za-z]*)", name, re.DOTALL).groups()  # type: ignore[union-attr]
+    return start if mark and last.lower() in words_known.REFERENCES else name
+
+
 def common_words(names: list[str]) -> frozenset[str]:
     """Words that most names of a file begin with: they name the rig, and say nothing of the column."""
     counts: dict[str, int] = {}
@@ -120,7 +126,7 @@ def _of_words(words: list[str], unit: str, common: frozenset[str]) -> Meaning:
     is_wanted |= "command" in quantities and bool(set(quantities) & words_known.MEASURED) and "valve" not in objects
     if said & words_known.DENIED or "other" in quantities:
         return Meaning(quantity="other", is_other=True)
-    sides = {SIDES[word] for word in words if word in SIDES}
+    sides = _sides(words)
     behind = {after for word, after in zip(words, words[1:], strict=False) if _is_pressure(word)}
     objects |= {"tank"} if behind & words_known.TANK_LETTERS else set()
     sides |= {"supply"} if behind & words_known.SUPPLY_LETTERS else set()
@@ -134,6 +140,12 @@ def _of_words(words: list[str], unit: str, common: frozenset[str]) -> Meaning:
     sure = understood and not is_wanted and len(set(quantities) - {"command"}) < 2
     is_other = not channels and bool(objects & {"tank", "pump", "supply"})
     return Meaning(frozenset(channels), (*named, "")[0], bool(quantities), sure, is_wanted, is_other, side)
+
+
+def _sides(words: list[str]) -> set[str]:
+    """The sides that words name; a number is none beside a letter, as in `pB1`, the pressure B of cylinder 1."""
+    by_letter = {SIDES[word] for word in words if word in SIDES and not word.isdigit()}
+    return by_letter if by_letter & {"a", "b"} else {SIDES[word] for word in words if word in SIDES}
 
 
 def _is_pressure(word: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from eha_core.recording.column_names import Meaning, meaning_of
+from eha_core.recording.column_names import Meaning, meaning_of, without_reference
 from eha_core.recording.inspection import Field, Inspection
 from eha_core.unit_names import unit_named
 
@@ -48,6 +48,7 @@ def plain_name(field: Field) -> str:
     if re.fullmatch(r"[A-Za-z]{1,2}\d?\[\d+\]", name):
         return ""  # a row of a matrix, whose symbol says nothing of its rows
     if field.unit:
+        name = without_reference(name)
         unit = re.escape(field.unit)
         bare = re.sub(rf"\s*[\[(<{{]\s*{unit}\s*[\])>}}]", " ", name).strip()
         name = bare if bare != name else re.sub(rf"(?:[\s_/,:;|-]+|(?<=[a-z])(?=[A-Z]))(?i:{unit})$", "", name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf, nan
 from pathlib import Path
 
@@ -18,6 +18,7 @@ from eha_core.recording.channel_rules import ABSOLUTE
 from eha_core.recording.fields import Tables
 from eha_core.recording.introspection import value_names
 from eha_core.recording.message_types import recorded_types
+from eha_core.recording.outline import Outline, Pairs
 from eha_core.recording.raw import RawTopic
 from eha_core.recording.stated_units import unit_of_name, unit_of_type
 from eha_core.recording.time_units import repeats, unwrapped, usual_step
@@ -28,6 +29,12 @@ MOST_FIELDS = 200
 """Numbers of a topic, or columns of a table, that are listed."""
 LONGEST_ARRAY = 12
 """Numbers of an unnamed array that are listed one by one; longer ones are images, scans or covariances."""
+KINDS = {
+    "csv": "text table", "lvm": "LabVIEW measurement file", "mat": "MAT file", "parquet": "Parquet file",
+    "json": "JSON records", "xlsx": "workbook", "tdms": "TDMS file", "mdf": "MDF file",
+    "bag": "recording of ROS 2 messages",
+}  # fmt: skip
+"""What each kind of file is called."""
 _HEADS = ("header.", "layout.")
 """Parts of messages that hold no numbers of a rig."""
 _NO_CHANNEL = (".sec", ".nanosec", "variance", "names_version")
@@ -53,6 +60,8 @@ class Field:
         repeated: rows in a second, by its first and last, of a column that often stands and never goes back.
         time: the column of its own times; empty where the table's time serves.
         problem: why it cannot be used; empty where it can.
+        day_first: of dates that both orders of day and month fit, the one that makes the shorter record; else None.
+        outline: lowest and highest value of each of some hundred stretches, as recorded.
     """
 
     topic: str
@@ -68,6 +77,8 @@ class Field:
     repeated: float = 0.0
     time: str = ""
     problem: str = ""
+    day_first: bool | None = None
+    outline: Pairs = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -120,6 +131,8 @@ def _of_table(path: Path, table: Table) -> Inspection:
 
 
 def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
+    outline = Outline()
+    outline.add(values)
     numbers = values.astype(np.float64)
     numbers = numbers[np.isfinite(numbers)]
     if not len(numbers):
@@ -133,6 +146,8 @@ def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
         usual_step(times), repeated=(len(times) - 1) / float(times[-1] - times[0]) if repeats(times) else 0.0,
         time=table.times.get(name, ""),
         problem=str(loss) if loss is not None and loss.by_value else "",
+        day_first=table.other_orders[name].day_first if name in table.other_orders else None,
+        outline=outline.pairs(),
     )  # fmt: skip
 
 
@@ -156,6 +171,7 @@ class _Watch:
         self._tables = tables
         self._columns: TopicColumns | None = None
         self._ranges: dict[str, tuple[int, float, float]] = {}
+        self._outlines: dict[str, Outline] = {}
         self._span: tuple[int, int] | None = None
         self._count = 0
         self._unread = False
@@ -210,6 +226,7 @@ class _Watch:
             ends = (int(decoded.stamps.min()), int(decoded.stamps.max()))
             self._span = ends if self._span is None else (min(self._span[0], ends[0]), max(self._span[1], ends[1]))
         for path, values in decoded.columns.items():
+            self._outlines.setdefault(path, Outline()).add(values)
             finite = values[np.isfinite(values)]
             count, low, high = self._ranges.get(path, (0, inf, -inf))
             if len(finite):
@@ -229,7 +246,10 @@ class _Watch:
             rate = (count - 1) / seconds if seconds > 0.0 and count > 1 else nan
             unit = unit_of_type(self._topic.type_name, path)
             reference = ABSOLUTE if self._topic.type_name == _ABSOLUTE and path == "fluid_pressure" else None
-            found.append(Field(self._topic.name, path, count, low, high, rate, unit, reference=reference))
+            outline = self._outlines[path].pairs()
+            found.append(
+                Field(self._topic.name, path, count, low, high, rate, unit, reference=reference, outline=outline)
+            )
         return found
 
 

@@ -23,7 +23,7 @@ QUANTITIES = _of(
     velocity="velocity vel speed geschwindigkeit geschw vitesse velocidad xdot xd",
     force="force kraft effort forza fuerza loadcell kraftmessdose fx",
     flow="flow flowrate volumenstrom durchfluss debit caudal",
-    voltage="voltage volt volts spannung tension uvalve ucmd",
+    voltage="voltage volt volts spannung stellspannung steuerspannung tension uvalve ucmd",
     current="current strom courant corriente amps amperage",
     spool="spool schieber tiroir xv",
     command="cmd cmds command commands ctrl control ansteuerung stellgroesse stellsignal duty pwm",
@@ -46,7 +46,7 @@ OBJECTS = _of(
     tank="tank return ruecklauf reservoir drain sump",
 )
 SIDES = _of(
-    a="a 1 head headside cap capend blind bore boden bodenseite kolbenseite kolbenseitig bottom",
+    a="a 1 head headside cap capend blind blindend bore boden bodenseite kolbenseite kolbenseitig bottom",
     b="b 2 rod rodside rodend annulus ring ringseite stange stangenseite kolbenstange stangenseitig gap",
     supply="s 0",
 )
@@ -97,7 +97,7 @@ NUMBERED = _all(
     " cyl cylinder zyl zylinder actuator aktor axis achse ram jack rig valve ventil pump pumpe motor joint"
 )
 """Words behind which a number only counts."""
-PAIRS = _all("loadcell xdot xvalue xv flowrate headside rodside rodend capend")
+PAIRS = _all("loadcell xdot xvalue xv flowrate headside rodside rodend capend blindend")
 """Words that are written apart too, as `load cell`."""
 EVERY = (QUANTITIES, LETTERS, OBJECTS, SIDES, WANTED, REFERENCES, FILLERS, FIRST, SECOND)
 """All that is known."""

@@ -25,7 +25,7 @@ BELOW_ZERO = -2e4
 """Pa: below this a pressure is gauge; a sensor's zero is not that far off."""
 _ATMOSPHERE_MATTERS = 20e5
 """Pa: a pressure that reaches more is read as gauge without a question: an atmosphere is 5 % of it at most."""
-_RARE = frozenset(("mbar", "kgf/cm^2", "100ns", "daN", "kgf", "m^3/h", "Hz", "deg/s"))
+_RARE = frozenset(("mbar", "kgf/cm^2", "100ns", "daN", "kgf", "m^3/h", "Hz", "deg/s", "GPa"))
 """Units that are taken where they are stated, and not offered where none is."""
 _VALUE_UNITS = {
     "Pa": "bar", "m": "mm", "m/s": "mm/s", "V": "V", "A": "A", "N": "kN", "m^3/s": "l/min", "rad/s": "rpm",
@@ -47,6 +47,7 @@ class Reading:
         points: what a sensor's numbers mean, in `unit`; None where that is still to be said.
         minus: a second field that is taken from the first.
         rate: of the time, rows in a second; NaN where that is still to be said.
+        day_first: of the time, whether the day stands before the month in its dates; None where nothing hangs on it.
         is_certain: whether nothing of it was guessed.
         assumed: what was taken without a question, for want of a word; empty where nothing was.
         hint: what helps to answer.
@@ -59,6 +60,7 @@ class Reading:
     points: Points = ()
     minus: Field | None = None
     rate: float | None = None
+    day_first: bool | None = None
     is_certain: bool = True
     assumed: str = ""
     hint: str = ""
@@ -166,7 +168,7 @@ def _through_points(channel: str, one: MeantField, unit: Unit) -> list[Reading] 
         return None
     first, last = places
     if channel == "voltage_command" and unit.si == "%":
-        points: Points = ((0.0, 0.0), (last, _RATED_VOLTAGE * last / 100.0))
+        points: Points = ((0.0, 0.0), (last, _RATED_VOLTAGE * last * unit.scale / 100.0))
         hint = f" ({_RATED_VOLTAGE:g} V at 100 % is usual)"
         return [Reading(channel, field, value, None, points, is_certain=False, hint=hint)]
     zero = 0.0 if unit.si in ("counts", "%") or (unit.si == "A" and first == 0.0) else None
@@ -185,7 +187,7 @@ def _places(channel: str, one: MeantField, unit: Unit) -> tuple[float, float] | 
     if unit.si == "V":
         return 0.0, 10.0 / unit.scale
     if unit.si == "%":
-        return 0.0, 100.0
+        return 0.0, 100.0 / unit.scale
     if unit.si == "counts":
         return 0.0, 1000.0
     if unit.si == "rad" and channel in ("position", "pump_speed"):

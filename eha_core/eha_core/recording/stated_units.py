@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from eha_core.recording.column_names import names_a_side
+from eha_core.recording.column_names import names_a_side, without_reference
 from eha_core.tables import unit_in
 from eha_core.unit_names import UNITS, unit_named
 
@@ -30,6 +30,9 @@ def unit_of_name(name: str, names: tuple[str, ...] = ()) -> str:
     """
     if stated := unit_in(name):
         return stated
+    bare = without_reference(name)
+    if bare != name and (unit := unit_named(unit_of_name(bare, names))) is not None and unit.si == "Pa":
+        return unit_of_name(bare, names)
     match = re.search(r"(?:[_/\s,;:|-]|\bin\s)\s*(%|[A-Za-z\u00b5\u03bc\u00b0]{1,8}(?:\^?\d)?(?:/(?:s|min|h))?)$", name)
     match = match or re.search(r"(?<=[a-z])(Bar|Psi|Mm|Mpa|MPa|Kpa|kPa|Pct|Deg|Rpm|kN|mA)$", name)
     if match is None or unit_named(match[1]) is None or match[1].lower() in _NO_UNITS:

@@ -220,6 +220,9 @@ def _open_questions(
         and not one.meaning.is_wanted and not one.meaning.is_other
     ][:MOST_UNNAMED]  # fmt: skip
     have = {reading.channel for reading in certain} | {question.channel for question in questions}
+    if not have & {"position", "pressure_a", "pressure_b"}:
+        cards = [one for one in fields if _is_of_a_card(one)]
+        nameless += cards[:MOST_UNNAMED] if len(cards) > 1 else []
     found = []
     for channel in _USUAL_CHANNELS if nameless else ():
         if channel in have:
@@ -228,6 +231,13 @@ def _open_questions(
         if readings:
             found.append(Question(channel, f"which number is {channel}, if any?", (*readings, None), True))
     return found
+
+
+def _is_of_a_card(one: MeantField) -> bool:
+    """Whether a field without a telling name is what a measuring card or a sensor gives, whatever it measures."""
+    unit, meaning = unit_named(one.field.unit), one.meaning
+    tells = meaning.channels or meaning.is_wanted or meaning.is_other
+    return not tells and unit is not None and unit.si in ("V", "A", "%", "counts")
 
 
 def used(suggestions: Suggestions) -> Mapping[tuple[str, str], list[str]]:
@@ -269,5 +279,5 @@ def rule_of(reading: Reading) -> ChannelRule:
         scale=1.0, reference=reading.reference, unit=reading.unit, points=reading.points,
         minus=reading.minus.path if reading.minus else None,
         time=field.time or None if reading.channel != "time" else None,
-        rate=reading.rate,
+        rate=reading.rate, day_first=reading.day_first, assumed=reading.assumed if reading.is_certain else "",
     )  # fmt: skip

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from eha_core.errors import RecordingError
 from eha_core.recording.channel_kinds import CHANNEL_KINDS, FloatArray
-from eha_core.recording.channel_rules import ChannelRule
+from eha_core.recording.channel_rules import ChannelRule, quoted
 from eha_core.recording.samples import Samples
 from eha_core.recording.time_units import TimeUnit, repeats, time_unit, unwrapped, usual_step
 from eha_core.recording.topics_file import TopicsFile
@@ -119,7 +119,7 @@ class _Clocks:
                 f"{self._path}: no column {time!r} ({_listed(self._table)}); name the times [s] `time` or map them with"
                 f" `time: {{column: ...}}` in a topics file, which `eha inspect {self._path} --topics FILE` writes"
             )
-        values = self._table.columns[time]
+        values = self._in_order(time)
         timed = np.isfinite(values.astype(np.float64))
         if not timed.any():
             raise RecordingError(f"{self._path}: column {time!r} holds no numbers; it must be the time in s")
@@ -131,6 +131,18 @@ class _Clocks:
         self.remarks += remarks
         self._known[time] = timed, stamps
         return timed, stamps
+
+    def _in_order(self, time: str) -> Column:
+        """A column of times. Raises RecordingError where day and month may stand either way, and nothing says how."""
+        order = self._table.other_orders.get(time)
+        if order is None or self._rule.day_first == order.day_first:
+            return self._table.columns[time]
+        if self._rule.day_first is None:
+            raise RecordingError(
+                f"{self._path}: column {time!r}: its dates do not say whether the day or the month stands first; say"
+                f" `time: {{column: {quoted(time)}, day_first: true}}`, or false, in a topics file"
+            )
+        return order.swapped
 
 
 def _lost(path: Path, table: Table, channel: str, rule: ChannelRule) -> list[str]:

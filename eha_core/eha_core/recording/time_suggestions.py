@@ -102,6 +102,14 @@ def _counts(field: Field) -> bool:
 
 
 def _of_times(field: Field, rate: float | None) -> Reading | TimeQuestion:
+    if field.day_first is not None:
+        orders = (field.day_first, not field.day_first)
+        text = (
+            f'"{field.path}": does the day or the month stand first? both fit, and the record is shorter with the first'
+        )
+        return TimeQuestion(
+            text, tuple(Reading("time", field, "ns", day_first=one, is_certain=False) for one in orders)
+        )
     found = time_unit(field.first, field.step, field.unit, rate)
     if found.is_certain and not (_is_index(field) and not field.unit):
         return Reading("time", field, found.units[0], assumed="")

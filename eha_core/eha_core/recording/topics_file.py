@@ -16,6 +16,8 @@ from eha_core.yaml_file import load_yaml
 
 MOST_CANDIDATES = 3
 """Answers to an open question that are shown in a message; the file has them all."""
+OF_TIMES = ("rate", "day_first")
+"""Keys that only the time has."""
 
 
 @dataclass(frozen=True)
@@ -70,9 +72,18 @@ def load_topics_file(path: str | Path, assume: bool = False) -> TopicsFile:
         {name: rules[name] for name in entries if name != "time" and name in rules},
         None if namespace is None else str(namespace).strip("/"),
         rules.get("time") or ChannelRule(),
-        remarks,
+        (*remarks, *assumptions({name: rule.assumed for name, rule in rules.items() if rule is not None})),
         Path(path),
     )
+
+
+def assumptions(by_channel: Mapping[str, str]) -> tuple[str, ...]:
+    """What was taken without a question, one line for channels alike."""
+    channels: dict[str, list[str]] = {}
+    for channel, assumed in by_channel.items():
+        if assumed:
+            channels.setdefault(assumed, []).append(channel)
+    return tuple(f"assumed: {' and '.join(names)} {assumed}" for assumed, names in channels.items())
 
 
 def topics_of(given: str | Path | TopicsFile | None) -> TopicsFile | None:
@@ -142,7 +153,7 @@ def _rule(path: str | Path, channel: str, entry: Any, may_be_open: bool = False)
     where = f"topics file {path}: channel {channel}"
     if not isinstance(entry, dict):
         raise RecordingError(f"{where}: needs keys such as {{topic: /name, field: data}}")
-    known = [row.name for row in fields(ChannelRule) if (row.name == "rate") <= (channel == "time")]
+    known = [row.name for row in fields(ChannelRule) if row.name not in OF_TIMES or channel == "time"]
     _refuse_unknown(path, f"key of {channel}", entry, tuple(known))
     values = dict(entry)
     for name in ("scale", "offset"):
@@ -152,11 +163,13 @@ def _rule(path: str | Path, channel: str, entry: Any, may_be_open: bool = False)
                 raise RecordingError(f"{where}: {name} {values[name]:g} makes no numbers of what was recorded")
     if values.get("reference") not in (None, ABSOLUTE, GAUGE):
         raise RecordingError(f"{where}: reference {values['reference']!r}; say {ABSOLUTE} or {GAUGE}")
-    for name in ("topic", "field", "column", "unit", "minus", "time"):
+    for name in ("topic", "field", "column", "unit", "minus", "time", "assumed"):
         if values.get(name) is not None:
             values[name] = str(values[name])
     if "points" in values:
         values["points"] = _points(where, values["points"], may_be_open)
+    if not isinstance(values.get("day_first"), bool | None):
+        raise RecordingError(f"{where}: day_first {values['day_first']!r}; say true or false")
     if "rate" in values:
         values["rate"] = _rate(where, values["rate"], may_be_open)
     if values.get("minus") is not None and values.get("column") is None:

@@ -21,8 +21,7 @@ def topics_text(inspection: Inspection, suggestions: Suggestions) -> str:
         )
     lines.append("channels:")
     for reading in suggestions.certain:
-        said = f"  # assumed: {reading.assumed}" if reading.assumed else ""
-        lines.append(f"  {reading.channel}: {entry_text(rule_of(reading))}{said}")
+        lines.append(f"  {reading.channel}: {entry_text(rule_of(reading))}")
     for question in suggestions.questions:
         lines += [f"  {question.channel}:", f"    question: {quoted(question.text)}", "    ask:"]
         lines += [f"      - {_candidate(reading, question)}" for reading in question.readings]

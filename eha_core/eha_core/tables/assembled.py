@@ -24,6 +24,8 @@ _TIME = re.compile(
 )
 _CLOCKS = ("time", "zeit", "timestamp")
 """Words with which a name of times ends."""
+_MOSTLY, _OFTEN = 0.99, 0.5
+"""Shares of steps of a column of times that do not go down, and that go up (assumed: clocks begin anew and stand)."""
 _ALIKE = 0.02
 """Share by which the usual steps of two clocks of the same rows may differ."""
 _FRACTIONS = {
@@ -74,6 +76,7 @@ def assembled(
     units = {name: column.unit for name, column in zip(names, columns, strict=True) if column.unit}
     gathered = dict(zip(names, columns, strict=True))
     said += _clocks_joined(values, gathered, units)
+    orders = {name: order for name in values if (order := gathered[name].other_order) is not None}
     losses: dict[str, Loss] = {}
     for name in list(values):
         column = gathered[name]
@@ -87,12 +90,13 @@ def assembled(
             losses[name] = loss
     stated = {name: unit for name, unit in units.items() if name in values}
     own = {name: time for name, time in own.items() if name in values and time in values}
-    return Table(kind, values, stated, tuple(said), own, rate, losses)
+    orders = {name: order for name, order in orders.items() if name in values}
+    return Table(kind, values, stated, tuple(said), own, rate, losses, orders)
 
 
 def _own_times(names: Sequence[str], plain: Sequence[str], values: Mapping[str, Column]) -> dict[str, str]:
     """The column of times before each column, in a file that has one before each signal or each of several tables."""
-    is_time = [_is_time(_bare(name)) for name in plain]
+    is_time = [_is_time(_bare(bare)) and _rises(values[name]) for name, bare in zip(names, plain, strict=True)]
     places = [k for k, one in enumerate(is_time) if one]
     if len(places) < 2 or places[0] != 0 or is_time[-1] or any(b - a == 1 for a, b in pairwise(places)):
         return {}
@@ -104,6 +108,12 @@ def _own_times(names: Sequence[str], plain: Sequence[str], values: Mapping[str, 
 def _is_time(bare: str) -> bool:
     words = re.split(r"[^a-z]+", bare)
     return _TIME.fullmatch(bare) is not None or _TIME.fullmatch(words[0]) is not None or words[-1] in _CLOCKS
+
+
+def _rises(values: Column) -> bool:
+    """Whether values go up as times do, which the pressure of a tank or the oil's temperature, `T_oil`, does not."""
+    steps = np.diff(values[np.isfinite(values.astype(np.float64))])
+    return len(steps) == 0 or bool(np.mean(steps >= 0) >= _MOSTLY and np.mean(steps > 0) >= _OFTEN)
 
 
 def _are_alike(clocks: Sequence[Column]) -> bool:
@@ -136,6 +146,8 @@ def _clocks_joined(
     clocks = [name for name in instants if gathered[name].has_clock and not gathered[name].has_date]
     if len(dates) == 1 and len(clocks) == 1:
         date, clock = dates[0], clocks[0]
+        if (order := gathered[date].other_order) is not None:
+            gathered[clock].other_order = replace(order, swapped=order.swapped // DAY * DAY + values[clock])
         values[clock] = values[date] // DAY * DAY + values[clock]
         gathered[clock].has_date = True
         del values[date]
@@ -144,7 +156,10 @@ def _clocks_joined(
         for size, called in _FRACTIONS.items():
             fraction = next((other for other in values if called.fullmatch(other.strip(" []()"))), None)
             if fraction is not None and _fills(values[name], values[fraction], size):
-                values[name] = values[name] + np.round(values[fraction]).astype(np.int64) * size
+                added = np.round(values[fraction]).astype(np.int64) * size
+                values[name] = values[name] + added
+                if (order := gathered[name].other_order) is not None:
+                    gathered[name].other_order = replace(order, swapped=order.swapped + added)
                 del values[fraction]
                 said.append(f"{name} and {fraction} are one time, called {name}")
     for name in list(units):
@@ -186,6 +201,11 @@ def _long(where: str, kind: str, columns: Sequence[GatheredColumn], long: LongFo
     loss = columns[long.value].loss(value)
     said = [*remarks, f"each row holds one value of one signal; its {len(signals)} signals are columns here"]
     said += [f"of the values, {loss}"] if loss is not None else []
+    said += [
+        f"assumed: {column.name}: the {'day' if column.other_order.day_first else 'month'} stands first, which makes"
+        " the shorter record"
+        for column in columns if column.other_order is not None
+    ]  # fmt: skip
     found = columns_with_times(kind, signals)
     return replace(found, remarks=(*said, *found.remarks))
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eha_core.errors import RecordingError
 from eha_core.tables.number_cells import COMMA, POINT, is_missing, looks_like_a_number, number_of, numbers_of
-from eha_core.tables.table import Column, Loss
+from eha_core.tables.table import Column, Loss, OtherOrder
 from eha_core.tables.time_cells import DAY, instants_of, is_instant
 
 _DECIDING = 200
@@ -37,6 +37,8 @@ class GatheredColumn:
         self._decimal = decimal
         self._parts: list[NDArray[Any]] = []
         self._others: list[NDArray[np.int64] | None] = []
+        self._month_first = False
+        self.other_order: OtherOrder | None = None
         self._lost: list[NDArray[np.int64]] = []
         self._first: tuple[str, int] = ("", 0)
         self._otherwise: list[str] = []
@@ -55,6 +57,7 @@ class GatheredColumn:
         if self.is_instant:
             found = instants_of(cells)
             self.has_date, self.has_clock = self.has_date or found.has_date, self.has_clock or found.has_clock
+            self._month_first |= found.month_first
             missing = np.array([not isinstance(cell, str) or is_missing(cell) for cell in cells], dtype=bool)
             exact = found.stamps if found.known.all() else np.where(found.known, found.stamps * 1e-9, np.nan)
             return exact, ~found.known & ~missing, found.other
@@ -119,17 +122,22 @@ class GatheredColumn:
         self.unit = "ns" if all(part.dtype.kind == "i" for part in self._parts) else "s"
         whole = self._in_ns(self._parts)
         remark = ""
-        if self._others and all(other is not None for other in self._others):
-            known = np.isfinite(whole.astype(np.float64))
-            swapped = np.concatenate([other for other in self._others if other is not None])
-            swapped = swapped if self.unit == "ns" else np.where(known, swapped * 1e-9, np.nan)
+        if not any(other is not None for other in self._others):
+            return whole, remark
+        known = np.isfinite(whole.astype(np.float64))
+        parts = [part if other is None else other for part, other in zip(self._parts, self._others, strict=True)]
+        swapped = np.where(known, self._in_ns(parts), whole)
+        if self._month_first:  # a date further on tells the order of all
+            whole = swapped
+        elif all(other is not None for other in self._others):
             one, other = np.ptp(whole[known]), np.ptp(swapped[known])
             # A record goes over midnight sooner than over a month.
-            if other < one:
-                whole = swapped
-            elif other == one:
+            if other == one:
                 day = np.datetime64(int(whole[known][0] // (DAY if self.unit == "ns" else DAY * 1e-9)), "D")
-                remark = f"{self.name}: the day was taken to stand before the month ({day}), which moves no sample"
+                remark = f"assumed: {self.name}: the day stands before the month ({day}), which moves no sample"
+            else:
+                self.other_order = OtherOrder(bool(one < other), swapped if one < other else whole)
+                whole = whole if one < other else swapped
         return whole, remark
 
     def _in_ns(self, parts: Sequence[NDArray[Any]]) -> NDArray[Any]:

@@ -27,8 +27,15 @@ def read_tdms(path: Path) -> Table:
     return _table(path, "tdms", lambda: _of_tdms(nptdms, path))
 
 
+_FRAMES = "CAN_DataFrame"
+"""How MDF calls the frames that a bus logger wrote without decoding them."""
+_DATABASE = ".dbc"
+LARGEST_DATABASE = 10 * 2**20
+"""Bytes of a CAN database; a vehicle's have one or two million."""
+
+
 def read_mdf(path: Path) -> Table:
-    """Read the signals of an MDF file, each with its own times [s].
+    """Read the signals of an MDF file, each with its own times [s]; CAN frames by the .dbc of the same name beside it.
 
     Raises:
         RecordingError: as `read_tdms`.
@@ -62,10 +69,39 @@ def _of_tdms(nptdms: Any, path: Path) -> Iterator[Signal]:
 
 def _of_mdf(asammdf: Any, path: Path) -> Iterator[Signal]:
     with asammdf.MDF(path) as file:
-        for signal in file.iter_channels(skip_master=True):
-            values = as_column(signal.samples) if np.ndim(signal.samples) == 1 else None
-            if values is not None and len(values):
-                yield signal.name, str(signal.unit or ""), values, np.asarray(signal.timestamps, dtype=np.float64), "s"
+        if _FRAMES in file.channels_db:
+            with _decoded(file, path) as decoded:
+                yield from _signals(decoded)
+        yield from _signals(file)
+
+
+def _signals(file: Any) -> Iterator[Signal]:
+    for signal in file.iter_channels(skip_master=True):
+        is_plain = np.ndim(signal.samples) == 1 and not signal.name.startswith(_FRAMES)
+        values = as_column(signal.samples) if is_plain else None
+        if values is not None and len(values):
+            yield signal.name, str(signal.unit or ""), values, np.asarray(signal.timestamps, dtype=np.float64), "s"
+
+
+def _decoded(file: Any, path: Path) -> Any:
+    """The signals in the CAN frames of an MDF file, by the database that lies beside it under its name.
+
+    Raises:
+        RecordingError: there is none, it cannot be read, or it has none of the frames.
+    """
+    database = path.with_suffix(_DATABASE)
+    if not database.is_file() or database.stat().st_size > LARGEST_DATABASE:
+        raise RecordingError(
+            f"{path}: holds raw CAN frames; put their database beside it as {database.name} (10 MB at most), or export"
+            " the decoded signals as CSV or MDF"
+        )
+    try:
+        decoded = file.extract_bus_logging(database_files={"CAN": [(str(database), 0)]})
+    except Exception as error:  # of the library for databases, whatever a damaged one leads it to
+        raise RecordingError(f"{database}: cannot be read as a CAN database ({error})") from error
+    if not decoded.groups:
+        raise RecordingError(f"{path}: {database.name} describes none of its CAN frames; take the network's own")
+    return decoded
 
 
 def _table(path: Path, kind: str, signals: Any) -> Table:

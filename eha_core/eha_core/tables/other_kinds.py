@@ -13,7 +13,10 @@ READABLE = (
 )
 """What can be read, as messages list it."""
 _HEAD = 4096
-_DECODE = "export its decoded signals as CSV or MDF, which takes the network's data base (.dbc)"
+_DECODE = (
+    "export its decoded signals as CSV, or its frames as MDF (.mf4), which is read with the network's database (.dbc)"
+    " beside it"
+)
 _BY_BYTES: tuple[tuple[bytes, str, str], ...] = (
     (b"LOGG", "a Vector CAN log (BLF) of raw frames", _DECODE),
     (b"#ROSBAG V", "a bag of ROS 1", "convert it with `rosbags-convert --src FILE --dst FOLDER`"),

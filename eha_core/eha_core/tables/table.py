@@ -50,6 +50,19 @@ class Loss:
 
 
 @dataclass(frozen=True)
+class OtherOrder:
+    """Dates of which nothing says whether the day or the month stands first.
+
+    Attributes:
+        day_first: the order in which they were read, the one that makes the shorter record.
+        swapped: the column in the other order.
+    """
+
+    day_first: bool
+    swapped: Column
+
+
+@dataclass(frozen=True)
 class Table:
     """Columns by name.
 
@@ -61,6 +74,7 @@ class Table:
         times: the column that holds a column's own times, by column; the others share the table's one time.
         rate: rows in a second that the file states [Hz]; None where it states none.
         losses: what of a column could not be had, by column; columns without loss are not in it.
+        other_orders: by column, its dates in the other order of day and month, where both fit and samples move.
     """
 
     kind: str
@@ -70,6 +84,7 @@ class Table:
     times: Mapping[str, str] = field(default_factory=dict)
     rate: float | None = None
     losses: Mapping[str, Loss] = field(default_factory=dict)
+    other_orders: Mapping[str, OtherOrder] = field(default_factory=dict)
 
 
 def as_column(values: Any) -> Column | None:

@@ -44,6 +44,7 @@ class Instants:
         known: which texts hold an instant.
         other: the stamps with day and month the other way round, where either order fits all dates; else None.
         has_date, has_clock: what the texts consist of.
+        month_first: whether a date tells that the month stands before the day.
     """
 
     stamps: NDArray[np.int64]
@@ -51,6 +52,7 @@ class Instants:
     other: NDArray[np.int64] | None
     has_date: bool
     has_clock: bool
+    month_first: bool = False
 
 
 def is_instant(cell: str) -> bool:
@@ -98,7 +100,7 @@ def instants_of(cells: NDArray[Any]) -> Instants:
         day_first = _order(texts, match)
         stamps, known = _parsed(texts, match, day_first is not False)
         other = _parsed(texts, match, False)[0] if day_first is None else None
-        return Instants(stamps, known, other, True, has_clock)
+        return Instants(stamps, known, other, True, has_clock, day_first is False)
     stamps, known = _parsed(texts, match, True)
     return Instants(stamps, known, None, has_date, has_clock)
 
