@@ -145,3 +145,18 @@ def test_a_blow_after_which_the_oil_rings_is_no_spike(rings: float, kinds: list[
     values[800] -= 1.4e6
     values[801:805] += rings * np.array([3.4e5, 0.0, -3.5e5, 1.7e5])
     assert [fault.fault for fault in examine(pressure(values)).faults] == kinds
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.007, -0.02])
+def test_sensors_of_another_clock_follow_ever_later_or_earlier(rate: float) -> None:
+    """Twelve seconds of a speed that follows noise of 4 Hz by 20 ms, stamped by a clock that runs so much faster."""
+    time = np.arange(6000) / 500.0
+    generator = np.random.default_rng(6)
+    tones = [(frequency, generator.uniform(0.0, 2.0 * np.pi)) for frequency in np.arange(0.3, 4.0, 0.17)]
+    command = sum(np.sin(2.0 * np.pi * frequency * time + phase) for frequency, phase in tones)
+    moved = sum(-np.cos(2.0 * np.pi * f * (time - 0.02) + phase) / f for f, phase in tones)
+    arrays = {"voltage_command": (time, command), "position": ((1.0 + rate) * time, 1e-3 * moved)}
+    found = unsuited(as_recording(arrays), nominal_values(), PAPER)
+    assert [fault.fault for fault in found] == (["clock"] if rate else [])
+    if found:
+        assert f"{100.0 * abs(rate):.2g} % {'fast' if rate > 0.0 else 'slow'}" in found[0].seen

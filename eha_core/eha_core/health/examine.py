@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from eha_core.health.clock import drift
 from eha_core.health.coverage import holes
 from eha_core.health.fault import Fault, Found, Health
 from eha_core.health.faults import (
@@ -70,5 +71,8 @@ def examine(recording: Recording) -> Health:
 
 
 def unsuited(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> tuple[Fault, ...]:
-    """What shows only against the nominal plant: a log too slow for its valve, a piston that should have moved."""
-    return (*too_slow(recording, nominal, composition), *still(recording, nominal, composition))
+    """What shows only between channels or against the nominal plant: a log too slow for its valve, a piston that should
+    have moved, a clock that runs at another rate."""
+    return (
+        *too_slow(recording, nominal, composition), *still(recording, nominal, composition), *drift(recording),
+    )  # fmt: skip
