@@ -3,7 +3,7 @@ physics."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from eha_core.health.noise import residual_noise
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.observation import RESOLVED, SHORTEST, Observation, without_end
-from eha_core.identification.per_recording import base_name
+from eha_core.identification.per_recording import base_name, named
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import SHORT, VERY_SHORT
@@ -33,6 +33,11 @@ AT_ALL = 50.0
 """Where this share of what the nominal equations leave unexplained, and so much chi^2, sits in the last window, that is
 taken for the recording's end: nodes go down one after the other there, and what is still recorded no longer acts. Nor
 could a law for it be judged on anything that it was not fitted to."""
+
+
+BEHIND_A_FILTER = 8.0
+"""Times the noise in a channel's differences that all of it may be: so much it is behind a filter of first order whose
+corner is a 250th of the sampling rate."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +63,7 @@ def calibrate(observations: Sequence[Observation], model: NominalModel, step_siz
     farthest = max(float(np.max(np.abs(values))) for values in positions)
     free = free_nominal_parameters(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
     first = fit_in_stages(whole(shooting), nominal, free)
-    shooting = with_noise(shooting, corrected_noise(shooting, first))
+    shooting = with_noise(shooting, corrected_noise(shooting, first, filtered_channels(observations)))
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
@@ -128,15 +133,29 @@ def _share_of_last_window(shooting: Shooting, fitted: Fit) -> float:
     return at_the_end / (before + at_the_end) if at_the_end > AT_ALL else 0.0
 
 
-def corrected_noise(shooting: Shooting, result: Fit) -> list[float]:
-    """The noise that the residual's second differences show, within a factor two of what the channel itself showed."""
-    return [
-        max(
-            sampling.noise * float(np.clip(residual_noise(residual), 0.5, 2.0)),
-            RESOLVED["Pa" if sampling.column > 1 else "m"],
-        )
-        for sampling, residual in zip(shooting.samplings, result.residuals, strict=True)
-    ]
+def filtered_channels(observations: Sequence[Observation]) -> frozenset[str]:
+    """The channels behind a low-pass filter, by their names in a fit."""
+    return frozenset(
+        named(fault.channel, number)
+        for number, observation in enumerate(observations, 1)
+        for fault in observation.health
+        if fault.fault == "low_passed"
+    )
+
+
+def corrected_noise(shooting: Shooting, result: Fit, filtered: Collection[str] = ()) -> list[float]:
+    """The noise that the residual's second differences show, within a factor two of what the channel itself showed.
+
+    Of a channel behind a filter differences show the least part of the noise; there it is the residual itself, up to
+    BEHIND_A_FILTER times what they show.
+    """
+    found = []
+    for name, sampling, residual in zip(shooting.names, shooting.samplings, result.residuals, strict=True):
+        times = np.clip(residual_noise(residual), 0.5, 2.0)
+        if name in filtered:
+            times = np.clip(np.sqrt(np.mean(residual**2)), times, BEHIND_A_FILTER * times)
+        found.append(max(sampling.noise * float(times), RESOLVED["Pa" if sampling.column > 1 else "m"]))
+    return found
 
 
 def identifiable(result: Fit, name: str) -> bool:

@@ -195,6 +195,9 @@ def gain_to_go_on(samples: int, times_noise: float, left: float) -> float:
 def parameter_cost(count: int, left_over: float) -> float:
     """What a hypothesis pays for each of its parameters, where the best model leaves `left_over` chi^2 a sample."""
     return log(count) + DEAR * count * max(0.0, 1.0 - ADEQUATE / left_over)
+CERTAINTY = 0.95
+"""Probability that what an interval holds is true, and that what is named gains more than by chance."""
+
 IDENTIFIED = 2.0
 """Standard deviations by which a value of a named effect must differ from what leaves the effect out, for the result to
 be complete: the 95 % interval excludes that nothing is there."""

@@ -26,6 +26,8 @@ BLOCK = 0.1
 def with_residual(problem: Problem, result: Fit) -> Fit:
     """The fit with its parameters' standard deviations where it ended, widened where the residual says so."""
     count = len(result.free)
+    if not count:
+        return result
     linear = linearise(problem, result.values, result.free, result.q, result.states)
     result = _where_it_ended(problem, result, linear)
     design = _pulls(problem, result, linear)
