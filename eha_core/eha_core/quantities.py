@@ -87,7 +87,8 @@ class Quantity:
         if digits == "%":
             shown = f"{_rounded(100.0 * self.value, 3)} %"
         else:
-            shown = quantity(self.value, self.unit, int(digits or 3))
+            # a bound is found to some per cent
+            shown = quantity(self.value, self.unit, 3 if self.bound else int(digits or 3))
         sign = "+" if spec.startswith("+") and self.value > 0.0 else ""
         return f"{self.bound}{sign}{shown}"
 

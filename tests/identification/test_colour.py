@@ -42,12 +42,13 @@ def test_the_spread_of_a_sum_is_that_over_all_pairs() -> None:
     assert spread(pulls, WHITE) == pytest.approx(np.sum(pulls**2, axis=0))
 
 
-def test_what_the_memory_predicts_is_taken_out() -> None:
-    noise = filtered(0.9, 0.0, np.random.default_rng(4))
-    rest = colour_of(noise).whitened(noise)
-    assert np.std(rest) == pytest.approx(np.std(noise), rel=0.05)
-    assert colour_of(rest) == WHITE
-    assert colour_of(noise + 5.0 * np.sin(2.0 * np.pi * TIME)).kept > 0.9
+def test_a_filter_leaves_slow_noise_as_it_is() -> None:
+    """So what a filter of gain one leaves of white noise is as loud at low frequencies as it was before."""
+    for kept in (0.5, 0.73, 0.9):
+        behind = [np.sqrt((1.0 - kept) / (1.0 + kept)) * filtered(kept, 0.0, np.random.default_rng([seed, 4]))
+                  for seed in range(10)]  # fmt: skip
+        before = [np.std(noise) * np.sqrt(colour_of(noise).slow) for noise in behind]
+        assert np.mean(before) == pytest.approx(1.0, rel=0.05)
 
 
 COLUMNS = np.stack([np.ones(COUNT), np.sin(2.0 * np.pi * 0.8 * TIME), np.cos(2.0 * np.pi * 6.0 * TIME)], axis=1)

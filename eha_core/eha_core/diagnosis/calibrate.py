@@ -10,6 +10,7 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
 from eha_core.health.noise import residual_noise
+from eha_core.identification.colour import colour_of
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.observation import RESOLVED, SHORTEST, Observation, without_end
@@ -35,9 +36,9 @@ taken for the recording's end: nodes go down one after the other there, and what
 could a law for it be judged on anything that it was not fitted to."""
 
 
-BEHIND_A_FILTER = 8.0
-"""Times the noise in a channel's differences that all of it may be: so much it is behind a filter of first order whose
-corner is a 250th of the sampling rate."""
+BEHIND_A_FILTER = 16.0
+"""Times the noise in a channel's differences that it may have been before a filter: as for one of first order whose
+corner is a 50th of the sampling rate. Of what a wrong model leaves there may be more."""
 
 
 @dataclass(frozen=True)
@@ -146,14 +147,16 @@ def filtered_channels(observations: Sequence[Observation]) -> frozenset[str]:
 def corrected_noise(shooting: Shooting, result: Fit, filtered: Collection[str] = ()) -> list[float]:
     """The noise that the residual's second differences show, within a factor two of what the channel itself showed.
 
-    Of a channel behind a filter differences show the least part of the noise; there it is the residual itself, up to
-    BEHIND_A_FILTER times what they show.
+    Of a channel behind a filter differences show the least part of the noise, and the residual's size is not all of it
+    either: as many samples tell less. There it is what the noise was before the filter, up to BEHIND_A_FILTER times
+    what the differences show.
     """
     found = []
     for name, sampling, residual in zip(shooting.names, shooting.samplings, result.residuals, strict=True):
         times = np.clip(residual_noise(residual), 0.5, 2.0)
         if name in filtered:
-            times = np.clip(np.sqrt(np.mean(residual**2)), times, BEHIND_A_FILTER * times)
+            before = float(np.sqrt(np.mean(residual**2) * colour_of(residual).slow))
+            times = np.clip(before, times, BEHIND_A_FILTER * times)
         found.append(max(sampling.noise * float(times), RESOLVED["Pa" if sampling.column > 1 else "m"]))
     return found
 

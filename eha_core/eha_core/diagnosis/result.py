@@ -95,14 +95,16 @@ class Explained:
 
     `share` is the part of the recalibrated nominal model's squared error beyond noise that it takes away, `times_noise`
     the RMS of what is left in each channel over that channel's noise, in the fit or on held-out windows, whichever is
-    more. `complete` says that what is left has the size of noise and is white; where it is not, `left_over` says where
-    and when it sits.
+    more. `complete` says that what is left has the size of noise and is white, and that each named effect's strength is
+    told from nothing; `vague` that only the second fails. Where the first does, `left_over` says where and when it
+    sits.
     """
 
     share: float
     times_noise: Mapping[str, float]
     complete: bool
     left_over: tuple[Location, ...] = ()
+    vague: bool = False
 
 
 @dataclass(frozen=True)

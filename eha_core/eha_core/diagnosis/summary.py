@@ -38,6 +38,8 @@ def summary(
         )
     if left.complete or not effects:
         return said
+    if left.vague:
+        return f"{said} What is left is noise, but how strong all of this is, the recording does not tell."
     most = max(left.times_noise, key=lambda name: left.times_noise[name])
     many = "One effect" if len(effects) == 1 else f"{len(effects)} effects"
     many += " and a law explain" if unknown else " explains" if len(effects) == 1 else " explain"

@@ -32,12 +32,10 @@ class Colour:
     share: float = 0.0
     kept: float = 0.0
 
-    def whitened(self, residual: Array) -> Array:
-        """A residual less what its memory predicts of each sample, of the residual's own size where it is noise."""
-        if not self.kept:
-            return residual
-        innovations = residual[1:] - self.kept * residual[:-1]
-        return np.asarray(innovations / np.sqrt(1.0 - 2.0 * self.kept * self.share * self.kept + self.kept**2))
+    @property
+    def slow(self) -> float:
+        """Power at frequencies below the filter's corner, over that of white noise of the same size."""
+        return 1.0 + 2.0 * self.share * self.kept / (1.0 - self.kept)
 
 
 WHITE = Colour()

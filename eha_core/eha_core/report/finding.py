@@ -104,7 +104,7 @@ def names_listed(diagnosis: Diagnosis) -> str:
 
 def is_complete(diagnosis: Diagnosis) -> bool:
     """Whether the named effects leave nothing but noise."""
-    return diagnosis.explained.complete
+    return diagnosis.explained.complete or diagnosis.explained.vague
 
 
 def effects_listed(diagnosis: Diagnosis) -> str:
@@ -167,6 +167,8 @@ def explanation(diagnosis: Diagnosis) -> str:
     said = f"The named physics explains {share} of what the recalibrated model leaves beyond noise"
     if explained.complete:
         return f"{said}."
+    if explained.vague:
+        return f"{said}; how strong each of it is, the recording does not tell."
     name, most = max(explained.times_noise.items(), key=lambda item: item[1])
     sites = listed([SITES[location.site].words for location in explained.left_over])
     where = f", most likely {sites}" if sites else ""
