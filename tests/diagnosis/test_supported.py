@@ -5,11 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from made import LAWS, recorded
+from scipy.signal import lfilter
 
 from eha_core.diagnosis.calibrate import calibrate
+from eha_core.diagnosis.conclude import polish
 from eha_core.diagnosis.effect_parameters import with_effects
+from eha_core.diagnosis.explained import root_mean_square
 from eha_core.diagnosis.fitted_values import named_effects
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
@@ -29,15 +33,7 @@ from eha_core.quantities import quantity
 @pytest.fixture(scope="module")
 def sound():
     """The evidence of a rig that lacks nothing."""
-    observation = observe(recorded({}, duration=4.0))
-    calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
-    return SimpleNamespace(
-        observation=observation,
-        observations=(observation,),
-        nominal=nominal_values(),
-        calibration=calibration,
-        comparison=ModelComparison(Entry(NOTHING, calibration.fitted, 0.0), (), 1.0),
-    )
+    return evidence_of(recorded({}, duration=4.0))
 
 
 def entry(evidence, start):
@@ -48,6 +44,19 @@ def entry(evidence, start):
     free = with_effects(calibrated.free, chosen, begun)
     found = fit(evidence.calibration.problem, begun, free, calibrated.states, iterations=10)
     return Entry(NOTHING.with_effects(chosen), found, 30.0)
+
+
+def evidence_of(recording):
+    """What is known of a recording before anything is compared."""
+    observation = observe(recording)
+    calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
+    return SimpleNamespace(
+        observation=observation,
+        observations=(observation,),
+        nominal=nominal_values(),
+        calibration=calibration,
+        comparison=ModelComparison(Entry(NOTHING, calibration.fitted, 0.0), (), 1.0),
+    )
 
 
 def test_an_effect_whose_interval_holds_nothing_is_not_named(sound):
@@ -97,3 +106,44 @@ def test_friction_that_holds_a_piston_is_so_much_at_least(stuck):
     (named,) = named_effects(winner, unsure, PAPER, (), ends)
     assert named.parameters["force"].interval == (low, None)
     assert f"at least {quantity(low, 'N')} of dry friction" in named.statement
+
+
+def with_channel(recording, name, change):
+    """The recording with one channel's times and values changed."""
+    channel = recording.channels[name]
+    time, values = change(channel.time, channel.values)
+    return replace(recording, channels={**recording.channels, name: replace(channel, time=time, values=values)})
+
+
+def test_the_lag_of_a_filter_lies_in_its_interval_and_leaves_noise():
+    """25 Hz at 1 kHz: k / (1 - k) samples late, with k = exp(-2 pi 25 / 1000); the noise is behind the filter, too."""
+    kept = float(np.exp(-2.0 * np.pi * 25.0 / 1000.0))
+
+    def filtered(time, values):
+        passed, _ = lfilter([1.0 - kept], [1.0, -kept], values, zi=[kept * values[0]])
+        return time, passed
+
+    evidence = evidence_of(with_channel(recorded({}, duration=5.0, rate=1000.0), "pressure_a", filtered))
+    assert [fault.fault for fault in evidence.observation.health] == ["low_passed"]
+    lag = "pressure_sensor_lag.time_constant"
+    winner = entry(evidence, {f"{lag}_a": 5e-3, f"{lag}_b": 1e-3})
+    found = supported(evidence, Decision("missing_physics", winner, (), None, None))
+    assert found.winner.ids == ("pressure_sensor_lag",)
+    final = polish(evidence, found.winner)
+    for name, true in ((f"{lag}_a", 1e-3 * kept / (1.0 - kept)), (f"{lag}_b", 0.0)):
+        assert abs(final.values[name] - true) < 2.0 * final.deviation(name) < 2e-3
+    times = dict(zip(evidence.calibration.shooting.names, map(root_mean_square, final.residuals), strict=True))
+    assert times["pressure_a"] < 1.0 and times["pressure_b"] == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_late_command_names_late_sensors_as_its_rival():
+    """All sensors stamped 25 ms late: a delay that no recording tells from the valve's."""
+    recording = recorded({}, duration=3.0)
+    for name in ("position", "pressure_a", "pressure_b"):
+        recording = with_channel(recording, name, lambda time, values: (time + 0.025, values))
+    given = nominal_values() | {"command_delay.delay": 0.015}
+    problem = whole(cut_together([observe(recording)], given, 2e-4))
+    found = fit(problem, given, with_effects((), [LAWS["command_delay"]], given), iterations=12)
+    assert found.values["command_delay.delay"] == pytest.approx(0.025, abs=3e-4)
+    (named,) = named_effects(Entry(NOTHING.with_effects([LAWS["command_delay"]]), found, 1e3), found, PAPER, ())
+    assert "the valve acts late, or all sensors are stamped late alike" in named.statement
