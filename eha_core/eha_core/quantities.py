@@ -76,18 +76,21 @@ def quantity(value: float, unit: str, digits: int = 3) -> str:
 @dataclass(frozen=True)
 class Quantity:
     """A value in SI that a format string shows in readable units: "{}" with three digits, "{:4}" with four, "{:%}" as
-    percent; "{:+}", "{:+4}" and "{:+%}" with its sign."""
+    percent; "{:+}", "{:+4}" and "{:+%}" with its sign. `bound` says of which side the value is one: "at least "."""
 
     value: float
     unit: str
+    bound: str = ""
 
     def __format__(self, spec: str) -> str:
         digits = spec.removeprefix("+")
         if digits == "%":
             shown = f"{_rounded(100.0 * self.value, 3)} %"
         else:
-            shown = quantity(self.value, self.unit, int(digits or 3))
-        return f"+{shown}" if spec.startswith("+") and self.value > 0.0 else shown
+            # a bound is found to some per cent
+            shown = quantity(self.value, self.unit, 3 if self.bound else int(digits or 3))
+        sign = "+" if spec.startswith("+") and self.value > 0.0 else ""
+        return f"{self.bound}{sign}{shown}"
 
 
 def with_deviation(value: float, deviation: float, unit: str) -> str:
@@ -113,6 +116,15 @@ def interval(value: float, deviation: float, unit: str, sure: float = 1.96) -> s
 def within(value: float, deviation: float, unit: str, sure: float = 1.96) -> str:
     """A value with half its 95 % interval: "312.82 ± 0.45 N"."""
     return with_deviation(value, sure * deviation, unit)
+
+
+def bounds(low: float | None, high: float | None, unit: str) -> str:
+    """An interval of which one end may not be known: "at least 17.0 kN", "at most 3.1 ms", "1.2 kN to 40.1 kN"."""
+    if low is not None and high is not None:
+        return f"{quantity(low, unit)} to {quantity(high, unit)}"
+    if low is not None:
+        return f"at least {quantity(low, unit)}"
+    return f"at most {quantity(high, unit)}" if high is not None else "of any size"
 
 
 def _resolution(value: float, deviation: float, unit: str) -> tuple[Scale, int]:

@@ -236,6 +236,8 @@ SEEN = (Location("chamber", 0.6, "", ()), Location("force", 0.3, "", ()))
 def _fitted_elsewhere(monkeypatch):
     """What the conclusion asks of fits and simulations, which have tests of their own."""
     monkeypatch.setattr(conclude, "polish", lambda evidence, winner: winner.fit)
+    monkeypatch.setattr(conclude, "supported", lambda evidence, decision: decision)
+    monkeypatch.setattr(conclude, "one_sided", lambda *given: {})
     monkeypatch.setattr(conclude, "judge", lambda shooting, model: JUDGED)
     monkeypatch.setattr(conclude, "explained", lambda *given: Explained(1.0, {"position": 1.0}, True))
     monkeypatch.setattr(conclude, "predictions", lambda *given: {})

@@ -20,6 +20,7 @@ def test_no_threshold_moved():
         "MOST_EFFECTS": 8,
         "OF_EXCESS": 0.01,
         "CHANCE": 25.0,
+        "CERTAINTY": 0.95,
         "OF_SAMPLES": 0.001,
         "OF_SAMPLES_BESIDE_A_FORM": 0.004,
         "OF_ITS_FORM": 0.0006,

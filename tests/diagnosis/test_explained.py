@@ -32,6 +32,7 @@ def evidence(before: float, after: float, **sites: float):
         calibration=SimpleNamespace(shooting=SimpleNamespace(names=("position", "pressure_a"))),
         comparison=SimpleNamespace(nominal=SimpleNamespace(fit=fit(before)), left_over=sites),
         decision=SimpleNamespace(winner=SimpleNamespace(fit=fit(after), effects=())),
+        observations=(),
         scales=None,
         lead=1,
     )

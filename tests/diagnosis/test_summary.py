@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from made import explanation
 
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.result import Explained, NamedEffect
+from eha_core.diagnosis.result import CommonScale, Explained, NamedEffect
 from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.diagnosis.summary import kind_alone, summary
 from eha_core.diagnosis.verdict import Decision
@@ -45,3 +47,24 @@ def test_the_kind_is_claimed_and_not_the_law():
     said = summary(decision(("coulomb_friction",), ("stribeck_friction",)), (friction,), None, Explained(1.0, {}, True))
     assert said.startswith("Physics is missing: dry friction; most simply, the seals rub: 1.9 kN.")
     assert "Its law cannot be told from this recording: coulomb_friction and stribeck_friction explain it alike" in said
+
+
+def test_an_event_is_told_before_its_cause_and_a_common_scale_after_the_verdict():
+    friction = NamedEffect("coulomb_friction", "force", "", {}, 100.0, "the seals rub: 1.9 kN")
+    alone = replace(decision(("coulomb_friction",)), verdict="missing_physics")
+    said = summary(alone, (friction,), None, Explained(1.0, {}, True), (3.0, 5.1))
+    assert said.startswith("The nominal model is at the noise but for 3.00 s to 5.10 s: an event, or a fault of the")
+    assert said.endswith("Physics is missing: the seals rub: 1.9 kN.")
+    nothing = Decision("parameters", Entry(NOTHING, FIT, 0.0), (), None, None)
+    clock = CommonScale("clock", 2.01, 0.01, ("moving_mass", "valve_gain", "damping_coefficient"))
+    said = summary(nothing, (), None, Explained(1.0, {}, True), scale=clock)
+    assert "3 values are off by one factor: the clock of the recording may run 2.01 times as fast" in said
+
+
+def test_what_is_told_from_one_side_and_what_nothing_explains_is_said():
+    friction = NamedEffect("coulomb_friction", "force", "", {}, 100.0, "the seals rub: at least 17 kN")
+    alone = replace(decision(("coulomb_friction",)), verdict="missing_physics")
+    vague = Explained(1.0, {"position": 1.0}, False, (), True)
+    assert summary(alone, (friction,), None, vague).endswith("how strong all of this is, the recording does not tell.")
+    given = Decision("unknown_physics", Entry(NOTHING, FIT, 0.0), (), None, None, as_given=True)
+    assert "better than the nominal one" in summary(given, (), None, vague)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import eha_core as eha
-from eha_core.health import examine, too_slow
+from eha_core.health import examine, unsuited
 from eha_core.parameters import nominal_values
 from eha_core.plant import PAPER
 from eha_core.recording import Recording, read_recording
@@ -28,7 +28,7 @@ def test_a_fault_is_found_with_its_channel_and_span(kind: FaultKind, as_modelled
     arrays = {name: (as_modelled.channels[name].time, as_modelled.channels[name].values) for name in EVERY}
     made, spans = faulty(kind, arrays, 5)
     recording = as_recording(made)
-    faults = (*examine(recording).faults, *too_slow(recording, nominal_values(), PAPER))
+    faults = (*examine(recording).faults, *unsuited(recording, nominal_values(), PAPER))
     assert verdict(kind, faults, spans, arrays[kind.channel][0]) == "found"
     of_all = kind.name in ("hole of all channels", "log of 20 Hz")
     assert of_all or {fault.channel for fault in faults} == {kind.channel}
@@ -38,7 +38,7 @@ def test_a_fault_is_found_with_its_channel_and_span(kind: FaultKind, as_modelled
 def test_no_recording_of_the_repository_has_a_fault(bag: Path) -> None:
     recording = read_recording(bag)
     assert examine(recording).faults == ()
-    assert not too_slow(recording, nominal_values(), PAPER)
+    assert not unsuited(recording, nominal_values(), PAPER)
 
 
 def position(motion: np.ndarray, noise: float, step: float = 0.0) -> Recording:
@@ -112,3 +112,51 @@ def test_noise_alone_is_no_fault(step: float) -> None:
             recording = eha.Recording.from_arrays(time=TIME[:2000], pressures="gauge", pressure_a=1e5 * values)
             found += examine(recording).faults
     assert found == []
+
+
+@pytest.mark.parametrize(("volts", "kinds"), [(0.04, []), (0.06, ["still"])])
+def test_a_piston_stays_under_a_small_command_and_is_blocked_under_another(volts: float, kinds: list[str]) -> None:
+    """Overlap and stiction may take 2.4 % of the rated 2 V, from end to end."""
+    resting = 1e-5 * np.random.default_rng(4).standard_normal(len(TIME))
+    command = 0.5 * volts * np.sin(2.0 * np.pi * TIME)
+    recording = eha.Recording.from_arrays(time=TIME, voltage_command=command, position=resting)
+    assert [fault.fault for fault in unsuited(recording, nominal_values(), PAPER)] == kinds
+
+
+def pressure(values: np.ndarray) -> Recording:
+    """A pressure [Pa] at 200 Hz."""
+    time = np.arange(len(values)) / 200.0
+    return eha.Recording.from_arrays(time=time, pressures="gauge", pressure_a=values)
+
+
+def test_a_converter_that_shows_two_levels_has_no_spikes() -> None:
+    """A pressure that rests by the edge of a level is now and then on the next one."""
+    values = np.full(1600, 1.04e7)
+    values[[263, 667, 1201]] += 1.96e5
+    assert examine(pressure(values)).faults == ()
+
+
+@pytest.mark.parametrize(("rings", "kinds"), [(1.0, []), (0.0, ["spikes"])])
+def test_a_blow_after_which_the_oil_rings_is_no_spike(rings: float, kinds: list[str]) -> None:
+    """One sample of 1.4 MPa in a pressure of +-0.5 MPa, as a rig's at 200 Hz, and what rings after it."""
+    time = np.arange(1600) / 200.0
+    values = 4.8e6 + 5e5 * np.sin(2.0 * np.pi * 0.5 * time)
+    values += 2e4 * np.random.default_rng(5).standard_normal(len(time))
+    values[800] -= 1.4e6
+    values[801:805] += rings * np.array([3.4e5, 0.0, -3.5e5, 1.7e5])
+    assert [fault.fault for fault in examine(pressure(values)).faults] == kinds
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.007, -0.02])
+def test_sensors_of_another_clock_follow_ever_later_or_earlier(rate: float) -> None:
+    """Twelve seconds of a speed that follows noise of 4 Hz by 20 ms, stamped by a clock that runs so much faster."""
+    time = np.arange(6000) / 500.0
+    generator = np.random.default_rng(6)
+    tones = [(frequency, generator.uniform(0.0, 2.0 * np.pi)) for frequency in np.arange(0.3, 4.0, 0.17)]
+    command = sum(np.sin(2.0 * np.pi * frequency * time + phase) for frequency, phase in tones)
+    moved = sum(-np.cos(2.0 * np.pi * f * (time - 0.02) + phase) / f for f, phase in tones)
+    arrays = {"voltage_command": (time, command), "position": ((1.0 + rate) * time, 1e-3 * moved)}
+    found = unsuited(as_recording(arrays), nominal_values(), PAPER)
+    assert [fault.fault for fault in found] == (["clock"] if rate else [])
+    if found:
+        assert f"{100.0 * abs(rate):.2g} % {'fast' if rate > 0.0 else 'slow'}" in found[0].seen

@@ -140,7 +140,7 @@ def explaining(friction: Diagnosis, **more: Any) -> Diagnosis:
 def test_an_explanation_that_is_not_complete_says_so_first(friction: Diagnosis) -> None:
     rest = Location("orifice", 0.7, "near null", ())
     part = SimpleNamespace(
-        share=0.912, times_noise={"position": 3.21, "pressure_a": 1.0}, complete=False, left_over=(rest,)
+        share=0.912, times_noise={"position": 3.21, "pressure_a": 1.0}, complete=False, left_over=(rest,), vague=False
     )
     partly = explaining(friction, explained=part)
     assert "and more that is not named" in headline(partly)

@@ -9,7 +9,7 @@ import numpy as np
 from eha_core.diagnosis.result import Diagnosis, RecordingFit
 from eha_core.health import Fault
 from eha_core.report.account import account
-from eha_core.report.first_screen import residual_picture
+from eha_core.report.first_screen import pictures, residual_picture
 from eha_core.report.health import excluded, faults_told
 from eha_core.report.picture import Line, Spans
 from eha_core.report.stages import read
@@ -55,3 +55,8 @@ def test_the_first_picture_shades_what_was_excluded_and_draws_nothing_there(fric
     drawn = line.x[np.isfinite(line.y)]
     assert not np.any((drawn > 2.001) & (drawn < 2.999)) and np.any(drawn > 4.5)
     assert not any(isinstance(mark, Spans) for mark in residual_picture(friction).groups[0].panels[0].marks)
+
+
+def test_where_a_part_was_excluded_the_first_picture_shows_it(friction: Diagnosis) -> None:
+    assert [picture.name for picture in pictures(ill(friction, FROZEN))][0] == "0-residuals"
+    assert [picture.name for picture in pictures(ill(friction, HELD))][0] != "0-residuals"

@@ -234,6 +234,18 @@ def _blocked(arrays: Arrays, chance: np.random.Generator) -> Made:
     return {**arrays, "position": (time, values[0] + noise * chance.standard_normal(len(values)))}, WHOLE
 
 
+def _drifting(share: float) -> Make:
+    """Every sensor stamped by a clock that runs faster than the command's by that share."""
+
+    def make(arrays: Arrays, chance: np.random.Generator) -> Made:
+        command, last = arrays["voltage_command"], arrays["voltage_command"][0][-1]
+        late = {name: ((1.0 + share) * time, values) for name, (time, values) in arrays.items()}
+        kept = {name: (time[time <= last], values[time <= last]) for name, (time, values) in late.items()}
+        return {**kept, "voltage_command": command}, WHOLE
+
+    return make
+
+
 EVERY = ("voltage_command", "position", "pressure_a", "pressure_b")
 VACUUM = -STANDARD_ATMOSPHERE
 FAULTS = (
@@ -272,6 +284,7 @@ FAULTS = (
     FaultKind("position low-passed at 25 Hz", ("low_passed",), "position", _low_passed("position", 25.0)),
     FaultKind("pressure disturbed", ("noisy",), "pressure_b", _noisy("pressure_b")),
     FaultKind("log of 20 Hz", ("too_slow",), "voltage_command", _slow(20.0)),
+    FaultKind("clock of the sensors 2 % fast", ("clock",), "position", _drifting(0.02)),
     FaultKind("piston that does not move", ("still",), "position", _blocked),
 )  # fmt: skip
 """Faults that arise while a recording is made or exported, each in one channel."""

@@ -3,17 +3,18 @@ physics."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
 from eha_core.health.noise import residual_noise
+from eha_core.identification.colour import colour_of
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.observation import RESOLVED, SHORTEST, Observation, without_end
-from eha_core.identification.per_recording import base_name
+from eha_core.identification.per_recording import base_name, named
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import SHORT, VERY_SHORT
@@ -37,6 +38,11 @@ AT_ALL = 50.0
 """Where this share of what the nominal equations leave unexplained, and so much chi^2, sits in the last window, that is
 taken for the recording's end: nodes go down one after the other there, and what is still recorded no longer acts. Nor
 could a law for it be judged on anything that it was not fitted to."""
+
+
+BEHIND_A_FILTER = 16.0
+"""Times the noise in a channel's differences that it may have been before a filter: as for one of first order whose
+corner is a 50th of the sampling rate. Of what a wrong model leaves there may be more."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +79,7 @@ def calibrate(
         first = fit_in_stages(whole(shooting), nominal, free)
     else:
         first = fit(whole(shooting), begun.values, free, begun.states, iterations=8)
-    shooting = with_noise(shooting, corrected_noise(shooting, first))
+    shooting = with_noise(shooting, corrected_noise(shooting, first, filtered_channels(observations)))
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
@@ -168,15 +174,31 @@ def _share_of_last_window(shooting: Shooting, fitted: Fit) -> float:
     return at_the_end / (before + at_the_end) if at_the_end > AT_ALL else 0.0
 
 
-def corrected_noise(shooting: Shooting, result: Fit) -> list[float]:
-    """The noise that the residual's second differences show, within a factor two of what the channel itself showed."""
-    return [
-        max(
-            sampling.noise * float(np.clip(residual_noise(residual), 0.5, 2.0)),
-            RESOLVED["Pa" if sampling.column > 1 else "m"],
-        )
-        for sampling, residual in zip(shooting.samplings, result.residuals, strict=True)
-    ]
+def filtered_channels(observations: Sequence[Observation]) -> frozenset[str]:
+    """The channels behind a low-pass filter, by their names in a fit."""
+    return frozenset(
+        named(fault.channel, number)
+        for number, observation in enumerate(observations, 1)
+        for fault in observation.health
+        if fault.fault == "low_passed"
+    )
+
+
+def corrected_noise(shooting: Shooting, result: Fit, filtered: Collection[str] = ()) -> list[float]:
+    """The noise that the residual's second differences show, within a factor two of what the channel itself showed.
+
+    Of a channel behind a filter differences show the least part of the noise, and the residual's size is not all of it
+    either: as many samples tell less. There it is what the noise was before the filter, up to BEHIND_A_FILTER times
+    what the differences show.
+    """
+    found = []
+    for name, sampling, residual in zip(shooting.names, shooting.samplings, result.residuals, strict=True):
+        times = np.clip(residual_noise(residual), 0.5, 2.0)
+        if name in filtered:
+            before = float(np.sqrt(np.mean(residual**2) * colour_of(residual).slow))
+            times = np.clip(before, times, BEHIND_A_FILTER * times)
+        found.append(max(sampling.noise * float(times), RESOLVED["Pa" if sampling.column > 1 else "m"]))
+    return found
 
 
 def identifiable(result: Fit, name: str) -> bool:

@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from eha_core.diagnosis.calibrate import corrected_noise
+from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
+from eha_core.diagnosis.common_scale import common_scale
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE, LEAST_OF_A_LAW
 from eha_core.diagnosis.each_recording import fitted_recordings, of_recording, predicted_recordings
+from eha_core.diagnosis.event import event
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.design import not_proposed, propose
 from eha_core.diagnosis.experiment.discrimination import RATE
@@ -31,6 +33,7 @@ from eha_core.diagnosis.result import (
 )
 from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.diagnosis.summary import summary
+from eha_core.diagnosis.supported import one_sided, supported
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import effects as every_effect
 from eha_core.identification.fit import Fit, fit, with_noise
@@ -55,7 +58,9 @@ def conclude(
     """Polish the winner, measure what it is worth on data it was not fitted to, and put everything into words."""
     progress("polishing the winner and its intervals")
     unknown = _unknown(evidence)
-    decision = _without_another_curve(evidence, unknown)
+    decision = supported(evidence, _without_another_curve(evidence, unknown))
+    if decision.as_given:
+        unknown = None
     final = polish(evidence, decision.winner)
     before, calibrated = evidence.calibration.nominal, evidence.comparison.nominal.fit
     training, held_out = _channel_fits(evidence, before, calibrated, decision)
@@ -63,10 +68,14 @@ def conclude(
     composition = evidence.observation.composition
     experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
     recording = recordings[evidence.lead - 1]
+    happened = _event(evidence, decision)
+    parameters = fitted_parameters(final, evidence.nominal, composition)
+    scale = common_scale(final, parameters) if decision.verdict == "parameters" else None
     steps, without = ladder(replace(evidence, decision=decision), final)
     order = list(without)
     sets = probable_sets(evidence.comparison, decision.winner)
-    effects = named_effects(decision.winner, final, composition, sets)
+    ends = one_sided(evidence, final, decision.winner)
+    effects = named_effects(decision.winner, final, composition, sets, ends)
     if order:
         effects = tuple(sorted(effects, key=lambda effect: order.index(effect.id)))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
@@ -78,9 +87,9 @@ def conclude(
         remarks=(*zeros_to_correct(effects, recording), *_remarks(evidence)),
         damaged=next((record.damaged for record in recordings if record.damaged), None),
         verdict=decision.verdict,
-        summary=summary(decision, effects, unknown, left),
+        summary=summary(decision, effects, unknown, left, happened, scale),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
-        parameters=fitted_parameters(final, evidence.nominal, composition),
+        parameters=parameters,
         effects=effects,
         alternatives=tuple(Alternative(entry.ids, gap) for entry, gap in decision.rivals),
         unknown=unknown,
@@ -111,7 +120,17 @@ def conclude(
             for number, observation in enumerate(evidence.observations, 1)
             for fault in observation.health
         ),
+        event=happened,
+        scale=scale,
     )
+
+
+def _event(evidence: Evidence, decision: Decision) -> tuple[float, float] | None:
+    """When alone the nominal model fails in the recording that is drawn; nothing where no physics is missing."""
+    if decision.verdict in ("consistent", "parameters"):
+        return None
+    shooting = evidence.calibration.shooting
+    return event(evidence.shown(shooting), evidence.shown_fit(shooting, evidence.calibration.nominal))
 
 
 def polish(evidence: Evidence, winner: Entry) -> Fit:
@@ -120,7 +139,9 @@ def polish(evidence: Evidence, winner: Entry) -> Fit:
     step_size = min(FINAL_STEP, searched.step_size)
     shooting = cut_together(evidence.observations, evidence.nominal, step_size, per_recording=searched.per_recording)
     # under the winner the residual is noise at last, so its roughness is measured best there
-    shooting = with_noise(shooting, corrected_noise(evidence.calibration.shooting, winner.fit))
+    shooting = with_noise(
+        shooting, corrected_noise(evidence.calibration.shooting, winner.fit, filtered_channels(evidence.observations))
+    )
     problem = Problem(shooting, np.arange(shooting.windows))
     final = fit(problem, winner.fit.values, winner.fit.free, winner.fit.states, iterations=4)
     if final.data > FAR_FROM_NOISE * final.count > winner.fit.data:

@@ -131,6 +131,13 @@ refused."""
 LEFT_OVER = 0.05
 """A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""
 
+CERTAINTY = 0.95
+"""Probability that what an interval holds is true, and that what is named gains more than by chance."""
+
+IDENTIFIED = 2.0
+"""Standard deviations by which a value of a named effect must differ from what leaves the effect out, for the result to
+be complete: the 95 % interval excludes that nothing is there."""
+
 NOTICEABLE = 4.0
 """A parameter has changed when it left its nominal value by this many standard deviations ..."""
 
@@ -191,8 +198,3 @@ def gain_to_go_on(samples: int, times_noise: float, left: float) -> float:
 def parameter_cost(count: int, left_over: float) -> float:
     """What a hypothesis pays for each of its parameters, where the best model leaves `left_over` chi^2 a sample."""
     return log(count) + DEAR * count * max(0.0, 1.0 - ADEQUATE / left_over)
-
-
-IDENTIFIED = 2.0
-"""Standard deviations by which a value of a named effect must differ from what leaves the effect out, for the result to
-be complete: the 95 % interval excludes that nothing is there."""

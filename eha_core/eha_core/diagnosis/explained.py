@@ -13,6 +13,7 @@ from eha_core.diagnosis.result import ChannelFit, Explained, Location, Predictio
 from eha_core.diagnosis.verdict import coherence
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
+from eha_core.identification.numbers import Array
 from eha_core.identification.observation import Observation
 from eha_core.identification.segments import cut
 
@@ -24,18 +25,24 @@ def explained(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]
     """What the final fit takes away of the recalibrated nominal model's error, and what is left: in each channel the
     more of what the fit leaves and of what is left where nothing was fitted."""
     names = evidence.calibration.shooting.names
-    fitted = {name: float(np.sqrt(np.mean(residual**2))) for name, residual in zip(names, final.residuals, strict=True)}
+    fitted = {name: root_mean_square(residual) for name, residual in zip(names, final.residuals, strict=True)}
     # a local minimum can pass for noise where it was fitted, and nowhere else
     left = {name: max(size, held_out[name].rmse_after / held_out[name].noise) for name, size in fitted.items()}
     white = all(coherence(residual) < COHERENT for residual in final.residuals)
     identified = all(is_identified(effect, final) for effect in evidence.decision.winner.effects if effect.named)
-    complete = max(left.values()) < LEFT_IN_A_CHANNEL and white and identified
+    noise = max(left.values()) < LEFT_IN_A_CHANNEL and white
     before = evidence.comparison.nominal.fit
     missing = max(before.data - before.count, 0.0)
     # the same model in the final fit's noise: both are compared as shares of what was there
-    rest = max(evidence.decision.winner.fit.data - before.count, 0.0)
-    share = 1.0 - rest / missing if missing > 0.0 else 1.0
-    return Explained(max(share, 0.0), left, complete, () if complete else _left_over(evidence))
+    beyond = max(evidence.decision.winner.fit.data - before.count, 0.0)
+    share = 1.0 - beyond / missing if missing > 0.0 else 1.0
+    rest = () if noise else _left_over(evidence)
+    return Explained(max(share, 0.0), left, noise and identified, rest, noise and not identified)
+
+
+def root_mean_square(values: Array) -> float:
+    """The root of the mean of squares."""
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def is_identified(effect: Effect, final: Fit) -> bool:

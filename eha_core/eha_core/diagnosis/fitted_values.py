@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from itertools import combinations
+from types import MappingProxyType
+
+import numpy as np
 
 from eha_core.diagnosis.calibrate import has_changed, identifiable
+from eha_core.diagnosis.criteria import IDENTIFIED
 from eha_core.diagnosis.posterior import probability
 from eha_core.diagnosis.result import FittedParameter, FittedValue, NamedEffect, ProbableSet
 from eha_core.diagnosis.search.prune import wald
@@ -12,7 +18,12 @@ from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.per_recording import base_name, is_one_of
+from eha_core.identification.profile import Ends
 from eha_core.plant import Composition
+from eha_core.quantities import Quantity
+
+TOLD_TOGETHER = 4.0
+"""Times as well as either of two values that their difference must be known to be all that is."""
 
 
 def fitted_parameters(
@@ -49,19 +60,24 @@ def fitted_parameters(
 
 
 def named_effects(
-    winner: Entry, final: Fit, composition: Composition, sets: tuple[ProbableSet, ...]
+    winner: Entry,
+    final: Fit,
+    composition: Composition,
+    sets: tuple[ProbableSet, ...],
+    intervals: Mapping[str, Ends] = MappingProxyType({}),
 ) -> tuple[NamedEffect, ...]:
-    """The effects that were named, with the values, intervals, statement and probability of each."""
+    """The effects that were named, with the values, statement and probability of each; `intervals` of values that two
+    deviations do not bound."""
     found = []
     for member in (member for member in winner.hypothesis.members if member.effect.named):
         effect = composition.as_shown(member.effect)
         values = {
-            row.name: FittedValue(final.values[name], final.deviation(name), row.unit)
+            row.name: FittedValue(final.values[name], final.deviation(name), row.unit, intervals.get(name))
             for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)
         }
         values |= _in_other_recordings(effect, final)
         active = member.span(final.values)
-        statement = effect.describe({name: value.value for name, value in values.items()})
+        statement = _statement(effect, values) + difference_alone(effect, final)
         statement += f", from {active[0]:.4g} s to {active[1]:.4g} s only" if active else ""
         evidence = winner.score if len(winner.effects) == 1 else wald(final, effect)
         row = NamedEffect(
@@ -70,6 +86,56 @@ def named_effects(
         )  # fmt: skip
         found.append(row)
     return tuple(found)
+
+
+def _statement(effect: Effect, values: Mapping[str, FittedValue]) -> str:
+    """The effect in words, with no more of its values than the recording tells."""
+    if all(value.interval is None for value in values.values()):
+        return effect.describe({name: value.value for name, value in values.items()})
+    first = values[effect.parameters[0].name]
+    opposite = bool(effect.opposite) and first.value < 0.0
+    shown = {name: _bounded(value) for name, value in values.items()}
+    if opposite:
+        low, high = first.interval or (first.value, first.value)
+        magnitude = replace(first, value=-first.value, interval=(_negative(high), _negative(low)))
+        shown[effect.parameters[0].name] = _bounded(magnitude)
+    return (effect.opposite if opposite else effect.statement).format(**shown)
+
+
+def _negative(value: float | None) -> float | None:
+    return None if value is None else -value
+
+
+def _bounded(value: FittedValue) -> Quantity:
+    """A value, or the end of its interval that is known."""
+    low, high = value.interval or (value.value, value.value)
+    if value.value < 0.0:
+        low, high = high, low
+    if low is not None and high is None:
+        return Quantity(low, value.unit, "at least " if value.value >= 0.0 else "at most ")
+    if high is not None and low is None:
+        return Quantity(high, value.unit, "at most " if value.value >= 0.0 else "at least ")
+    return Quantity(value.value, value.unit)
+
+
+def difference_alone(effect: Effect, final: Fit) -> str:
+    """What is added where two values of one unit are known by their difference, or their sum, and neither by itself."""
+    rows = dict(zip(effect.parameter_names(), effect.parameters, strict=True))
+    free = [parameter.name for parameter in final.free if parameter.name in rows and rows[parameter.name].switches]
+    for first, second in combinations(free, 2):
+        if rows[first].unit != rows[second].unit:
+            continue
+        block = final.covariance_of([first, second])
+        alone = float(np.sqrt(max(min(block[0, 0], block[1, 1]), 0.0)))
+        at = np.array([final.values[first], final.values[second]])
+        uncertain = all(abs(value) < IDENTIFIED * alone for value in at)
+        for word, sign in (("difference", -1.0), ("sum", 1.0)):
+            weights = np.array([1.0, sign])
+            together = float(np.sqrt(max(weights @ block @ weights, 0.0)))
+            if uncertain and together * TOLD_TOGETHER < alone and abs(weights @ at) > IDENTIFIED * together:
+                known = Quantity(float(weights @ at), rows[first].unit)
+                return f" (of these two values only the {word} is known, {known:3})"
+    return ""
 
 
 def _in_other_recordings(effect: Effect, final: Fit) -> dict[str, FittedValue]:

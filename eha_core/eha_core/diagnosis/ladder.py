@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from eha_core.diagnosis.calibrate import corrected_noise
+from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import Member, without_effect
 from eha_core.diagnosis.result import AUGMENTED, NOMINAL, RECALIBRATED, Correlation, Residual, Step
@@ -56,7 +56,7 @@ def _without(evidence: Evidence, winner: Entry, member: Member) -> Fit:
 def _scales(evidence: Evidence) -> list[float]:
     """What the search took for each channel's noise, over what the final model shows it to be."""
     shooting = evidence.calibration.shooting
-    final = corrected_noise(shooting, evidence.decision.winner.fit)
+    final = corrected_noise(shooting, evidence.decision.winner.fit, filtered_channels(evidence.observations))
     return [sampling.noise / noise for sampling, noise in zip(shooting.samplings, final, strict=True)]
 
 

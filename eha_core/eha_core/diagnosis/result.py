@@ -47,11 +47,26 @@ class FittedParameter:
 
 @dataclass(frozen=True)
 class FittedValue:
-    """An effect's parameter with its standard deviation."""
+    """An effect's parameter with its standard deviation; `interval`: the ends of its 95 % interval where that is none
+    of two standard deviations to either side, None for an end that the recording does not tell."""
 
     value: float
     std: float
     unit: str
+    interval: tuple[float | None, float | None] | None = None
+
+
+@dataclass(frozen=True)
+class CommonScale:
+    """One factor by which several values differ from the nominal ones, as if one thing were off that they share.
+
+    `of` is what that may be; `parameters` are the names of those that changed by it.
+    """
+
+    of: str
+    factor: float
+    std: float
+    parameters: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -80,14 +95,16 @@ class Explained:
 
     `share` is the part of the recalibrated nominal model's squared error beyond noise that it takes away, `times_noise`
     the RMS of what is left in each channel over that channel's noise, in the fit or on held-out windows, whichever is
-    more. `complete` says that what is left has the size of noise and is white; where it is not, `left_over` says where
-    and when it sits.
+    more. `complete` says that what is left has the size of noise and is white, and that each named effect's strength is
+    told from nothing; `vague` that only the second fails. Where the first does, `left_over` says where and when it
+    sits.
     """
 
     share: float
     times_noise: Mapping[str, float]
     complete: bool
     left_over: tuple[Location, ...] = ()
+    vague: bool = False
 
 
 @dataclass(frozen=True)
@@ -291,7 +308,9 @@ class Diagnosis:
     when one of several effects is taken out and the rest fitted again, most first: the order of `effects`, too.
     `sets` are those that together hold 95 % of the probability, the most probable first; `trace` has every fit of the
     search. `health` has the faults of the channels, each with the number of its recording among several (1 of a single
-    one). `long_records` has those of which stretches were fitted; what is drawn of them is in the record's time.
+    one). `event`: when the nominal model fails while it is at the noise at all other times [s]. `scale`: the one factor
+    by which the changed parameters differ from the nominal ones, if they do. `long_records` has those of which
+    stretches were fitted; what is drawn of them is in the record's time.
     """
 
     path: str
@@ -328,6 +347,8 @@ class Diagnosis:
     sets: tuple[ProbableSet, ...] = ()
     trace: tuple[TraceStep, ...] = ()
     health: tuple[tuple[int, Fault], ...] = ()
+    event: tuple[float, float] | None = None
+    scale: CommonScale | None = None
 
     @property
     def drawn(self) -> tuple[float, float]:

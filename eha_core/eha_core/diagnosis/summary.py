@@ -3,16 +3,43 @@
 from __future__ import annotations
 
 from eha_core.diagnosis.criteria import LEFT_IN_A_CHANNEL
-from eha_core.diagnosis.result import Explained, NamedEffect, UnknownLaw
+from eha_core.diagnosis.result import CommonScale, Explained, NamedEffect, UnknownLaw
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects as every_effect
+from eha_core.quantities import quantity
+
+_SCALES = {
+    "clock": "the clock of the recording may run {times} times as fast as it should",
+    "position": "the position may be read {times} times as large as it is",
+    "pressures": "both pressures may be read {times} times as large as they are",
+    "piston_area": "the nominal file may be another rig's: the piston's area may be {times} times the nominal one",
+}
 
 
-def summary(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None, left: Explained) -> str:
-    """What was found in words; first what it leaves, where that is more than noise."""
+def summary(
+    decision: Decision,
+    effects: tuple[NamedEffect, ...],
+    unknown: UnknownLaw | None,
+    left: Explained,
+    event: tuple[float, float] | None = None,
+    scale: CommonScale | None = None,
+) -> str:
+    """What was found in words; first when it happened, if it was an event, and what it leaves, where that is more than
+    noise."""
     said = _found_in_words(decision, effects, unknown)
+    if scale is not None:
+        times = quantity(scale.factor, "-", 3)
+        said += f" {len(scale.parameters)} values are off by one factor: {_SCALES[scale.of].format(times=times)}."
+    if event is not None:
+        begin, end = (quantity(at, "s") for at in event)
+        said = (
+            f"The nominal model is at the noise but for {begin} to {end}: an event, or a fault of the recording,"
+            f" happened there. {said}"
+        )
     if left.complete or not effects:
         return said
+    if left.vague:
+        return f"{said} What is left is noise, but how strong all of this is, the recording does not tell."
     most = max(left.times_noise, key=lambda name: left.times_noise[name])
     many = "One effect" if len(effects) == 1 else f"{len(effects)} effects"
     many += " and a law explain" if unknown else " explains" if len(effects) == 1 else " explain"
@@ -25,6 +52,8 @@ def summary(decision: Decision, effects: tuple[NamedEffect, ...], unknown: Unkno
 
 
 def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknown: UnknownLaw | None) -> str:
+    if decision.as_given and decision.verdict != "consistent":
+        return "Something is missing, but no model that was tried predicts held-out data better than the nominal one."
     if decision.verdict == "consistent":
         return "The nominal model explains the recording down to its noise; nothing is missing."
     if decision.verdict == "parameters":

@@ -37,13 +37,15 @@ from eha_core.identification.validate import Judged, instants_of, judge
 
 @dataclass(frozen=True)
 class Decision:
-    """The verdict, its winner (the nominal entry where nothing is named) and the rivals it was not told apart from."""
+    """The verdict, its winner (the nominal entry where nothing is named) and the rivals it was not told apart from;
+    `as_given` where that is the nominal model with its own values, which nothing predicts better than."""
 
     verdict: str
     winner: Entry
     rivals: tuple[tuple[Entry, float], ...]
     judged_nominal: Judged | None
     judged_winner: Judged | None
+    as_given: bool = False
 
 
 SMOOTHED = 20
@@ -63,13 +65,13 @@ def decide(
     if _leaves_physics_over(winner.fit, comparison.nominal.fit):
         return _unnamed(calibration, comparison, recovery)
     if not standing:
-        return _without_physics(calibration, nominal, comparison)
+        return without_physics(calibration, nominal, comparison)
     instants = instants_of(winner.fit)
     judged_nominal = judge(calibration.shooting, comparison.nominal.fit, instants)
     judged_winner = judge(calibration.shooting, winner.fit, instants)
     gain = (judged_nominal.chi_square - judged_winner.chi_square) / comparison.residual_variance
     if gain < HELD_OUT:
-        return _without_physics(calibration, nominal, comparison)
+        return without_physics(calibration, nominal, comparison)
     rivals = tuple((entry, winner.score - entry.score) for entry in standing[1:] if _is_rival(winner, entry))
     verdict = "ambiguous" if rivals else "missing_physics"
     return Decision(verdict, winner, rivals, judged_nominal, judged_winner)
@@ -140,7 +142,7 @@ def _is_rival(winner: Entry, entry: Entry, within: float = TIE) -> bool:
     return winner.score - entry.score < within and not set(winner.ids) <= set(entry.ids)
 
 
-def _without_physics(calibration: Calibration, nominal: Mapping[str, float], comparison: ModelComparison) -> Decision:
+def without_physics(calibration: Calibration, nominal: Mapping[str, float], comparison: ModelComparison) -> Decision:
     """Nothing is named: say whether parameters differ. A set of values differs if the data say so, taken together."""
     result = comparison.nominal.fit
     gain = calibration.nominal.objective - result.objective

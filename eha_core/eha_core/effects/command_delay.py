@@ -3,7 +3,8 @@
 Signature: the motion follows the command unchanged in shape but late by the same time at every frequency.
 Equation: the coil is driven by V(t - delay).
 Sign: positive is late.
-Validity: a constant delay, up to 0.2 s; between two steps the command is the mean of what was held.
+Validity: a constant delay, up to 0.2 s; between two steps the command is the mean of what was held. Sensors that are
+all stamped as late, or a clock of theirs that is behind the command's, look the same: no recording tells the two apart.
 Source: K. J. Astrom, R. M. Murray, Feedback Systems, Princeton University Press 2008, chapter 3 (time delays).
 """
 
@@ -13,7 +14,8 @@ from eha_core.parameter import Parameter
 
 EFFECT = Effect(
     site="command",
-    statement="the valve acts late: the command reaches the coil {delay:4} after it was given",
+    statement="the valve acts late, or all sensors are stamped late alike: {delay:4} pass between the command and what "
+    "answers to it",
     equation="L_c I' = V(t - delay) - R_c I",
     parameters=(
         Parameter(

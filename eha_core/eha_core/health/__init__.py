@@ -1,8 +1,7 @@
 """Whether a recording's channels are sound in themselves: holes, and faults of each channel, before any fit."""
 
-from eha_core.health.examine import examine
+from eha_core.health.examine import examine, unsuited
 from eha_core.health.fault import Fault, Health
-from eha_core.health.rate import too_slow
 from eha_core.health.words import in_words
 
-__all__ = ["Fault", "Health", "examine", "in_words", "too_slow"]
+__all__ = ["Fault", "Health", "examine", "in_words", "unsuited"]

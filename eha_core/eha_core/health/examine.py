@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from eha_core.health.clock import drift
 from eha_core.health.coverage import holes
 from eha_core.health.fault import Fault, Found, Health
 from eha_core.health.faults import (
@@ -21,15 +22,17 @@ from eha_core.health.faults import (
     rescaled,
     saturated,
     spikes,
-    still,
     wrapped,
 )
+from eha_core.health.rate import too_slow
 from eha_core.health.signal import Signal
+from eha_core.health.still import still
+from eha_core.plant import Composition
 from eha_core.recording import Recording
 
 CHECKS: tuple[Callable[[Signal], Found | None], ...] = (
     dropped.find, saturated.find, held.find, interpolated.find, frozen.find, rescaled.find, wrapped.find, jump.find,
-    noisy.find, spikes.find, hum.find, low_passed.find, still.find,
+    noisy.find, spikes.find, hum.find, low_passed.find,
 )  # fmt: skip
 """What leaves its own mark on the values comes first: a fill value is no jump, a range's end no frozen sensor."""
 
@@ -65,3 +68,11 @@ def examine(recording: Recording) -> Health:
         if gone.any():
             lost[name] = gone
     return Health(tuple(faults), lost, values)
+
+
+def unsuited(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> tuple[Fault, ...]:
+    """What shows only between channels or against the nominal plant: a log too slow for its valve, a piston that should
+    have moved, a clock that runs at another rate."""
+    return (
+        *too_slow(recording, nominal, composition), *still(recording, nominal, composition), *drift(recording),
+    )  # fmt: skip

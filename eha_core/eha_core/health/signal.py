@@ -9,7 +9,7 @@ from math import comb, erf, sqrt
 
 import numpy as np
 
-from eha_core.health.noise import Flags, Integers, estimate_noise, quantisation, usual_sizes
+from eha_core.health.noise import ROUNDING, Flags, Integers, estimate_noise, quantisation, usual_sizes
 from eha_core.recording import Channel
 from eha_core.recording.recording import FloatArray
 
@@ -22,6 +22,8 @@ COARSE = 0.5
 """Noise over the quantisation step from which on two samples of a channel at rest are often on different levels."""
 BLOCK, BLOCK_SAMPLES = 0.25, 60
 """A block has at least so many seconds and samples: its noise is then known to an eighth."""
+ALIKE = 0.1
+"""Distinct values, as a share of all, below which many are alike."""
 ORDER = 4
 """Of the differences that show noise and not motion."""
 RARE, FEW = 0.005, 16
@@ -92,6 +94,15 @@ class Signal:
     def step(self) -> float:
         """Quantisation step; 0 where its values are on no grid."""
         return quantisation(self.values)
+
+    @cached_property
+    def level(self) -> float:
+        """The least that two of its values differ by, where many are alike; 0 where they are not. Of a channel that
+        changes between two levels no grid is known, and yet its noise is that."""
+        distinct = np.unique(self.values)
+        apart = np.diff(distinct)
+        apart = apart[apart > ROUNDING * float(np.max(np.abs(self.values)))]
+        return float(np.min(apart)) if 0 < len(apart) < ALIKE * len(self.values) else self.step
 
     @cached_property
     def is_noisy(self) -> bool:

@@ -3,7 +3,8 @@
 The curvature at the optimum is right where the residual is white noise. A law that is right but for its form leaves a
 residual that is coherent for a while and leads parameters astray. So the variance is estimated from the residual, too,
 by adding up each parameter's pull over blocks of time (a sandwich estimator: P. J. Huber, 1967; K.-Y. Liang and
-S. L. Zeger, Biometrika 73, 1986), and the larger of the two counts.
+S. L. Zeger, Biometrika 73, 1986). Noise with a memory has a third estimate, from the residual's autocorrelation: it
+knows memories longer than a block. The largest of the three counts.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from eha_core.identification.colour import colour_of, spread
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import Linearised, Problem, linearise, normal_equations
@@ -24,14 +26,18 @@ BLOCK = 0.1
 def with_residual(problem: Problem, result: Fit) -> Fit:
     """The fit with its parameters' standard deviations where it ended, widened where the residual says so."""
     count = len(result.free)
+    if not count:
+        return result
     linear = linearise(problem, result.values, result.free, result.q, result.states)
     result = _where_it_ended(problem, result, linear)
-    pulls = _pulls(problem, result, linear)
+    design = _pulls(problem, result, linear)
+    pulls = design * linear.residual[:, None]
     blocks = (problem.flat_times() / BLOCK).astype(np.int64)
     used, place = np.unique(blocks, return_inverse=True)
     summed = np.zeros((len(used), count))
     np.add.at(summed, place, pulls)
     observed = np.sqrt(np.sum(summed**2, axis=0) * len(used) / max(len(used) - 1, 1))
+    observed = np.maximum(observed, np.sqrt(_by_colour(problem, design, linear.residual)))
     expected = np.sqrt(np.maximum(np.diag(result.covariance)[:count], 1e-300))
     wider = np.ones(len(result.covariance))
     wider[:count] = np.maximum(1.0, observed / expected)
@@ -49,7 +55,7 @@ def _where_it_ended(problem: Problem, result: Fit, linear: Linearised) -> Fit:
 
 
 def _pulls(problem: Problem, result: Fit, linear: Linearised) -> Array:
-    """How far each sample's residual moves each parameter's coordinate: (samples, parameters), sorted by window."""
+    """How far a residual of one moves each parameter's coordinate: (samples, parameters), sorted by window."""
     count, size = len(result.free), problem.shooting.free_states
     pulls = linear.by_parameter @ result.covariance[:count]
     bounds = np.searchsorted(linear.window, np.arange(problem.shooting.windows + 1))
@@ -57,4 +63,14 @@ def _pulls(problem: Problem, result: Fit, linear: Linearised) -> Array:
         own = slice(bounds[window], bounds[window + 1])
         place = count + STATE_SIZE * window + np.arange(size)
         pulls[own] += linear.by_state[own] @ result.covariance[place]
-    return np.asarray(pulls * linear.residual[:, None])
+    return np.asarray(pulls)
+
+
+def _by_colour(problem: Problem, design: Array, residual: Array) -> Array:
+    """Variance of each parameter's coordinate, where each channel's noise has the memory and size of its residual."""
+    variance = np.zeros(design.shape[1])
+    for places in problem.places:
+        own = residual[places]
+        if len(own):
+            variance += float(np.mean(own**2)) * spread(design[places], colour_of(own))
+    return variance

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from eha_core.errors import RecordingError
-from eha_core.health import examine, in_words, too_slow
+from eha_core.health import examine, in_words, unsuited
 from eha_core.plant import PAPER, Composition
 from eha_core.plausibility.copies import copies, noisy_copies
 from eha_core.plausibility.finding import Finding, Suspect
@@ -66,7 +66,7 @@ def admit(
             channels speak against the plant's source; the message says which, and its cure.
     """
     health = examine(recording)
-    ill = [fault for fault in (*health.faults, *too_slow(recording, nominal, composition)) if fault.refuses]
+    ill = [fault for fault in (*health.faults, *unsuited(recording, nominal, composition)) if fault.refuses]
     sound = health.without_faults(recording)
     finding = "; ".join(in_words(ill)) or contradiction(sound, composition) or check(sound, nominal, composition)
     if not finding:

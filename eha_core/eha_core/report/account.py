@@ -11,7 +11,7 @@ from eha_core.quantities import quantity, scale_for, short, within
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.each_recording import each_recording
-from eha_core.report.finding import told_parameters
+from eha_core.report.finding import fitted_in_words, told_parameters
 from eha_core.report.health import faults_told
 from eha_core.report.location import location_statement
 from eha_core.report.stage import errors_told, models_told
@@ -70,9 +70,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
 
 
 def _named(effect: NamedEffect) -> str:
-    values = [
-        f"{name} {within(fitted.value, fitted.std, fitted.unit)}" for name, fitted in told_parameters(effect).items()
-    ]
+    values = [f"{name} {fitted_in_words(fitted)}" for name, fitted in told_parameters(effect).items()]
     return f"{effect.id} ({', '.join(values)}; 95 %)"
 
 

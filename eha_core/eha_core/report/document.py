@@ -9,7 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from eha_core.diagnosis.result import ChannelFit, Diagnosis, Location, LongRecord, NamedEffect, Prediction, Residual
+from eha_core.diagnosis.result import (
+    ChannelFit,
+    Diagnosis,
+    FittedValue,
+    Location,
+    LongRecord,
+    NamedEffect,
+    Prediction,
+    Residual,
+)
 from eha_core.health import Fault
 from eha_core.report.location import location_statement
 
@@ -32,6 +41,8 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             },
             "health": [_fault(number, fault, len(diagnosis.together)) for number, fault in diagnosis.health],
             "verdict": diagnosis.verdict,
+            "event": diagnosis.event,
+            "scale": _row(diagnosis.scale, ("of", "factor", "std", "parameters")),
             "summary": diagnosis.summary,
             "location": [_location(location) for location in diagnosis.location],
             "parameters": _rows(
@@ -106,8 +117,14 @@ def _location(location: Location) -> dict[str, Any]:
 
 def _effect(effect: NamedEffect) -> dict[str, Any]:
     row = _rows([effect], ("id", "site", "kind", "equation", "evidence", "probability", "statement", "active"))[0]
-    row["parameters"] = {name: _row(value, ("value", "std", "unit")) for name, value in effect.parameters.items()}
+    row["parameters"] = {name: _value(value) for name, value in effect.parameters.items()}
     return row
+
+
+def _value(value: FittedValue) -> dict[str, Any]:
+    """A fitted value; with its interval where two deviations to either side are none."""
+    row = _rows([value], ("value", "std", "unit"))[0]
+    return row if value.interval is None else {**row, "interval": value.interval}
 
 
 def _predictions(channels: Mapping[str, Prediction]) -> dict[str, Any]:

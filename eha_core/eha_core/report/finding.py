@@ -8,7 +8,7 @@ from importlib import import_module
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, FittedValue, NamedEffect
 from eha_core.effects import SITES, effects
-from eha_core.quantities import quantity, within
+from eha_core.quantities import bounds, quantity, within
 from eha_core.report.stage import SURE
 from eha_core.report.wording import (
     VERDICT_TITLES,
@@ -50,7 +50,7 @@ def missing(effect: NamedEffect) -> Missing:
     values = []
     for name in switching[:MOST_VALUES]:
         fitted = told[name]
-        values.append(f"{words(name)} {within(fitted.value, fitted.std, fitted.unit, SURE)}")
+        values.append(f"{words(name)} {fitted_in_words(fitted)}")
     cause, colon, _ = effect.statement.partition(":")
     when = span(effect.active) if effect.active else ""
     return Missing(effect_title(effect.id), tuple(values), cause if colon else "", when)
@@ -70,6 +70,13 @@ def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
         if name not in neutral or (fitted.value != 0.0 and not abs(fitted.value) <= SURE * fitted.std < float("inf"))
     }
     return told or effect.parameters
+
+
+def fitted_in_words(fitted: FittedValue) -> str:
+    """A value with its 95 % interval, or the end of that which is known."""
+    if fitted.interval is not None:
+        return bounds(*fitted.interval, fitted.unit)
+    return within(fitted.value, fitted.std, fitted.unit, SURE)
 
 
 def headline(diagnosis: Diagnosis) -> str:
@@ -97,7 +104,7 @@ def names_listed(diagnosis: Diagnosis) -> str:
 
 def is_complete(diagnosis: Diagnosis) -> bool:
     """Whether the named effects leave nothing but noise."""
-    return diagnosis.explained.complete
+    return diagnosis.explained.complete or diagnosis.explained.vague
 
 
 def effects_listed(diagnosis: Diagnosis) -> str:
@@ -160,6 +167,8 @@ def explanation(diagnosis: Diagnosis) -> str:
     said = f"The named physics explains {share} of what the recalibrated model leaves beyond noise"
     if explained.complete:
         return f"{said}."
+    if explained.vague:
+        return f"{said}; how strong each of it is, the recording does not tell."
     name, most = max(explained.times_noise.items(), key=lambda item: item[1])
     sites = listed([SITES[location.site].words for location in explained.left_over])
     where = f", most likely {sites}" if sites else ""

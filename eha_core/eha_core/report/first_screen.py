@@ -36,15 +36,18 @@ SURROUND = 0.12
 
 
 def pictures(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tuple[Picture, ...]:
-    """The laws (those found already, if they are given), what each model leaves, the evidence, and the residuals."""
+    """The laws (those found already, if they are given), what each model leaves, the evidence, and the residuals; those
+    first where a part of the recording was excluded."""
     rivals = bool(diagnosis.rivals)
     title = "How far other explanations are behind"
-    shown = (
+    shown: tuple[Picture | None, ...] = (
         law_picture(diagnosis, found),
         ladder_picture(diagnosis),
         evidence_picture(diagnosis, RIVALS, "0-evidence", title) if rivals else None,
         residual_picture(diagnosis),
     )
+    if any(excluded(diagnosis, name) for name in diagnosis.pictures.after):
+        shown = (shown[-1], *shown[:-1])
     return tuple(picture for picture in shown if picture)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from eha_core.diagnosis.calibrate import Calibration, at_a_finer_step, step_needed
+from eha_core.diagnosis.calibrate import Calibration, at_a_finer_step, filtered_channels, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
@@ -39,6 +39,7 @@ class Material:
     plant: tuple[FreeParameter, ...]
     trace: Trace
     progress: Progress
+    filtered: frozenset[str]
 
 
 def find_sets(
@@ -55,7 +56,7 @@ def find_sets(
         column for effect in effects for column in columns_of(effect, scales, shooting.per_recording, recordings)
     ]
     laws = law_columns([effect for effect in shooting.composition.effects if not effect.named], scales)
-    material = Material(effects, columns, laws, _plant(fitted), Trace(), progress)
+    material = Material(effects, columns, laws, _plant(fitted), Trace(), progress, filtered_channels(observations))
     progress("locating in the equations")
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
     progress("searching sets over short windows")
@@ -95,7 +96,7 @@ def over_short_windows(
 ) -> Pool:
     """Sets over the shortest windows: the friction of the force balance held while the others are found, then free."""
     plant = held(material.plant, nominal)
-    pool = Pool(whole(shooting), plant, material.trace)
+    pool = Pool(whole(shooting), plant, material.trace, filtered=material.filtered)
     values = {**nominal, **friction.held.values} if friction.held else dict(nominal)
     states = fit(pool.problem, values, (), iterations=OF_STATES).states
     given = fit(pool.problem, values, plant, states, iterations=0)
@@ -131,7 +132,7 @@ def _search(pool: Pool, begin: Fit, columns: Sequence[Column], material: Materia
 def _released(pool: Pool, friction: Friction, material: Material) -> Pool:
     """The best sets with the friction free that was held, and with its other forms where more than noise is left."""
     assert friction.held is not None
-    free = Pool(pool.problem, pool.plant, pool.trace)
+    free = Pool(pool.problem, pool.plant, pool.trace, filtered=pool.filtered)
     ahead = _ahead(pool)
     for hypothesis in ahead:
         at = pool.found[hypothesis]
@@ -152,7 +153,7 @@ def carried(pool: Pool, problem: Problem, material: Material) -> Pool:
     if pool.found[leader(pool)].data < 2.0 * pool.found[leader(pool)].count:
         noise = [sampling.noise for sampling in pool.problem.shooting.samplings]
         problem = replace(problem, shooting=with_noise(problem.shooting, noise))
-    longer = Pool(problem, material.plant, material.trace)
+    longer = Pool(problem, material.plant, material.trace, filtered=material.filtered)
     for hypothesis in _ahead(pool):
         at = pool.found[hypothesis]
         states = fit(longer.problem, at.values, (), iterations=OF_STATES).states

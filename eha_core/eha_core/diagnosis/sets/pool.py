@@ -49,13 +49,15 @@ class Trace:
 class Pool:
     """The best fit so far of each set over windows of one length.
 
-    `plant`: the nominal parameters that are free; `trace` is shared by the pools of all lengths.
+    `plant`: the nominal parameters that are free; `trace` is shared by the pools of all lengths;
+    `filtered` are channels behind a filter, see `corrected_noise`.
     """
 
     problem: Problem
     plant: tuple[FreeParameter, ...]
     trace: Trace
     found: dict[Hypothesis, Fit] = field(default_factory=dict)
+    filtered: frozenset[str] = frozenset()
 
     def free(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[FreeParameter, ...]:
         """What a fit of a set moves: the plant, its members, and between which instants limited ones act, about
@@ -118,7 +120,7 @@ class Pool:
         if at.data > FAR_FROM_NOISE * at.count:
             return
         before = self.problem.shooting
-        noise = corrected_noise(before, at)
+        noise = corrected_noise(before, at, self.filtered)
         if all(
             abs(level / sampling.noise - 1.0) < SAME_NOISE for level, sampling in zip(noise, samplings, strict=True)
         ):

@@ -1,0 +1,142 @@
+"""Stage 5, support: of what was decided, what the recording bears.
+
+A search may end beside the best values of the model it names; an effect may be named whose strength no interval parts
+from nothing; and a model may predict worse than the nominal one did before anything was fitted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from scipy.stats import chi2
+
+from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
+from eha_core.diagnosis.criteria import CERTAINTY, COHERENT, HELD_OUT, LEFT_IN_A_CHANNEL
+from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.explained import is_identified, root_mean_square
+from eha_core.diagnosis.hypothesis import NOTHING, Member, without_effect
+from eha_core.diagnosis.sets.comparison import Entry
+from eha_core.diagnosis.verdict import Decision, coherence, without_physics
+from eha_core.effects import Effect
+from eha_core.identification.fit import Fit, fit
+from eha_core.identification.intervals import with_residual
+from eha_core.identification.per_recording import base_name
+from eha_core.identification.profile import Ends, profile_interval
+from eha_core.identification.validate import instants_of, judge
+
+MEMBERS_FIRST, AFRESH, WITHOUT = 4, 20, 12
+"""Iterations of the members alone beside nominal values, of the whole model from there, and of a model without one."""
+
+BETTER = 2.0
+"""Chi^2 by which the same model must be better elsewhere; a fit ends where an iteration gains a quarter of that."""
+
+
+def supported(evidence: Evidence, decision: Decision) -> Decision:
+    """The decision with the best values of its model, without what is not identified, and never worse than the nominal
+    model on held-out data."""
+    if decision.verdict in ("missing_physics", "ambiguous"):
+        decision = _identified_alone(evidence, _from_nominal_values(evidence, decision))
+    return _no_worse_than_nominal(evidence, decision)
+
+
+def _from_nominal_values(evidence: Evidence, decision: Decision) -> Decision:
+    """The decision, its model fitted again from the nominal values where that ends lower.
+
+    A calibration without the effect imitates it by the plant's parameters, and the way back may lead through a valley
+    that ends early: behind a filter of 6 ms bulk modulus and stroke stayed off by a half.
+    """
+    winner, calibration = decision.winner, evidence.calibration
+    rows = evidence.observation.composition.place_rows
+    plants = {parameter.name: parameter for parameter in winner.fit.free if base_name(parameter.name) in rows}
+    own = [parameter for parameter in winner.fit.free if parameter.name not in plants]
+    start = {**winner.fit.values, **{name: parameter.reference for name, parameter in plants.items()}}
+    problem, best = calibration.problem, winner.fit
+    beside = fit(problem, start, own, calibration.nominal.states, iterations=MEMBERS_FIRST)
+    afresh = fit(
+        problem, beside.values, best.free, beside.states, iterations=AFRESH, give_up_above=best.objective,
+    )  # fmt: skip
+    if not best.objective - afresh.objective > BETTER:
+        return decision
+    gain = (best.objective - afresh.objective) / evidence.comparison.residual_variance
+    return _with_winner(evidence, decision, replace(winner, fit=afresh, score=winner.score + gain))
+
+
+def _with_winner(evidence: Evidence, decision: Decision, winner: Entry) -> Decision:
+    judged = judge(evidence.calibration.shooting, winner.fit, instants_of(winner.fit))
+    return replace(decision, winner=winner, judged_winner=judged)
+
+
+def _identified_alone(evidence: Evidence, decision: Decision) -> Decision:
+    """The decision without the effects that the recording does not tell from nothing."""
+    problem, variance = evidence.calibration.problem, evidence.comparison.residual_variance
+    before, winner = decision.winner, decision.winner
+    doubtful = _unidentified(with_residual(problem, winner.fit), winner.hypothesis.members)
+    for member in doubtful:
+        values, free = without_effect(winner.fit, member.effect)
+        less = fit(problem, values, free, winner.fit.states, iterations=WITHOUT)
+        lost = less.objective - winner.fit.objective
+        if lost < chance(evidence, winner.fit, member.effect):
+            winner = Entry(winner.hypothesis.without(member), less, winner.score - lost / variance)
+    if winner is before:
+        return decision
+    if not winner.effects:
+        return without_physics(evidence.calibration, evidence.nominal, evidence.comparison)
+    rivals = tuple((entry, gap) for entry, gap in decision.rivals if entry.hypothesis != winner.hypothesis)
+    verdict = "ambiguous" if rivals else "missing_physics"
+    return _with_winner(evidence, replace(decision, verdict=verdict, rivals=rivals), winner)
+
+
+def _unidentified(result: Fit, members: tuple[Member, ...]) -> list[Member]:
+    return [member for member in members if member.effect.named and not is_identified(member.effect, result)]
+
+
+def chance(evidence: Evidence, result: Fit, effect: Effect) -> float:
+    """Chi^2 that an effect gains by chance in one recording of twenty; more where the residual has a memory."""
+    problem = evidence.calibration.problem
+    names = [name for name in effect.parameter_names() if any(name == parameter.name for parameter in result.free)]
+    wide = with_residual(problem, result)
+    wider = max(
+        (wide.deviation(name) / result.deviation(name) for name in names if result.deviation(name) > 0.0), default=1.0
+    )
+    ordinary = max(1.0, result.data / max(result.count, 1)) * max(1.0, wider) ** 2
+    return float(chi2.ppf(CERTAINTY, max(1, len(names)))) * ordinary
+
+
+def one_sided(evidence: Evidence, final: Fit, winner: Entry) -> Mapping[str, Ends]:
+    """The 95 % intervals, from the data's own chi^2, of the strengths that two deviations do not part from nothing."""
+    found, problem = {}, evidence.calibration.problem
+    for member in _unidentified(final, winner.hypothesis.members):
+        effect = member.effect
+        cost = chance(evidence, winner.fit, effect)
+        for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
+            free = any(parameter.name == name and not parameter.above for parameter in winner.fit.free)
+            if free and row.switches and winner.fit.values[name] != row.nominal:
+                found[name] = profile_interval(problem, winner.fit, name, row.nominal, cost)
+    return found
+
+
+def _no_worse_than_nominal(evidence: Evidence, decision: Decision) -> Decision:
+    """The decision, or the nominal model as given where that is better on held-out data."""
+    calibration, winner = evidence.calibration, decision.winner
+    given = calibration.nominal
+    instants = instants_of(winner.fit)
+    after = decision.judged_winner or judge(calibration.shooting, winner.fit, instants)
+    before = judge(calibration.shooting, given, instants)
+    worse = (after.chi_square - before.chi_square) / evidence.comparison.residual_variance
+    if not worse > HELD_OUT:
+        return decision
+    nominal = Entry(NOTHING, given, 0.0)
+    verdict = "consistent" if _is_at_the_noise(evidence, given) else "unknown_physics"
+    return Decision(verdict, nominal, (), before, before, as_given=True)
+
+
+def _is_at_the_noise(evidence: Evidence, result: Fit) -> bool:
+    """Whether a model leaves noise in every channel."""
+    shooting = evidence.calibration.shooting
+    noises = corrected_noise(shooting, result, filtered_channels(evidence.observations))
+    left = (
+        (sampling.noise / noise * root_mean_square(residual), coherence(residual))
+        for sampling, noise, residual in zip(shooting.samplings, noises, result.residuals, strict=True)
+    )
+    return all(size < LEFT_IN_A_CHANNEL and together < COHERENT for size, together in left)

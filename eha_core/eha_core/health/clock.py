@@ -1,0 +1,100 @@
+"""Whether the position is stamped by a clock that runs at the command's rate.
+
+Two loggers whose clocks differ by two per cent are 0.2 s apart after ten seconds, and every law that is fitted between
+their channels is bent by it. The speed follows the command by a delay; here that is measured in pieces of the
+recording. A rig's own delay may change, by wear or with the amplitude, but by some hundredths of a second, and not at a
+steady rate. A clock that all channels share tells nothing of itself: its error is one factor of all that has a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from eha_core.health.fault import Fault
+from eha_core.recording import Recording
+from eha_core.recording.recording import FloatArray
+
+PIECE, EVERY = 2.0, 1.0
+"""s; the length of a piece and how far one begins after the other: some reversals of a test (assumed)."""
+TICK = 0.005
+"""s; the grid on which both are compared: a peak's place is known to a tenth of it."""
+LATEST = 0.3
+"""s by which the speed may seem to follow or lead the command in a piece."""
+ALIKE = 0.7
+"""Correlation from which on a piece has a delay: half of the speed is the command's."""
+FEWEST = 5
+"""Pieces that have one."""
+STEADY = 0.15
+"""Scatter of the delays about a straight line, over what the line rises by, up to which the change is steady."""
+DRIFTED = 0.04
+"""s by which the delay must change: more than a rig's own does (assumed: coil, spool and oil together take 0.01 s)."""
+SLOWEST = 0.003
+"""Rate from which on clocks are said to differ; a logger's own crystal is off by a hundredth of that."""
+
+
+def drift(recording: Recording) -> Sequence[Fault]:
+    """The position, where its delay behind the command grows or shrinks steadily."""
+    command, position = (recording.channels.get(name) for name in ("voltage_command", "position"))
+    if command is None or position is None or min(len(command.time), len(position.time)) < 100:
+        return ()
+    if not (np.ptp(command.values) > 0.0 and np.ptp(position.values) > 0.0):
+        return ()
+    grid = np.arange(max(command.time[0], position.time[0]), min(command.time[-1], position.time[-1]), TICK)
+    if len(grid) * TICK < PIECE + (FEWEST - 1) * EVERY:
+        return ()
+    voltage = np.interp(grid, command.time, command.values)
+    speed = np.gradient(np.interp(grid, position.time, position.values), TICK)
+    when, late = _delays(grid, _smooth(voltage), _smooth(speed))
+    if len(when) < FEWEST:
+        return ()
+    rate, level = np.polyfit(when, late, 1)
+    rise = abs(rate) * float(np.ptp(when))
+    scatter = float(np.std(late - np.polyval((rate, level), when)))
+    if abs(rate) < SLOWEST or rise < DRIFTED or scatter > STEADY * rise:
+        return ()
+    fault = Fault(
+        "position", "clock", float(position.time[0]), float(position.time[-1]),
+        f"its clock runs {100.0 * abs(rate):.2g} % {'fast' if rate > 0.0 else 'slow'} against the command's:"
+        f" it follows by {1e3 * late[0]:.0f} ms at first and by {1e3 * late[-1]:.0f} ms at last",
+        "stamp all channels by one clock", False, True,
+    )  # fmt: skip
+    return (fault,)
+
+
+def _smooth(values: FloatArray) -> FloatArray:
+    """Means over five ticks, above whose frequencies the speed is noise."""
+    return np.asarray(np.convolve(values, np.full(5, 0.2), mode="same"))
+
+
+def _delays(grid: FloatArray, voltage: FloatArray, speed: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The middles of the pieces in which the speed is the command's, and by how much it follows it there [s]."""
+    length, reach = round(PIECE / TICK), round(LATEST / TICK)
+    when, late = [], []
+    for first in range(reach, len(grid) - length - reach, round(EVERY / TICK)):
+        piece = voltage[first : first + length]
+        around = speed[first - reach : first + length + reach]
+        alike = _correlations(piece, around)
+        best = int(np.argmax(alike))
+        if alike[best] < ALIKE or not 0 < best < len(alike) - 1:
+            continue
+        before, at, after = alike[best - 1 : best + 2]
+        peak = best + 0.5 * (before - after) / min(before - 2.0 * at + after, -1e-12)
+        when.append(grid[first] + 0.5 * PIECE)
+        late.append((peak - reach) * TICK)
+    return np.array(when), np.array(late)
+
+
+def _correlations(piece: FloatArray, around: FloatArray) -> FloatArray:
+    """Correlation of a piece with each piece as long of what lies around it, by their magnitude: a rig of reversed
+    polarity answers with the other sign."""
+    centred = piece - piece.mean()
+    power = float(centred @ centred)
+    if not power > 0.0:
+        return np.zeros(len(around) - len(piece) + 1)
+    together = np.correlate(around, centred, mode="valid")
+    ones = np.ones(len(piece))
+    total, square = np.correlate(around, ones, mode="valid"), np.correlate(around**2, ones, mode="valid")
+    own = np.maximum(square - total**2 / len(piece), 1e-12 * float(np.max(square)) + 1e-300)
+    return np.asarray(np.abs(together) / np.sqrt(power * own))
