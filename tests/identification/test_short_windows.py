@@ -4,8 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made import recorded
 
-from eha_core.diagnosis.calibrate import Calibration, calibrate
+from eha_core.diagnosis.calibrate import SAMPLES_A_WINDOW, Calibration, calibrate
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effects
 from eha_core.exam.drawing import draw_case
@@ -51,12 +52,21 @@ def test_short_windows_lead_nearer_than_long_ones_from_afar(rig, sizes):
 
 def test_the_recordings_are_the_same_in_windows_of_the_lengths_stated(rig):
     calibration, _ = rig
-    assert (SHORT, VERY_SHORT) == ((0.1, 0.25), (0.05, 0.25))
+    assert (SHORT, VERY_SHORT) == ((0.1, 0.25), (0.03, 0.2))
+    rate = calibration.problem.count() / (calibration.shooting.edges[-1] * calibration.shooting.step_size)
+    least = [0.0, 0.0, SAMPLES_A_WINDOW / rate, SAMPLES_A_WINDOW / rate]
     short = (*calibration.shorter, *calibration.shortest)
-    for shooting, length in zip(short, (*SHORT, *VERY_SHORT), strict=True):
+    for shooting, length, longer in zip(short, (*SHORT, *VERY_SHORT), least, strict=True):
         spans = np.diff(shooting.edges) * shooting.step_size
-        assert np.median(spans) == pytest.approx(length, rel=0.21)
+        assert np.median(spans) == pytest.approx(max(length, longer), rel=0.21)
         assert sum(len(one.values) for one in shooting.samplings) >= 0.99 * calibration.problem.count()
+
+
+def test_a_window_holds_several_samples_for_each_state_at_its_start():
+    alone = observe(recorded({}, duration=4.0, rate=200.0, channels=("voltage_command", "position")))
+    shortest = calibrate([alone], NominalModel(nominal_values()), 2e-4).shortest[0]
+    (position,) = shortest.samplings
+    assert np.median(np.bincount(position.window)) >= 0.9 * SAMPLES_A_WINDOW
 
 
 def test_what_is_held_is_the_plants_own_and_where_its_nominal_value_is(rig):

@@ -148,8 +148,12 @@ EXPANSIONS, EXPANSIONS_LATER = 8, 3
 """Sets about which the channels are linearised at most, at first, and wherever a search goes on from what another found
 (assumed)."""
 
-IDLE = 3
-"""Expansions in a row that bring no significant improvement after which a search ends (assumed)."""
+IDLE, IMPROVES = 2, 0.05
+"""Expansions in a row, none of which lowers what is left beside noise by this share, after which a search ends
+(assumed)."""
+
+EXPANSIONS_IN_ALL = 24
+"""Expansions after which a diagnosis goes on with the best set that it has. Rigs of six effects took up to twelve."""
 
 BEAM = 10
 """Sets of each size that are grown and shrunk in the quadratic model."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from eha_core.diagnosis.calibrate import Calibration, at_a_finer_step, filtered_channels, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE
+from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE, UNFITTED
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.sets.best_sets import objective_without, one_more
 from eha_core.diagnosis.sets.columns import Column, columns_of, law_columns
@@ -15,11 +17,12 @@ from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, res
 from eha_core.diagnosis.sets.equations import Friction, friction_of
 from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.sets.finish import finish, refit_nominal, rivals
-from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of
+from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of, without_bounds
 from eha_core.diagnosis.sets.quadratic import QuadraticModel
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter
+from eha_core.identification.numbers import Array
 from eha_core.identification.observation import Observation
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
@@ -102,6 +105,7 @@ def over_short_windows(
     given = fit(pool.problem, values, plant, states, iterations=0)
     calibrated = pool.try_set("nominal", NOTHING, values, states, CARRIED_ON)
     pool.measure_noise(NOTHING)
+    pool.release(NOTHING)
     # nominal values that were fitted without what is missing are bent to it, and all that is seen from there with them
     begin = pool.found[NOTHING] if calibrated.data < NEAR_NOISE * calibrated.count else given
     if not friction.known:
@@ -111,7 +115,7 @@ def over_short_windows(
     _search(pool, begin, others, material)
     if friction.held is None:
         if not at_the_noise(pool):
-            _search(pool, begin, material.columns, material)
+            search_sets(Search(pool, material.columns, material.progress))
         return pool
     return _released(pool, friction, material)
 
@@ -122,17 +126,20 @@ def _search(pool: Pool, begin: Fit, columns: Sequence[Column], material: Materia
     search = Search(pool, columns, material.progress, EXPANSIONS)
     expand(search, NOTHING, "first expansion", begin)
     search_sets(search)
-    if at_the_noise(pool):
+    if at_the_noise(pool) or pool.trace.is_over:
         return
     search = Search(pool, [*columns, *material.laws], material.progress)
     expand(search, NOTHING, "with laws in no catalogue", begin)
     search_sets(search)
+    best = pool.found[leader(pool)]
+    if best.data > UNFITTED * best.count:  # then no curve is the law, and each bends to whatever is there
+        pool.found = {hypothesis: result for hypothesis, result in pool if hypothesis.law is None}
 
 
 def _released(pool: Pool, friction: Friction, material: Material) -> Pool:
     """The best sets with the friction free that was held, and with its other forms where more than noise is left."""
     assert friction.held is not None
-    free = Pool(pool.problem, pool.plant, pool.trace, filtered=pool.filtered)
+    free = Pool(pool.problem, pool.plant, pool.trace, filtered=pool.filtered, released=pool.released)
     ahead = _ahead(pool)
     for hypothesis in ahead:
         at = pool.found[hypothesis]
@@ -153,13 +160,21 @@ def carried(pool: Pool, problem: Problem, material: Material) -> Pool:
     if pool.found[leader(pool)].data < 2.0 * pool.found[leader(pool)].count:
         noise = [sampling.noise for sampling in pool.problem.shooting.samplings]
         problem = replace(problem, shooting=with_noise(problem.shooting, noise))
-    longer = Pool(problem, material.plant, material.trace, filtered=material.filtered)
+    plant = without_bounds(material.plant, pool.released, problem)
+    longer = Pool(problem, plant, material.trace, filtered=pool.filtered, released=pool.released)
     for hypothesis in _ahead(pool):
         at = pool.found[hypothesis]
-        states = fit(longer.problem, at.values, (), iterations=OF_STATES).states
+        states = states_over(longer.problem, pool.problem.shooting, at)
         longer.try_set("longer windows", hypothesis, at.values, states, CARRIED_ON)
     longer.measure_noise(leader(longer))
     return longer
+
+
+def states_over(problem: Problem, before: Shooting, at: Fit) -> Array:
+    """Where windows begin in a model that was fitted over others: as the nearest of those did, and then fitted."""
+    began, begin = (shooting.edges[:-1] * shooting.step_size for shooting in (before, problem.shooting))
+    nearest = np.argmin(np.abs(began[None, :] - begin[:, None]), axis=1)
+    return fit(problem, at.values, (), at.states[nearest], iterations=OF_STATES).states
 
 
 def _ahead(pool: Pool) -> list[Hypothesis]:
@@ -191,6 +206,7 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
         {h: result for h, result in pool if h in {best.without(member) for member in best.members}},
         gains,
         tuple(material.trace.steps),
+        material.trace.is_over,
     )
     return calibration, comparison
 

@@ -11,6 +11,7 @@ from eha_core.diagnosis.criteria import (
     EXPANSIONS_LATER,
     FITTED,
     IDLE,
+    IMPROVES,
     MOST_TRIED,
     NEAR_NOISE,
     OF_EXCESS,
@@ -78,16 +79,18 @@ class Search:
 
 def search_sets(search: Search) -> Hypothesis:
     """The best set over the pool's windows; every set that was fitted stays in the pool."""
-    idle = 0
+    pool, idle = search.pool, 0
     for number in range(search.most):
         base = search.next()
-        if base is None or idle == IDLE:
+        if base is None or idle == IDLE or pool.trace.is_over:
             break
-        before = search.pool.found[leader(search.pool)]
+        before = pool.found[leader(pool)]
         expand(search, base, f"expansion {number + 1}")
-        after = search.pool.found[leader(search.pool)]
-        idle = idle + 1 if before.objective - after.objective < required(after) else 0
-    return leader(search.pool)
+        pool.release(leader(pool))
+        after = pool.found[leader(pool)]
+        worthwhile = max(required(after), IMPROVES * (before.objective - before.count))
+        idle = idle + 1 if before.objective - after.objective < worthwhile else 0
+    return leader(pool)
 
 
 def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -> None:
@@ -95,6 +98,7 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     pool, lead = search.pool, leader(search.pool)
     at = pool.found[base] if at is None else at
     search.expanded[base] = at.objective
+    pool.trace.expansions += 1
     addable = [c for c in search.columns if c.effect.id not in base.ids and c.effect.kind not in base.kinds]
     in_time = base == lead and not base.limited
     model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE
+from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE
 from eha_core.diagnosis.effect_parameters import free_instants, with_effects
 from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.result import TraceStep
 from eha_core.identification.fit import Fit, fit, with_noise
-from eha_core.identification.free_parameters import FreeParameter
+from eha_core.identification.free_parameters import FreeParameter, not_believed
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import Problem
 from eha_core.identification.shooting import Shooting
@@ -23,6 +23,9 @@ from eha_core.identification.short_windows import with_finer_slopes
 
 REACH = 1.0
 """s; how far a fit may move an instant from where the linear model has it."""
+
+RELEASED = 12
+"""Iterations of a set without the bounds of belief that it rested on."""
 
 SAME_NOISE = 0.01
 """Share by which a channel's noise may seem to change before everything is weighed anew."""
@@ -34,10 +37,16 @@ Progress = Callable[[str], None]
 
 @dataclass
 class Trace:
-    """Every fit of a search, in order."""
+    """Every fit of a diagnosis, in order, and how often the channels were linearised in order to propose sets."""
 
     began: float = field(default_factory=time.process_time)
     steps: list[TraceStep] = field(default_factory=list)
+    expansions: int = 0
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the search has had its share."""
+        return self.expansions >= EXPANSIONS_IN_ALL
 
     def add(self, step: str, hypothesis: Hypothesis, result: Fit) -> None:
         """Note a fit."""
@@ -49,8 +58,8 @@ class Trace:
 class Pool:
     """The best fit so far of each set over windows of one length.
 
-    `plant`: the nominal parameters that are free; `trace` is shared by the pools of all lengths;
-    `filtered` are channels behind a filter, see `corrected_noise`.
+    `plant`: the nominal parameters that are free, those `released` without the bounds of what is believed of them;
+    `trace` is shared by the pools of all lengths; `filtered` are channels behind a filter, see `corrected_noise`.
     """
 
     problem: Problem
@@ -58,6 +67,7 @@ class Pool:
     trace: Trace
     found: dict[Hypothesis, Fit] = field(default_factory=dict)
     filtered: frozenset[str] = frozenset()
+    released: frozenset[str] = frozenset()
 
     def free(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[FreeParameter, ...]:
         """What a fit of a set moves: the plant, its members, and between which instants limited ones act, about
@@ -111,6 +121,20 @@ class Pool:
         at = self.found[hypothesis]
         return self.try_set(step, hypothesis, at.values, at.states, iterations, at.free, in_a_row, give_up_above)
 
+    def release(self, hypothesis: Hypothesis) -> None:
+        """Fit a set on without the bounds of belief that it rests on, if it does, and every other from then on.
+
+        How far a nominal value is believed must not decide which physics is named.
+        """
+        at = self.found[hypothesis]
+        names = at.held_by_belief() - self.released
+        if not names:
+            return
+        self.released |= names
+        self.plant = without_bounds(self.plant, names, self.problem)
+        free = (*self.plant, *(one for one in at.free if one.name not in {own.name for own in self.plant}))
+        self.try_set("without bounds of belief", hypothesis, at.values, at.states, RELEASED, free, 2)
+
     def measure_noise(self, hypothesis: Hypothesis) -> None:
         """Take each channel's noise from what a set leaves, if that is near it, and every fit so far with it.
 
@@ -131,6 +155,14 @@ class Pool:
 
     def __iter__(self) -> Iterator[tuple[Hypothesis, Fit]]:
         return iter(self.found.items())
+
+
+def without_bounds(
+    plant: Sequence[FreeParameter], names: Collection[str], problem: Problem
+) -> tuple[FreeParameter, ...]:
+    """The plant's parameters, those of these names as free as if nobody knew their values."""
+    rows = problem.shooting.composition.place_rows
+    return tuple(not_believed(one, rows[one.name]) if one.name in names else one for one in plant)
 
 
 def in_noise_of(problem: Problem, before: Shooting, result: Fit) -> Fit:
