@@ -158,6 +158,7 @@ def test_a_recording_that_shows_nothing_is_refused_in_one_line(tmp_path, capsys,
     assert main(["diagnose", str(recording), "--topics", str(topics)]) == 2
     assumed, error = capsys.readouterr().err.splitlines()
     assert "the catalogue's cylinder is assumed" in assumed  # a table tells nothing of its rig
+    assert "`eha init-rig` makes the file of a rig" in assumed
     assert told in error
 
 

@@ -40,4 +40,4 @@ def test_nothing_is_assumed_where_the_model_is_known() -> None:
     recording = Recording.from_arrays(time=time, position=0.01 * np.sin(time))
     model = nominal_of({})
     assert assumed_cylinder(True, recording, model) == ""
-    assert "`eha init-rig` makes the file of a rig" in assumed_cylinder(False, recording, model)
+    assert assumed_cylinder(False, recording, model) == "of 6.45 cm^2 and 200 mm stroke"
