@@ -1,7 +1,7 @@
 """Every effect of the catalogue, planted in the plant and found again behind wrong parameters."""
 
 import pytest
-from made import recorded
+from planted import NOT_IDENTIFIABLE, planted, require_measured
 
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
@@ -13,46 +13,14 @@ from eha_core.diagnosis.search.model_comparison import REFINED
 from eha_core.diagnosis.search.planned_refits import planned_refits, refit_with
 from eha_core.diagnosis.search.screening import screen
 from eha_core.effects import effects
-from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
-from eha_core.parameters import nominal_values
 
 NAMED = [effect for effect in effects() if effect.named]
-SIZES = {
-    "end_stop": {"lower": -10.0, "upper": 0.008, "stiffness": 1e6, "damping": 1e3},
-    "external_leakage": {"coefficient_a": 2e-12, "coefficient_b": 1e-12},
-    "leakage_onset": {"time": 6.2, "internal_leakage": 5e-11},
-    "stribeck_friction": {"force": 150.0, "static_force": 220.0, "stribeck_velocity": 0.03},
-    "position_sensor_backlash": {"half_width": 4e-4},
-    "hardening_spring": {"coefficient": 3e8},
-    "command_delay": {"delay": 0.008},
-}
-"""Sizes other than typical where the test's motion, some 2 cm, asks for them."""
-
-RIGS = {
-    "entrained_air": {"supply_pressure": 4e6, "moving_mass": 150.0, "damping_coefficient": 600.0, "valve_gain": 4e-5},
-    "load_friction": {"spring_stiffness": 2e5},
-    "pressure_sensor_lag": {"moving_mass": 90.0},
-}
-"""Air compresses away at high pressure: it is looked for where pressure is low and a heavy load makes it swing.
-Friction in proportion to a load that is viscous is more viscous friction: it is looked for under a spring.
-Pressures that are both late by T look like those of a load lighter by T times its damping: most of the paper's mass."""
-
-DURATIONS = {"leakage_onset": 10.0, "thermal_drift": 10.0}
-"""s; what happens late, or slowly, asks for a longer record than others."""
-
-NOT_IDENTIFIABLE = {"position_sensor_scale"}
-"""Other parameters imitate all of it (gain, mass, damping scaled): no recording of these channels shows it."""
 
 
 @pytest.mark.parametrize("effect", [one for one in NAMED if one.id not in NOT_IDENTIFIABLE], ids=lambda one: one.id)
 def test_what_is_planted_is_screened_in_and_measured(effect):
-    sizes = {**{row.name: row.typical for row in effect.parameters}, **SIZES.get(effect.id, {})}
-    planted = {f"{effect.id}.{name}": value for name, value in sizes.items()}
-    rig = RIGS.get(effect.id, {})
-    nominal = {**nominal_values(), **rig}
-    other = {"moving_mass": 1.1 * nominal["moving_mass"], "damping_coefficient": 0.93 * nominal["damping_coefficient"]}
-    observation = observe(recorded({**rig, **planted, **other}, seed=7, duration=DURATIONS.get(effect.id, 6.0)))
+    values, nominal, observation = planted(effect)
     calibration = calibrate([observation], NominalModel(nominal), 2e-4)
     scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
     tried = [guess for one in applicable_effects([observation]) for guess in initial_guesses(one, scales)]
@@ -64,8 +32,4 @@ def test_what_is_planted_is_screened_in_and_measured(effect):
     (result,) = converge(calibration.problem, {NOTHING.with_effects([effect]): first}).values()
     assert result.data / result.count < 1.1
     assert calibration.fitted.objective - result.objective > 50.0
-    for row in effect.parameters:
-        name = f"{effect.id}.{row.name}"
-        if row.switches and planted[name] != row.nominal:
-            allowed = max(0.1 * abs(planted[name] - row.nominal), 4.0 * result.deviation(name))
-            assert abs(result.values[name] - planted[name]) < allowed, name
+    require_measured(effect, values, result)

@@ -135,7 +135,9 @@ def bus_log(path: Path) -> Path:
 def test_frames_of_a_bus_are_decoded_by_the_database_beside_them(tmp_path: Path) -> None:
     path = bus_log(tmp_path / "run.mf4")
     (tmp_path / "run.dbc").write_text(DATABASE)
-    require_run(read_back(path))
+    read = read_back(path)
+    assert {"position", "pressure_a", "pressure_b"} <= set(read.channels)
+    require_run(read)
 
 
 @pytest.mark.parametrize(
