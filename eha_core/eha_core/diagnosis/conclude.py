@@ -29,6 +29,7 @@ from eha_core.diagnosis.result import (
     Experiment,
     Location,
     NamedEffect,
+    ProbableSet,
     UnknownLaw,
 )
 from eha_core.diagnosis.sets.comparison import Entry
@@ -36,6 +37,7 @@ from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.supported import one_sided, supported
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import effects as every_effect
+from eha_core.health import Fault
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.intervals import with_residual
 from eha_core.identification.problem import Problem
@@ -72,12 +74,8 @@ def conclude(
     parameters = fitted_parameters(final, evidence.nominal, composition)
     scale = common_scale(final, parameters) if decision.verdict == "parameters" else None
     steps, without = ladder(replace(evidence, decision=decision), final)
-    order = list(without)
     sets = probable_sets(evidence.comparison, decision.winner)
-    ends = one_sided(evidence, final, decision.winner)
-    effects = named_effects(decision.winner, final, composition, sets, ends)
-    if order:
-        effects = tuple(sorted(effects, key=lambda effect: order.index(effect.id)))
+    effects = _named(evidence, decision.winner, final, sets, list(without))
     location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
     return Diagnosis(
         path=str(recording.path),
@@ -115,13 +113,25 @@ def conclude(
         composition=composition,
         sets=sets,
         trace=evidence.comparison.trace,
-        health=tuple(
-            (number, fault)
-            for number, observation in enumerate(evidence.observations, 1)
-            for fault in observation.health
-        ),
+        health=_health(evidence),
         event=happened,
         scale=scale,
+    )
+
+
+def _named(
+    evidence: Evidence, winner: Entry, final: Fit, sets: tuple[ProbableSet, ...], order: list[str]
+) -> tuple[NamedEffect, ...]:
+    """The effects that were named, in this order where there is one."""
+    ends = one_sided(evidence, final, winner)
+    effects = named_effects(winner, final, evidence.observation.composition, sets, ends)
+    return tuple(sorted(effects, key=lambda effect: order.index(effect.id))) if order else effects
+
+
+def _health(evidence: Evidence) -> tuple[tuple[int, Fault], ...]:
+    """What is wrong with each recording, by its number."""
+    return tuple(
+        (number, fault) for number, observation in enumerate(evidence.observations, 1) for fault in observation.health
     )
 
 
