@@ -185,6 +185,8 @@ def _over_whole_sets(recordings: Sequence[Recording], model: NominalModel, progr
     lead = telling_most(shooting, fitted)
     alternatives = _equations(observations, lead, calibration)
     calibration, comparison = find_sets(observations, calibration, applicable_effects(observations), scales, progress)
+    if calibration.shooting.step_size != shooting.step_size:
+        scales = characteristic_scales(observations, calibration.shooting, calibration.fitted)
     return _decided(observations, lead, model.values, calibration, scales, alternatives, comparison, progress)
 
 

@@ -62,15 +62,22 @@ def find_sets(
     material = Material(effects, columns, laws, _plant(fitted), Trace(), progress, filtered_channels(observations))
     progress("locating in the equations")
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
+    nominal, long = calibration.nominal.values, calibration.problem
     progress("searching sets over short windows")
-    pool = over_short_windows(calibration.shortest[0], calibration.nominal.values, friction, material)
-    longer = carried(pool, calibration.problem, material)
-    if not at_the_noise(longer):
+    pool, begin = begun(whole(calibration.shortest[0]), nominal, friction, material)
+    worthwhile = True
+    if at_the_noise(pool):  # so short windows show nothing of what is missing, if anything is
+        progress("searching sets over long windows")
+        pool, begin = begun(long, nominal, friction, material)
+        pool = searched(pool, begin, friction, material, laws=False)
+    else:
+        pool = searched(pool, begin, friction, material)
+        worthwhile = pool.found[leader(pool)].data < UNFITTED * pool.found[leader(pool)].count
+        pool = carried(pool, long, material)
+    if worthwhile and not at_the_noise(pool):
         progress("searching sets over longer windows")
-        pool = carried(pool, whole(calibration.shortest[1]), material)
-        search_sets(Search(pool, columns, progress, EXPANSIONS))
-        longer = carried(pool, calibration.problem, material)
-    pool = longer
+        longer, begin = begun(whole(calibration.shortest[1]), nominal, friction, material)
+        pool = carried(searched(longer, begin, friction, material), long, material)
     progress("searching sets over long windows")
     pool.keep(NOTHING, in_noise_of(pool.problem, shooting, fitted))
     search_sets(Search(pool, columns, progress))
@@ -94,12 +101,12 @@ def _plant(fitted: Fit) -> tuple[FreeParameter, ...]:
     return tuple(parameter for parameter in fitted.free if "@" not in parameter.name)
 
 
-def over_short_windows(
-    shooting: Shooting, nominal: Mapping[str, float], friction: Friction, material: Material
-) -> Pool:
-    """Sets over the shortest windows: the friction of the force balance held while the others are found, then free."""
+def begun(
+    problem: Problem, nominal: Mapping[str, float], friction: Friction, material: Material
+) -> tuple[Pool, Fit]:
+    """The nominal equations over some windows, the friction of the force balance held in them; and where to begin."""
     plant = held(material.plant, nominal)
-    pool = Pool(whole(shooting), plant, material.trace, filtered=material.filtered)
+    pool = Pool(problem, plant, material.trace, filtered=material.filtered)
     values = {**nominal, **friction.held.values} if friction.held else dict(nominal)
     states = fit(pool.problem, values, (), iterations=OF_STATES).states
     given = fit(pool.problem, values, plant, states, iterations=0)
@@ -107,33 +114,43 @@ def over_short_windows(
     pool.measure_noise(NOTHING)
     pool.release(NOTHING)
     # nominal values that were fitted without what is missing are bent to it, and all that is seen from there with them
-    begin = pool.found[NOTHING] if calibrated.data < NEAR_NOISE * calibrated.count else given
-    if not friction.known:
-        _search(pool, begin, material.columns, material)
-        return pool
-    others = [column for column in material.columns if not column.effect.kind]
+    return pool, pool.found[NOTHING] if calibrated.data < NEAR_NOISE * calibrated.count else given
+
+
+def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool = True) -> Pool:
+    """Sets over the windows of a pool: the friction of the force balance held while the others are found, then free."""
+    others = [column for column in material.columns if not (friction.known and column.effect.kind)]
     _search(pool, begin, others, material)
-    if friction.held is None:
-        if not at_the_noise(pool):
-            search_sets(Search(pool, material.columns, material.progress))
-        return pool
-    return _released(pool, friction, material)
+    if friction.known and friction.held is None and not at_the_noise(pool):
+        search_sets(Search(pool, material.columns, material.progress))
+    if laws and not at_the_noise(pool) and not pool.trace.is_over:
+        _search_laws(pool, begin, others if friction.held else material.columns, material)
+    return pool if friction.held is None else _released(pool, friction, material)
 
 
 def _search(pool: Pool, begin: Fit, columns: Sequence[Column], material: Material) -> None:
-    """Search among named effects from the nominal equations of `begin` on; where they leave more than noise, among them
-    and laws in no catalogue, from there again: what names did wrongly must not stand in a law's way."""
+    """Search among named effects from the nominal equations of `begin` on."""
     search = Search(pool, columns, material.progress, EXPANSIONS)
     expand(search, NOTHING, "first expansion", begin)
     search_sets(search)
-    if at_the_noise(pool) or pool.trace.is_over:
-        return
+
+
+def _search_laws(pool: Pool, begin: Fit, columns: Sequence[Column], material: Material) -> None:
+    """Search among named effects and laws in no catalogue, from the nominal equations of `begin` on: what names did
+    wrongly must not stand in a law's way. What a law drew may have a name."""
     search = Search(pool, [*columns, *material.laws], material.progress)
     expand(search, NOTHING, "with laws in no catalogue", begin)
     search_sets(search)
-    best = pool.found[leader(pool)]
-    if best.data > UNFITTED * best.count:  # then no curve is the law, and each bends to whatever is there
+    best = leader(pool)
+    at = pool.found[best]
+    if at.data > UNFITTED * at.count:  # then no curve is the law, and each bends to whatever is there
         pool.found = {hypothesis: result for hypothesis, result in pool if hypothesis.law is None}
+    elif best.law is not None:
+        rest = best.without(best.law)
+        off = {name: value for name, value in neutral(best.law.effect).items() if name in at.values}
+        values = {**at.values, **off}
+        undrawn = fit(pool.problem, values, pool.free(rest, values), at.states, iterations=0)
+        expand(Search(pool, columns, material.progress), rest, "names in the law's place", undrawn)
 
 
 def _released(pool: Pool, friction: Friction, material: Material) -> Pool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -31,8 +31,7 @@ from eha_core.diagnosis.sets.pool import Pool, Progress
 from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
-from eha_core.identification.problem import objective_of
-from eha_core.plant.lane_rows import LANES
+from eha_core.identification.problem import objectives_at
 
 
 def required(result: Fit) -> float:
@@ -103,18 +102,27 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     in_time = base == lead and not base.limited
     model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)
     tried = 0
-    for _, hypothesis, values, states in _begun(pool, model, _worth_a_fit(pool, base, model))[:FITTED]:
-        result = pool.try_set(step, hypothesis, values, states, WITH_THE_PLANT)
+    near: Hypothesis | None = None
+    for start in _begun(pool, model, _worth_a_fit(pool, base, model))[:FITTED]:
+        if near is not None and not _contends(start, near, pool.found[near]):
+            continue  # what is larger is proposed from there, if it is needed
+        result = pool.try_set(step, start.hypothesis, start.values, start.states, WITH_THE_PLANT)
         tried += 1
         if result.data < NEAR_NOISE * result.count:
-            break  # what is larger is proposed from there, if it is needed
+            near = start.hypothesis
     now = leader(pool)
     if pool.found[now].data > NEAR_NOISE * at.count and (now != lead or base == lead):
         # what a fit that stopped short leaves would be taken for more effects
         pool.go_on(step, now, TO_THE_END, 2)
+        pool.shift_instants(step, now, TO_THE_END)
     left = pool.found[now].data / at.count
     search.say(f"{step}: {tried} sets tried, best {_shown(now)}, {left:.4g} times the noise")
     pool.measure_noise(now)
+
+
+def _contends(start: _Start, near: Hypothesis, at: Fit) -> bool:
+    """Whether a proposal is no larger than a set that came near the noise, and predicted to come nearer."""
+    return start.hypothesis.size <= near.size and start.predicted + required(at) < at.objective
 
 
 def _shown(hypothesis: Hypothesis) -> str:
@@ -151,22 +159,25 @@ def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tu
     ]
 
 
-def _begun(
-    pool: Pool, model: QuadraticModel, proposals: Sequence[tuple[Hypothesis, Proposal]]
-) -> list[tuple[float, Hypothesis, dict[str, float], Array]]:
-    """The objectives, sets, values and states at which fits of proposals begin, the lowest first: of each the share of
-    the predicted way that leads lowest."""
+@dataclass(frozen=True)
+class _Start:
+    """Where the fit of a proposal begins: at `objective`, of which the quadratic model predicts that `predicted` is
+    left."""
+
+    objective: float
+    predicted: float
+    hypothesis: Hypothesis
+    values: dict[str, float]
+    states: Array
+
+
+def _begun(pool: Pool, model: QuadraticModel, proposals: Sequence[tuple[Hypothesis, Proposal]]) -> list[_Start]:
+    """Where fits of proposals begin, the lowest first: of each the share of the predicted way that leads lowest."""
     starts = [model.start(proposal.options, share) for _, proposal in proposals for share in SHARES]
-    problem = replace(pool.problem, shooting=pool.problem.slopes)
-    objectives = []
-    for first in range(0, len(starts), LANES):
-        some = starts[first : first + LANES]
-        rows, ends = problem.shooting.simulate_many(some)
-        for lane, (_, states) in enumerate(some):
-            objectives.append(objective_of(problem, (), np.zeros(0), states, rows[:, :, lane], ends[:, :, lane]))
+    objectives = objectives_at(pool.problem, starts)
     found = []
-    for k, (hypothesis, _) in enumerate(proposals):
+    for k, (hypothesis, proposal) in enumerate(proposals):
         shares = range(len(SHARES) * k, len(SHARES) * (k + 1))
         best = min(shares, key=lambda place: objectives[place])
-        found.append((objectives[best], hypothesis, *starts[best]))
-    return sorted(found, key=lambda start: start[0])
+        found.append(_Start(objectives[best], proposal.predicted, hypothesis, *starts[best]))
+    return sorted(found, key=lambda start: start.objective)

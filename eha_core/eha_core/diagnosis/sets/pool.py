@@ -17,9 +17,10 @@ from eha_core.diagnosis.result import TraceStep
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter, not_believed
 from eha_core.identification.numbers import Array
-from eha_core.identification.problem import Problem
+from eha_core.identification.problem import Problem, objectives_at
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import with_finer_slopes
+from eha_core.plant.lane_rows import LANES
 
 REACH = 1.0
 """s; how far a fit may move an instant from where the linear model has it."""
@@ -120,6 +121,16 @@ class Pool:
         """Fit a set further from where it stands."""
         at = self.found[hypothesis]
         return self.try_set(step, hypothesis, at.values, at.states, iterations, at.free, in_a_row, give_up_above)
+
+    def shift_instants(self, step: str, hypothesis: Hypothesis, iterations: int) -> None:
+        """Fit a set on from other instants where one of those leaves less: derivatives lead no farther than what a
+        sample or two see."""
+        at = self.found[hypothesis]
+        for name in (parameter.name for parameter in at.free if parameter.resolution):
+            shifts = REACH * np.linspace(-1.0, 1.0, LANES)
+            points = [({**at.values, name: max(at.values[name] + float(shift), 0.0)}, at.states) for shift in shifts]
+            values, states = points[int(np.argmin(objectives_at(self.problem, points)))]
+            at = self.try_set(step, hypothesis, values, states, iterations)
 
     def release(self, hypothesis: Hypothesis) -> None:
         """Fit a set on without the bounds of belief that it rests on, if it does, and every other from then on.
