@@ -1,8 +1,8 @@
 """Development cases: recordings whose answers are known, on which a change of the search is measured case by case.
 
-    python -m tools.development make --table docs/exam_tables/T.json --out DIR [--cases 200] [--jobs 2]
+    python -m tools.development make --table tools/opened_cases.json --out DIR [--cases 200] [--jobs 2]
     python -m tools.development answer --out DIR --search whole-sets --name new [--part 0/2]
-    python -m tools.development pair --out DIR --table docs/exam_tables/T.json --name new
+    python -m tools.development pair --out DIR --table tools/opened_cases.json --name new
 
 A table of marks of an opened exam says which cases there are, what the oracle saw in them, and how they were answered
 then; so a recording is made without asking the oracle again, which takes most of the time. Cases are kept in a folder

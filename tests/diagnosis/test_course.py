@@ -9,6 +9,7 @@ from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.sets.columns import applicable_effects
 from eha_core.diagnosis.sets.course import find_sets
+from eha_core.diagnosis.sets.equations import friction_of
 from eha_core.identification.observation import observe
 from eha_core.identification.parallel import side_by_side
 from eha_core.nominal import NominalModel
@@ -24,7 +25,7 @@ PLANTED = {
 @pytest.fixture(scope="module")
 def found():
     observation = observe(recorded({**PLANTED, "moving_mass": 10.0}, duration=5.0))
-    calibration = calibrate([observation], NominalModel(nominal_values()), 2e-4)
+    calibration = calibrate([observation], NominalModel(nominal_values()))
     scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
     with side_by_side(2):
         return calibration, *find_sets([observation], calibration, applicable_effects([observation]), scales)
@@ -77,3 +78,30 @@ def test_every_fit_is_in_the_trace(found):
     assert seconds == sorted(seconds)
     assert any(set(step.effects) == {name.partition(".")[0] for name in PLANTED} for step in comparison.trace)
     assert {name for step in comparison.trace for name in step.effects} <= LAWS.keys()
+
+
+def test_windows_in_which_nothing_is_missing_are_passed_over():
+    observation = observe(recorded({"moving_mass": 10.0}, duration=4.0))
+    calibration = calibrate([observation], NominalModel(nominal_values()))
+    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
+    with side_by_side(2):
+        _, comparison = find_sets([observation], calibration, applicable_effects([observation]), scales)
+    assert comparison.entries == ()
+    steps = [step.step for step in comparison.trace]
+    assert steps.count("nominal") == 2 and "longer windows" not in steps
+
+
+@pytest.mark.timeout(600)
+def test_friction_that_drags_for_a_while_is_found_though_the_whole_balance_shows_none():
+    planted = {"coulomb_friction.force": 250.0, "coulomb_friction.acts_from": 2.5, "coulomb_friction.acts_until": 4.0}
+    observation = observe(recorded(planted, duration=8.0))
+    calibration = calibrate([observation], NominalModel(nominal_values()))
+    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
+    effects = applicable_effects([observation])
+    assert friction_of([observation], calibration.nominal.values, effects, scales).held is None
+    with side_by_side(2):
+        _, comparison = find_sets([observation], calibration, effects, scales)
+    best = comparison.entries[0]
+    assert best.ids == ("coulomb_friction",) and best.hypothesis.limited
+    for name, value in planted.items():
+        assert best.fit.values[name] == pytest.approx(value, abs=max(4.0 * best.fit.deviation(name), 0.01 * value))

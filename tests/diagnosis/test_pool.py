@@ -9,6 +9,7 @@ from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.sets.pool import REACH, Pool, Trace
 from eha_core.identification.fit import fit
+from eha_core.parameters import nominal_values
 
 PLANTED = {"constant_load.force": 300.0, "valve_deadband.half_width": 1e-4}
 
@@ -81,6 +82,44 @@ def test_a_fit_moves_the_plant_its_members_and_when_a_limited_one_acts(pool):
     longest = float(pool.problem.shooting.local_edges.max())
     spans = [(free[name].lower, free[name].upper) for name in sorted(instants)]
     assert spans == [(0.0, pytest.approx(0.4 + REACH)), (pytest.approx(1.5), pytest.approx(min(3.5, longest)))]
+
+
+def test_an_instant_that_derivatives_do_not_reach_is_found_by_trying_others():
+    planted = {"leakage_onset.time": 2.37, "leakage_onset.internal_leakage": 3e-11}
+    rig = bench(planted, length=1.0, duration=5.0)
+    begun = {**planted, "leakage_onset.time": 3.0}
+    stuck = rig.fitted(begun)
+    assert stuck.data > 1.5 * stuck.count
+    onset = rig.set_of("leakage_onset")
+    rig.pool.shift_instants("other instants", onset, 12)
+    found = rig.pool.found[onset]
+    assert found.data < 1.1 * found.count
+    for name, value in planted.items():
+        assert found.values[name] == pytest.approx(value, abs=max(4.0 * found.deviation(name), 0.01 * value))
+
+
+def test_a_bound_of_belief_comes_back_where_it_costs_nothing(rig, pool):
+    both = rig.set_of("constant_load", "valve_deadband")
+    pool.released = frozenset({"moving_mass"})
+    believed = {parameter.name: parameter.upper for parameter in pool.believed}
+    assert {p.name: p.upper for p in pool.plant if p.upper > believed[p.name]}.keys() == {"moving_mass"}
+    pool.try_set("released", both, pool.found[both].values, pool.found[both].states, 2)
+    pool.believe(both)
+    assert pool.released == frozenset()
+    assert pool.trace.steps[-1].step == "within a bound of belief"
+    assert {p.name: p.upper for p in pool.found[both].free if p.name in believed} == believed
+
+
+def test_a_bound_of_belief_that_costs_stays_away():
+    damped = 20.0 * nominal_values()["damping_coefficient"]
+    rig = bench({"damping_coefficient": damped}, duration=3.0)
+    bound = rig.pool.found[NOTHING]
+    assert "damping_coefficient" in bound.held_by_belief()
+    rig.pool.release(NOTHING)
+    assert rig.pool.found[NOTHING].values["damping_coefficient"] == pytest.approx(damped, rel=0.05)
+    rig.pool.believe(NOTHING)
+    assert "damping_coefficient" in rig.pool.released
+    assert rig.pool.found[NOTHING].objective < bound.objective - 100.0
 
 
 def test_where_a_member_sticks_derivatives_are_taken_more_finely(rig, pool):

@@ -17,7 +17,7 @@ from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, res
 from eha_core.diagnosis.sets.equations import Friction, friction_of
 from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.sets.finish import finish, refit_nominal, rivals
-from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of, without_bounds
+from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of
 from eha_core.diagnosis.sets.quadratic import QuadraticModel
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, with_noise
@@ -28,8 +28,9 @@ from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import held
 
-OF_STATES, RELEASED, CARRIED_ON = 6, 4, 8
-"""Iterations of windows' starts alone, of a set whose friction is set free, and of one carried to longer windows."""
+OF_STATES, ALONE, RELEASED, CARRIED_ON = 6, 16, 4, 8
+"""Iterations of windows' starts alone, of friction that is free alone and together with others, and of a set that is
+carried to longer windows."""
 
 
 @dataclass(frozen=True)
@@ -64,20 +65,24 @@ def find_sets(
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
     nominal, long = calibration.nominal.values, calibration.problem
     progress("searching sets over short windows")
-    pool, begin = begun(whole(calibration.shortest[0]), nominal, friction, material)
+    short, begin = begun(whole(calibration.shortest[0]), nominal, friction, material)
     worthwhile = True
-    if at_the_noise(pool):  # so short windows show nothing of what is missing, if anything is
+    if at_the_noise(short):  # so short windows show nothing of what is missing, if anything is
         progress("searching sets over long windows")
         pool, begin = begun(long, nominal, friction, material)
         pool = searched(pool, begin, friction, material, laws=False)
     else:
-        pool = searched(pool, begin, friction, material)
-        worthwhile = pool.found[leader(pool)].data < UNFITTED * pool.found[leader(pool)].count
-        pool = carried(pool, long, material)
+        short = searched(short, begin, friction, material)
+        worthwhile = short.found[leader(short)].data < UNFITTED * short.found[leader(short)].count
+        pool = carried(short, long, material)
     if worthwhile and not at_the_noise(pool):
         progress("searching sets over longer windows")
         longer, begin = begun(whole(calibration.shortest[1]), nominal, friction, material)
-        pool = carried(searched(longer, begin, friction, material), long, material)
+        bridge = replace(longer, found=dict(longer.found))  # what leads to nothing must not stand in the search's way
+        carry(short, bridge)
+        pool = carried(bridge, long, material)
+        if not at_the_noise(pool):
+            pool = carried(searched(longer, begin, friction, material), long, material)
     progress("searching sets over long windows")
     pool.keep(NOTHING, in_noise_of(pool.problem, shooting, fitted))
     search_sets(Search(pool, columns, progress))
@@ -118,14 +123,40 @@ def begun(
 
 
 def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool = True) -> Pool:
-    """Sets over the windows of a pool: the friction of the force balance held while the others are found, then free."""
+    """Sets over the windows of a pool: the friction of the force balance alone, then held while the others are found,
+    then free."""
+    free = Pool(pool.problem, pool.believed, pool.trace, filtered=pool.filtered, released=pool.released)
+    if friction.held is not None and not at_the_noise(pool):
+        alone, at = NOTHING.with_effects([friction.held.effect]), pool.found[NOTHING]
+        result = free.try_set("friction free", alone, at.values, at.states, ALONE, in_a_row=2)
+        if result.data < NEAR_NOISE * result.count:
+            return free
     others = [column for column in material.columns if not (friction.known and column.effect.kind)]
     _search(pool, begin, others, material)
     if friction.known and friction.held is None and not at_the_noise(pool):
-        search_sets(Search(pool, material.columns, material.progress))
+        _search(pool, begin, material.columns, material)  # the balance of a whole record hides what drags for a while
     if laws and not at_the_noise(pool) and not pool.trace.is_over:
         _search_laws(pool, begin, others if friction.held else material.columns, material)
-    return pool if friction.held is None else _released(pool, friction, material)
+    return pool if friction.held is None else _released(pool, free, friction, material)
+
+
+def _released(pool: Pool, free: Pool, friction: Friction, material: Material) -> Pool:
+    """The best sets with the friction `free` that was held, and with its other forms where more than noise is left."""
+    assert friction.held is not None
+    free.found = {h: in_noise_of(pool.problem, free.problem.shooting, result) for h, result in free}
+    free.problem, free.released = pool.problem, pool.released
+    ahead = _ahead(pool)
+    for hypothesis in ahead:
+        at = pool.found[hypothesis]
+        free.try_set("friction free", hypothesis.with_effects([friction.held.effect]), at.values, at.states, RELEASED)
+    if at_the_noise(free):
+        return free
+    at = pool.found[ahead[0]]
+    for start in friction.forms[1:]:
+        values = {**at.values, **neutral(friction.held.effect), **start.values}
+        free.try_set("form of friction", ahead[0].with_effects([start.effect]), values, at.states, RELEASED)
+    search_sets(Search(free, material.columns, material.progress))
+    return free
 
 
 def _search(pool: Pool, begin: Fit, columns: Sequence[Column], material: Material) -> None:
@@ -153,38 +184,23 @@ def _search_laws(pool: Pool, begin: Fit, columns: Sequence[Column], material: Ma
         expand(Search(pool, columns, material.progress), rest, "names in the law's place", undrawn)
 
 
-def _released(pool: Pool, friction: Friction, material: Material) -> Pool:
-    """The best sets with the friction free that was held, and with its other forms where more than noise is left."""
-    assert friction.held is not None
-    free = Pool(pool.problem, pool.plant, pool.trace, filtered=pool.filtered, released=pool.released)
-    ahead = _ahead(pool)
-    for hypothesis in ahead:
-        at = pool.found[hypothesis]
-        free.try_set("friction free", hypothesis.with_effects([friction.held.effect]), at.values, at.states, RELEASED)
-    best = leader(free)
-    if free.found[best].data < NEAR_NOISE * free.found[best].count:
-        return free
-    at = pool.found[ahead[0]]
-    for start in friction.forms[1:]:
-        values = {**at.values, **neutral(friction.held.effect), **start.values}
-        free.try_set("form of friction", ahead[0].with_effects([start.effect]), values, at.states, RELEASED)
-    search_sets(Search(free, material.columns, material.progress))
-    return free
-
-
 def carried(pool: Pool, problem: Problem, material: Material) -> Pool:
     """The best sets over longer windows, in the noise that was found."""
     if pool.found[leader(pool)].data < 2.0 * pool.found[leader(pool)].count:
         noise = [sampling.noise for sampling in pool.problem.shooting.samplings]
         problem = replace(problem, shooting=with_noise(problem.shooting, noise))
-    plant = without_bounds(material.plant, pool.released, problem)
-    longer = Pool(problem, plant, material.trace, filtered=pool.filtered, released=pool.released)
+    longer = Pool(problem, material.plant, material.trace, filtered=pool.filtered, released=pool.released)
+    carry(pool, longer)
+    return longer
+
+
+def carry(pool: Pool, longer: Pool) -> None:
+    """Fit the best sets of one pool in that of longer windows, and measure the noise there."""
     for hypothesis in _ahead(pool):
         at = pool.found[hypothesis]
         states = states_over(longer.problem, pool.problem.shooting, at)
         longer.try_set("longer windows", hypothesis, at.values, states, CARRIED_ON)
     longer.measure_noise(leader(longer))
-    return longer
 
 
 def states_over(problem: Problem, before: Shooting, at: Fit) -> Array:
@@ -205,6 +221,7 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
     """The best set fitted to its end, without what is not significant, with its rivals and the nominal model."""
     material.progress("fitting the best set to its end")
     best, gains = finish(pool, leader(pool), material.progress)
+    pool.believe(best)
     leading, compared, model = rivals(pool, best, material.columns, material.progress)
     if leading != best:
         best, gains = finish(pool, leading, material.progress)

@@ -24,7 +24,7 @@ from eha_core.diagnosis.criteria import (
     WITH_THE_PLANT,
     chance_gain,
 )
-from eha_core.diagnosis.hypothesis import Hypothesis
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.sets.best_sets import Proposal, best_sets
 from eha_core.diagnosis.sets.columns import Column
 from eha_core.diagnosis.sets.pool import Pool, Progress
@@ -99,7 +99,7 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     search.expanded[base] = at.objective
     pool.trace.expansions += 1
     addable = [c for c in search.columns if c.effect.id not in base.ids and c.effect.kind not in base.kinds]
-    in_time = base == lead and not base.limited
+    in_time = base in (lead, NOTHING) and not base.limited
     model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)
     tried = 0
     near: Hypothesis | None = None

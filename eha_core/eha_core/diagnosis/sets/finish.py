@@ -187,13 +187,15 @@ def _other_forms(
     """The set with another form of a member's law, at its values where both have the parameter."""
     at = pool.found[best]
     for member in best.members:
-        if not member.effect.kind or member.limited:
+        if not member.effect.kind:
             continue
         others = {c.effect.id: c for c in columns if c.effect.kind == member.effect.kind and c.effect.id != member.id}
         for column in others.values():
-            hypothesis = best.without(member).with_effects([column.effect])
+            hypothesis = best.without(member).with_effects([column.effect], member.limited)
+            span = member.span(at.values)
+            acts = dict(zip(column.effect.acting_names(), span, strict=True)) if span else {}
             if hypothesis not in pool.found:
-                yield hypothesis, {**at.values, **neutral(member.effect), **as_large(column, member, at)}
+                yield hypothesis, {**at.values, **neutral(member.effect), **as_large(column, member, at), **acts}
 
 
 def _named_instead(

@@ -5,18 +5,20 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from math import inf
 
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise
-from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE
+from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE, chance_gain
 from eha_core.diagnosis.effect_parameters import free_instants, with_effects
 from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.result import TraceStep
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter, not_believed
 from eha_core.identification.numbers import Array
+from eha_core.identification.per_recording import base_name, in_each
 from eha_core.identification.problem import Problem, objectives_at
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import with_finer_slopes
@@ -24,6 +26,9 @@ from eha_core.plant.lane_rows import LANES
 
 REACH = 1.0
 """s; how far a fit may move an instant from where the linear model has it."""
+
+FINER = 0.2
+"""Share of that within which an instant is tried once more: the first places were a tenth of it apart (assumed)."""
 
 RELEASED = 12
 """Iterations of a set without the bounds of belief that it rested on."""
@@ -59,16 +64,22 @@ class Trace:
 class Pool:
     """The best fit so far of each set over windows of one length.
 
-    `plant`: the nominal parameters that are free, those `released` without the bounds of what is believed of them;
-    `trace` is shared by the pools of all lengths; `filtered` are channels behind a filter, see `corrected_noise`.
+    `believed`: the nominal parameters that are free, within the bounds of what is believed of them but for those
+    `released`; `trace` is shared by the pools of all lengths; `filtered` are channels behind a filter, see
+    `corrected_noise`.
     """
 
     problem: Problem
-    plant: tuple[FreeParameter, ...]
+    believed: tuple[FreeParameter, ...]
     trace: Trace
     found: dict[Hypothesis, Fit] = field(default_factory=dict)
     filtered: frozenset[str] = frozenset()
     released: frozenset[str] = frozenset()
+
+    @property
+    def plant(self) -> tuple[FreeParameter, ...]:
+        """The nominal parameters that are free, as they are now."""
+        return without_bounds(self.believed, self.released, self.problem)
 
     def free(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[FreeParameter, ...]:
         """What a fit of a set moves: the plant, its members, and between which instants limited ones act, about
@@ -126,8 +137,9 @@ class Pool:
         """Fit a set on from other instants where one of those leaves less: derivatives lead no farther than what a
         sample or two see."""
         at = self.found[hypothesis]
-        for name in (parameter.name for parameter in at.free if parameter.resolution):
-            shifts = REACH * np.linspace(-1.0, 1.0, LANES)
+        instants = [parameter.name for parameter in at.free if parameter.resolution]
+        for reach, name in product((REACH, FINER * REACH), instants):
+            shifts = reach * np.linspace(-1.0, 1.0, LANES)
             points = [({**at.values, name: max(at.values[name] + float(shift), 0.0)}, at.states) for shift in shifts]
             values, states = points[int(np.argmin(objectives_at(self.problem, points)))]
             at = self.try_set(step, hypothesis, values, states, iterations)
@@ -142,9 +154,33 @@ class Pool:
         if not names:
             return
         self.released |= names
-        self.plant = without_bounds(self.plant, names, self.problem)
-        free = (*self.plant, *(one for one in at.free if one.name not in {own.name for own in self.plant}))
-        self.try_set("without bounds of belief", hypothesis, at.values, at.states, RELEASED, free, 2)
+        self.try_set("without bounds of belief", hypothesis, at.values, at.states, RELEASED, self._in_plant(at), 2)
+
+    def believe(self, hypothesis: Hypothesis) -> None:
+        """Bring back each bound that was released, if a set gains no more without it than by chance."""
+        for name in sorted(self.released):
+            at = self.found[hypothesis]
+            self.released -= {name}
+            free = self._in_plant(at)
+            bounds = {one.name: (one.lower, one.upper) for one in free if base_name(one.name) == name}
+            values = {**at.values, **{own: min(max(at.values[own], low), up) for own, (low, up) in bounds.items()}}
+            result = fit(self.posed(hypothesis), values, free, at.states, iterations=RELEASED, in_a_row=2)
+            self.trace.add("within a bound of belief", hypothesis, result)
+            if result.objective - at.objective > chance_gain(at.count, at.data / at.count):
+                self.released |= {name}
+            else:
+                self.found[hypothesis] = result
+
+    def _in_plant(self, at: Fit) -> tuple[FreeParameter, ...]:
+        """What a fit moves, the nominal parameters as they are now."""
+        plant, _ = in_each(self.plant, at.values, self.problem.shooting.per_recording, self.recordings)
+        names = {one.name for one in plant}
+        return (*plant, *(one for one in at.free if one.name not in names))
+
+    @property
+    def recordings(self) -> int:
+        """How many recordings are fitted together."""
+        return len(self.problem.shooting.first_windows)
 
     def measure_noise(self, hypothesis: Hypothesis) -> None:
         """Take each channel's noise from what a set leaves, if that is near it, and every fit so far with it.
