@@ -104,15 +104,7 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
     """
     channels = recording.channels
     where = str(recording.path)
-    if recording.duration < SHORTEST:
-        raise RecordingError(
-            f"{where}: {recording.duration:.3g} s of data are too short to diagnose; record {SHORTEST:g} s or more"
-        )
-    if "position" not in channels:
-        raise RecordingError(
-            f"{where}: no position channel among {', '.join(channels) or 'none'}; map one to `position`"
-            " in a topics file"
-        )
+    _require_position(recording)
     drive, driving, not_examined = _choose_drive(where, channels, composition.source)
     health = examine(recording)
     inputs = tuple(health.sound(channels[name]) for name in driving)
@@ -128,12 +120,7 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
         measured.append(_measured(where, channels[name], column, health, undriven, remarks))
     used = {*driving, *(channel.name for channel in measured)}
     not_examined += [f"{name}: {NOT_COMPARED[name]}" for name in channels if name not in used]
-    position = measured[0]
-    if np.ptp(position.values) < 4.0 * position.noise:
-        raise RecordingError(
-            f"{where}: the position does not move (it spans {np.ptp(position.values):.3g} m, its noise is "
-            f"{position.noise:.3g} m); record a test that moves the piston"
-        )
+    _require_motion(where, measured[0])
     for name in ("pressure_a", "pressure_b"):
         if name not in channels and drive in WITH_OIL:
             not_examined.append(f"continuity of chamber {name[-1]}: {name} was not recorded")
@@ -155,6 +142,29 @@ def observe(recording: Recording, composition: Composition = PAPER) -> Observati
         health.faults,
         undriven,
     )
+
+
+def _require_position(recording: Recording) -> None:
+    """Raise RecordingError where a recording is too short, or has no position."""
+    where = recording.path
+    if recording.duration < SHORTEST:
+        raise RecordingError(
+            f"{where}: {recording.duration:.3g} s of data are too short to diagnose; record {SHORTEST:g} s or more"
+        )
+    if "position" not in recording.channels:
+        raise RecordingError(
+            f"{where}: no position channel among {', '.join(recording.channels) or 'none'}; map one to `position`"
+            " in a topics file"
+        )
+
+
+def _require_motion(where: str, position: Measured) -> None:
+    """Raise RecordingError where the piston does not move."""
+    if np.ptp(position.values) < 4.0 * position.noise:
+        raise RecordingError(
+            f"{where}: the position does not move (it spans {np.ptp(position.values):.3g} m, its noise is "
+            f"{position.noise:.3g} m); record a test that moves the piston"
+        )
 
 
 def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:

@@ -12,12 +12,16 @@ import numpy as np
 from eha_core.diagnosis.result import (
     ChannelFit,
     Diagnosis,
+    Explained,
     FittedValue,
     Location,
     LongRecord,
     NamedEffect,
+    PredictedRecording,
     Prediction,
+    RecordingFit,
     Residual,
+    TraceStep,
 )
 from eha_core.health import Fault
 from eha_core.report.location import location_statement
@@ -31,14 +35,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
         {
             "schema": SCHEMA,
             "provenance": diagnosis.provenance,
-            "recording": {
-                "path": diagnosis.path,
-                "duration_s": diagnosis.duration,
-                "channels": diagnosis.channels,
-                "not_examined": diagnosis.not_examined,
-                "remarks": diagnosis.remarks,
-                "damaged": diagnosis.damaged,
-            },
+            "recording": _recording(diagnosis),
             "health": [_fault(number, fault, len(diagnosis.together)) for number, fault in diagnosis.health],
             "verdict": diagnosis.verdict,
             "event": diagnosis.event,
@@ -56,29 +53,13 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
                 diagnosis.next_experiment, ("statement", "separates", "reference", "record", "duration")
             ),
             "sets": _rows(diagnosis.sets, ("effects", "probability")),
-            "trace": [
-                {"step": each.step, "set": each.effects, "chi2": each.chi2, "cpu_s": each.cpu_s}
-                for each in diagnosis.trace
-            ],
+            "trace": [_trace_step(step) for step in diagnosis.trace],
             "rivals": [{"effects": effects, "score": score} for effects, score in diagnosis.rivals],
             "whiteness": diagnosis.whiteness,
-            "explained": {
-                **_rows([diagnosis.explained], ("share", "times_noise", "complete"))[0],
-                "left_over": _rows(diagnosis.explained.left_over, ("site", "share", "where", "when")),
-            },
+            "explained": _explained(diagnosis.explained),
             "prediction": _predictions(diagnosis.prediction),
-            "recordings": [
-                {"path": recording.path, "own_values": recording.own_values, "held_out": _fits(recording.held_out)}
-                for recording in diagnosis.together
-            ],
-            "tests": [
-                {
-                    "path": recording.path,
-                    "noise": recording.noise,
-                    "prediction": {model: _predictions(each) for model, each in recording.prediction.items()},
-                }
-                for recording in diagnosis.tests
-            ],
+            "recordings": [_together(recording) for recording in diagnosis.together],
+            "tests": [_test(recording) for recording in diagnosis.tests],
             "steps": [{"added": step.added, **_residual(step.residual)} for step in diagnosis.steps],
             "without": {name: _residual(residual) for name, residual in diagnosis.without.items()},
             "correlation": _row(diagnosis.correlation, ("names", "matrix")),
@@ -91,6 +72,35 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
 def as_json(diagnosis: Diagnosis) -> str:
     """The document as text, ending with a newline."""
     return json.dumps(document(diagnosis), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _recording(diagnosis: Diagnosis) -> dict[str, Any]:
+    return {
+        "path": diagnosis.path,
+        "duration_s": diagnosis.duration,
+        "channels": diagnosis.channels,
+        "not_examined": diagnosis.not_examined,
+        "remarks": diagnosis.remarks,
+        "damaged": diagnosis.damaged,
+    }
+
+
+def _explained(explained: Explained) -> dict[str, Any]:
+    row = _rows([explained], ("share", "times_noise", "complete"))[0]
+    return {**row, "left_over": _rows(explained.left_over, ("site", "share", "where", "when"))}
+
+
+def _together(recording: RecordingFit) -> dict[str, Any]:
+    return {"path": recording.path, "own_values": recording.own_values, "held_out": _fits(recording.held_out)}
+
+
+def _test(recording: PredictedRecording) -> dict[str, Any]:
+    predicted = {model: _predictions(each) for model, each in recording.prediction.items()}
+    return {"path": recording.path, "noise": recording.noise, "prediction": predicted}
+
+
+def _trace_step(step: TraceStep) -> dict[str, Any]:
+    return {"step": step.step, "set": step.effects, "chi2": step.chi2, "cpu_s": step.cpu_s}
 
 
 def _fault(number: int, fault: Fault, recordings: int) -> dict[str, Any]:
