@@ -63,26 +63,7 @@ def find_sets(
     material = Material(effects, columns, laws, _plant(fitted), Trace(), progress, filtered_channels(observations))
     progress("locating in the equations")
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
-    nominal, long = calibration.nominal.values, calibration.problem
-    progress("searching sets over short windows")
-    short, begin = begun(whole(calibration.shortest[0]), nominal, friction, material)
-    worthwhile = True
-    if at_the_noise(short):  # so short windows show nothing of what is missing, if anything is
-        progress("searching sets over long windows")
-        pool, begin = begun(long, nominal, friction, material)
-        pool = searched(pool, begin, friction, material, laws=False)
-    else:
-        short = searched(short, begin, friction, material)
-        worthwhile = short.found[leader(short)].data < UNFITTED * short.found[leader(short)].count
-        pool = carried(short, long, material)
-    if worthwhile and not at_the_noise(pool):
-        progress("searching sets over longer windows")
-        longer, begin = begun(whole(calibration.shortest[1]), nominal, friction, material)
-        bridge = replace(longer, found=dict(longer.found))  # what leads to nothing must not stand in the search's way
-        carry(short, bridge)
-        pool = carried(bridge, long, material)
-        if not at_the_noise(pool):
-            pool = carried(searched(longer, begin, friction, material), long, material)
+    pool = _over_growing_windows(calibration, friction, material)
     progress("searching sets over long windows")
     pool.keep(NOTHING, in_noise_of(pool.problem, shooting, fitted))
     search_sets(Search(pool, columns, progress))
@@ -93,6 +74,31 @@ def find_sets(
         pool = carried(pool, calibration.problem, material)
         pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
     return finished(pool, calibration, material)
+
+
+def _over_growing_windows(calibration: Calibration, friction: Friction, material: Material) -> Pool:
+    """Sets over short windows, and those over long ones: by way of longer ones, where the way is too far."""
+    nominal, long = calibration.nominal.values, calibration.problem
+    material.progress("searching sets over short windows")
+    short, begin = begun(whole(calibration.shortest[0]), nominal, friction, material)
+    if at_the_noise(short):  # so short windows show nothing of what is missing, if anything is
+        material.progress("searching sets over long windows")
+        pool, begin = begun(long, nominal, friction, material)
+        pool = searched(pool, begin, friction, material, laws=False)
+    else:
+        short = searched(short, begin, friction, material)
+        pool = carried(short, long, material)
+        best = short.found[leader(short)]
+        if best.data > UNFITTED * best.count:  # longer windows cannot be explained either
+            return pool
+    if at_the_noise(pool):
+        return pool
+    material.progress("searching sets over longer windows")
+    longer, begin = begun(whole(calibration.shortest[1]), nominal, friction, material)
+    bridge = replace(longer, found=dict(longer.found))  # what leads to nothing must not stand in the search's way
+    carry(short, bridge)
+    pool = carried(bridge, long, material)
+    return pool if at_the_noise(pool) else carried(searched(longer, begin, friction, material), long, material)
 
 
 def at_the_noise(pool: Pool) -> bool:
