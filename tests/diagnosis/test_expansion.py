@@ -1,0 +1,73 @@
+"""One expansion after the other: what is proposed is fitted, and the search goes on from the best of all."""
+
+import numpy as np
+import pytest
+from made import bench
+
+from eha_core.diagnosis.criteria import FITTED, NEAR_NOISE
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.sets import expansion
+from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
+from eha_core.diagnosis.sets.pool import Pool, Trace
+from eha_core.identification.fit import exact, fit
+from eha_core.identification.problem import objectives_at
+
+PLANTED = {"constant_load.force": 300.0, "valve_deadband.half_width": 1e-4}
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return bench(PLANTED, duration=4.0)
+
+
+def searched(rig, say=lambda _: None) -> Search:
+    """A search of the test's own, in which nothing but the nominal equations was fitted."""
+    pool = Pool(rig.pool.problem, rig.pool.believed, Trace(), {NOTHING: rig.pool.found[NOTHING]})
+    return Search(pool, rig.columns_of("constant_load", "valve_deadband", "command_delay", "turbulent_leakage"), say)
+
+
+def test_two_effects_are_found_by_one_expansion_and_their_values_too(rig):
+    said = []
+    search = searched(rig, said.append)
+    expand(search, NOTHING, "first")
+    best = leader(search.pool)
+    assert best == rig.set_of("constant_load", "valve_deadband")
+    at = search.pool.found[best]
+    assert at.data < NEAR_NOISE * at.count
+    for name, value in PLANTED.items():
+        assert at.values[name] == pytest.approx(value, abs=max(4.0 * at.deviation(name), 0.01 * value))
+    assert search.pool.trace.expansions == 1 and len(search.pool.trace.steps) <= FITTED + 1
+    assert said == [said[0]] and "constant_load + valve_deadband" in said[0]
+
+
+def test_a_search_expands_no_set_twice_and_ends_at_the_noise(rig):
+    search = searched(rig)
+    best = search_sets(search)
+    assert best == rig.set_of("constant_load", "valve_deadband")
+    assert search.expanded.keys() == {NOTHING, best}
+    assert search.next() is None
+
+
+def test_a_set_pays_for_its_size_and_far_from_the_noise_a_member_has_to_gain_more(rig):
+    at = rig.pool.found[NOTHING]
+    one = rig.set_of("constant_load")
+    assert cost(one, at) - cost(NOTHING, at) > 25.0
+    assert required(at) > cost(one, at) - cost(NOTHING, at)
+
+
+def test_near_the_noise_only_what_is_predicted_to_come_nearer_is_fitted_besides(rig, monkeypatch):
+    monkeypatch.setattr(expansion, "NEAR_NOISE", 1e9)  # then whatever is fitted first is near enough
+    search = searched(rig)
+    expand(search, NOTHING, "first")
+    fitted = [step.effects for step in search.pool.trace.steps if step.step == "first"]
+    first = len(fitted[0])
+    assert all(len(effects) <= first for effects in fitted)
+    assert leader(search.pool) == rig.set_of("constant_load", "valve_deadband")
+
+
+def test_the_objective_at_a_point_is_that_of_a_fit_that_does_not_move(rig):
+    problem, at = exact(rig.pool.problem), rig.pool.found[NOTHING]
+    other = {**at.values, "moving_mass": 1.2 * at.values["moving_mass"]}
+    found = objectives_at(problem, [(at.values, at.states), (other, at.states)])
+    expected = [fit(problem, values, (), at.states, iterations=0).objective for values in (at.values, other)]
+    assert np.allclose(found, expected, rtol=1e-9)
