@@ -1,0 +1,123 @@
+"""The whole result of a diagnosis, with the series that the report draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from eha_core.diagnosis.result.findings import (
+    Alternative,
+    CommonScale,
+    Experiment,
+    FittedParameter,
+    Location,
+    NamedEffect,
+    ProbableSet,
+    UnknownLaw,
+)
+from eha_core.diagnosis.result.long_record import LongRecord
+from eha_core.diagnosis.result.residuals import (
+    ChannelFit,
+    Correlation,
+    Explained,
+    PredictedRecording,
+    Prediction,
+    RecordingFit,
+    Residual,
+    Step,
+    TraceStep,
+)
+from eha_core.health import Fault
+from eha_core.identification.numbers import Array
+from eha_core.plant import PAPER, Composition
+
+VERDICTS = ("consistent", "parameters", "missing_physics", "ambiguous", "unknown_physics")
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """The series that the report draws, by name; channels in SI, each over its own `time` [s].
+
+    `measured` has every channel that was used, the driving ones too; the three models have those that are compared.
+    `variables` (states of the calibrated model, by column name) stand over their own `time`. `equations` has each
+    equation's residual in units of its noise, as (time, residual). `held_out`: the spans of time used for judging [s].
+    `span`: when the stretch of a long record that is drawn begins and ends [s].
+    """
+
+    time: Mapping[str, Array]
+    measured: Mapping[str, Array]
+    before: Mapping[str, Array]
+    calibrated: Mapping[str, Array]
+    after: Mapping[str, Array]
+    variables: Mapping[str, Array] = field(default_factory=dict)
+    equations: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
+    held_out: tuple[tuple[float, float], ...] = ()
+    span: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The whole result of `eha diagnose`.
+
+    Of several recordings of one rig, `path` and all that is drawn are of the one that tells most; `together` has a row
+    for each, and `tests` one for each recording that nothing was fitted to.
+
+    `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
+    calibrated model, less the cost of its parameters. `whiteness` is each channel's largest autocorrelation in units of
+    the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
+    what, when, as text. `steps` lead from the nominal model to that with all effects; `without` has what is left
+    when one of several effects is taken out and the rest fitted again, most first: the order of `effects`, too.
+    `sets` are those that together hold 95 % of the probability, the most probable first; `trace` has every fit of the
+    search. `health` has the faults of the channels, each with the number of its recording among several (1 of a single
+    one). `event`: when the nominal model fails while it is at the noise at all other times [s]. `scale`: the one factor
+    by which the changed parameters differ from the nominal ones, if they do. `long_records` has those of which
+    stretches were fitted; what is drawn of them is in the record's time.
+    """
+
+    path: str
+    duration: float
+    channels: tuple[str, ...]
+    not_examined: tuple[str, ...]
+    remarks: tuple[str, ...]
+    damaged: str | None
+    verdict: str
+    summary: str
+    location: tuple[Location, ...]
+    parameters: tuple[FittedParameter, ...]
+    effects: tuple[NamedEffect, ...]
+    alternatives: tuple[Alternative, ...]
+    unknown: UnknownLaw | None
+    training: Mapping[str, ChannelFit]
+    held_out: Mapping[str, ChannelFit]
+    next_experiment: Experiment | None
+    rivals: tuple[tuple[tuple[str, ...], float], ...]
+    whiteness: Mapping[str, float]
+    fitted_values: Mapping[str, float]
+    pictures: Pictures
+    start_stamp: int = 0
+    explained: Explained = field(default_factory=lambda: Explained(1.0, {}, True))
+    prediction: Mapping[str, Prediction] = field(default_factory=dict)
+    provenance: Mapping[str, str] = field(default_factory=dict)
+    together: tuple[RecordingFit, ...] = ()
+    tests: tuple[PredictedRecording, ...] = ()
+    steps: tuple[Step, ...] = ()
+    without: Mapping[str, Residual] = field(default_factory=dict)
+    correlation: Correlation = Correlation()
+    composition: Composition = PAPER
+    long_records: tuple[LongRecord, ...] = ()
+    sets: tuple[ProbableSet, ...] = ()
+    trace: tuple[TraceStep, ...] = ()
+    health: tuple[tuple[int, Fault], ...] = ()
+    event: tuple[float, float] | None = None
+    scale: CommonScale | None = None
+
+    @property
+    def drawn(self) -> tuple[float, float]:
+        """When what is drawn begins and ends [s]."""
+        return self.pictures.span or (0.0, self.duration)
+
+    @property
+    def biased(self) -> bool:
+        """Whether the parameters were fitted without a law that is known to be missing, and may imitate it."""
+        simulated = any(name.startswith("recovered_") for name in self.fitted_values)
+        return self.verdict == "unknown_physics" and not simulated
