@@ -27,6 +27,7 @@ from eha_core.diagnosis.result import (
     ChannelFit,
     Diagnosis,
     Experiment,
+    Explained,
     Location,
     NamedEffect,
     ProbableSet,
@@ -61,29 +62,47 @@ def conclude(
     progress("polishing the winner and its intervals")
     unknown = _unknown(evidence)
     decision = supported(evidence, _without_another_curve(evidence, unknown))
-    if decision.as_given:
-        unknown = None
+    evidence = replace(evidence, decision=decision)
     final = polish(evidence, decision.winner)
-    before, calibrated = evidence.calibration.nominal, evidence.comparison.nominal.fit
-    training, held_out = _channel_fits(evidence, before, calibrated, decision)
-    left = explained(replace(evidence, decision=decision), final, held_out)
-    composition = evidence.observation.composition
-    experiment = _experiment(evidence, decision) if decision.verdict == "ambiguous" else None
+    nominal, recalibrated = evidence.calibration.nominal, evidence.comparison.nominal.fit
+    training, held_out = _channel_fits(evidence, nominal, recalibrated, decision)
+    left = explained(evidence, final, held_out)
     recording = recordings[evidence.lead - 1]
+    shown = evidence.shown_fit(evidence.calibration.shooting, final)
+    found = _findings(recording, evidence, final, None if decision.as_given else unknown, left)
+    return replace(
+        found,
+        damaged=next((record.damaged for record in recordings if record.damaged), None),
+        training=of_recording(training, evidence.lead),
+        held_out=of_recording(held_out, evidence.lead),
+        prediction=predictions(evidence.observation, shown.values, evidence.calibration.shooting.step_size),
+        together=fitted_recordings(evidence, final, held_out),
+        tests=predicted_recordings(evidence, final, tests),
+        correlation=correlation(final),
+        trace=evidence.comparison.trace,
+        health=_health(evidence),
+    )
+
+
+def _findings(
+    recording: Recording, evidence: Evidence, final: Fit, unknown: UnknownLaw | None, left: Explained
+) -> Diagnosis:
+    """What is missing, where, and what speaks for it, of the recording that is drawn."""
+    decision, comparison, composition = evidence.decision, evidence.comparison, evidence.observation.composition
+    winner, before = decision.winner, evidence.calibration.nominal
     happened = _event(evidence, decision)
     parameters = fitted_parameters(final, evidence.nominal, composition)
     scale = common_scale(final, parameters) if decision.verdict == "parameters" else None
-    steps, without = ladder(replace(evidence, decision=decision), final)
-    sets = probable_sets(evidence.comparison, decision.winner)
-    effects = _named(evidence, decision.winner, final, sets, list(without))
-    location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, decision.winner)
+    steps, without = ladder(evidence, final)
+    sets = probable_sets(comparison, winner)
+    effects = _named(evidence, winner, final, sets, list(without))
+    location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, winner)
     return Diagnosis(
         path=str(recording.path),
         duration=recording.duration,
         channels=evidence.observation.channels,
         not_examined=evidence.observation.not_examined,
         remarks=(*zeros_to_correct(effects, recording), *_remarks(evidence)),
-        damaged=next((record.damaged for record in recordings if record.damaged), None),
         verdict=decision.verdict,
         summary=summary(decision, effects, unknown, left, happened, scale),
         location=location if decision.verdict not in ("consistent", "parameters") else (),
@@ -91,29 +110,17 @@ def conclude(
         effects=effects,
         alternatives=tuple(Alternative(entry.ids, gap) for entry, gap in decision.rivals),
         unknown=unknown,
-        training=of_recording(training, evidence.lead),
-        held_out=of_recording(held_out, evidence.lead),
-        next_experiment=experiment,
-        rivals=tuple((entry.ids, entry.score) for entry in evidence.comparison.entries),
-        whiteness=dict(zip(evidence.calibration.shooting.names, whiteness(decision.winner.fit.residuals), strict=True)),
+        next_experiment=_experiment(evidence, decision) if decision.verdict == "ambiguous" else None,
+        rivals=tuple((entry.ids, entry.score) for entry in comparison.entries),
+        whiteness=dict(zip(evidence.calibration.shooting.names, whiteness(winner.fit.residuals), strict=True)),
         fitted_values=changed_values(final, composition),
-        pictures=pictures(evidence, before, calibrated, decision.winner.fit),
+        pictures=pictures(evidence, before, comparison.nominal.fit, winner.fit),
         start_stamp=recording.start_stamp,
         explained=left,
-        prediction=predictions(
-            evidence.observation,
-            evidence.shown_fit(evidence.calibration.shooting, final).values,
-            evidence.calibration.shooting.step_size,
-        ),
-        together=fitted_recordings(evidence, final, held_out),
-        tests=predicted_recordings(evidence, final, tests),
         steps=steps,
         without=without,
-        correlation=correlation(final),
         composition=composition,
         sets=sets,
-        trace=evidence.comparison.trace,
-        health=_health(evidence),
         event=happened,
         scale=scale,
     )

@@ -79,7 +79,6 @@ class Diagnosis:
     channels: tuple[str, ...]
     not_examined: tuple[str, ...]
     remarks: tuple[str, ...]
-    damaged: str | None
     verdict: str
     summary: str
     location: tuple[Location, ...]
@@ -87,14 +86,15 @@ class Diagnosis:
     effects: tuple[NamedEffect, ...]
     alternatives: tuple[Alternative, ...]
     unknown: UnknownLaw | None
-    training: Mapping[str, ChannelFit]
-    held_out: Mapping[str, ChannelFit]
     next_experiment: Experiment | None
     rivals: tuple[tuple[tuple[str, ...], float], ...]
     whiteness: Mapping[str, float]
     fitted_values: Mapping[str, float]
     pictures: Pictures
     start_stamp: int = 0
+    damaged: str | None = None
+    training: Mapping[str, ChannelFit] = field(default_factory=dict)
+    held_out: Mapping[str, ChannelFit] = field(default_factory=dict)
     explained: Explained = field(default_factory=lambda: Explained(1.0, {}, True))
     prediction: Mapping[str, Prediction] = field(default_factory=dict)
     provenance: Mapping[str, str] = field(default_factory=dict)
