@@ -148,6 +148,15 @@ def write_row(row, given, state, hydraulic, friction, leakage, seen, parameters,
 
 
 @inlined
+def write(row, given, state, hydraulic, friction, leakage, seen, parameters, active):
+    """Fill a row as wide as COLUMNS with them all, one of four with what the sensors say."""
+    if row.shape[0] == 4:
+        write_seen(row, seen)
+    else:
+        write_row(row, given, state, hydraulic, friction, leakage, seen, parameters, active)
+
+
+@inlined
 def write_driven(row, position, velocity, pressure_a, pressure_b, hydraulic, friction, seen):
     """Fill those of COLUMNS that a plant driven by its pressures has; the others are zero."""
     row[:] = 0.0
@@ -155,6 +164,16 @@ def write_driven(row, position, velocity, pressure_a, pressure_b, hydraulic, fri
     row[COLUMN.pressure_a], row[COLUMN.pressure_b] = pressure_a, pressure_b
     row[COLUMN.hydraulic_force], row[COLUMN.friction_force] = hydraulic, friction
     write_seen(row[COLUMN.measured_position :], seen)
+
+
+@inlined
+def kept(state):
+    """Everything that `keep` puts in its place, in its order."""
+    return (
+        state[AT.time], state[AT.target], state[AT.supply_pressure], state[AT.return_pressure], state[AT.current],
+        state[AT.spool_position], state[AT.spool_velocity], state[AT.position], state[AT.velocity],
+        state[AT.pressure_a], state[AT.pressure_b],
+    )
 
 
 @inlined
@@ -172,9 +191,7 @@ def keep(
 
 @compiled
 def advance(state, memory, history, parameters, active, propagator, inputs, step_size, every, rows):
-    """Advance `state` by one step for each of `inputs`, and write a row after every `every` of them.
-
-    Rows as wide as COLUMNS take them all; rows of four take what the sensors say.
+    """Advance `state` by one step for each of `inputs`, and `write` a row after every `every` of them.
 
     state: see `eha_core.plant.state.Places`.
     inputs: (steps,) voltages; of other sources than the servo valve, (steps, 2) what `given` says.
@@ -182,11 +199,10 @@ def advance(state, memory, history, parameters, active, propagator, inputs, step
     propagator: coil decay, 1 / R_c, then for spool position and rate each: from position, from rate, from the old
     target, from the new target.
     """
-    time, target = state[AT.time], state[AT.target]
-    supply_pressure, return_pressure = state[AT.supply_pressure], state[AT.return_pressure]
-    current, spool_position, spool_velocity = state[AT.current], state[AT.spool_position], state[AT.spool_velocity]
-    position, velocity = state[AT.position], state[AT.velocity]
-    pressure_a, pressure_b = state[AT.pressure_a], state[AT.pressure_b]
+    (
+        time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity, position, velocity,
+        pressure_a, pressure_b,
+    ) = kept(state)
     memory, history = unowned(memory), unowned(history)
     newest, ring = int(history[-1]), history.shape[0] - 1
     stroke, tau = parameters[ACTUATOR_DISPLACEMENT], 0.5 * step_size
@@ -229,10 +245,7 @@ def advance(state, memory, history, parameters, active, propagator, inputs, step
                 position, velocity, pressure_a, pressure_b,
             )
             row = rows[(index + 1) // every - 1]
-            if row.shape[0] == 4:
-                write_seen(row, seen)
-            else:
-                write_row(row, given, state, hydraulic, friction, leakage, seen, parameters, active)
+            write(row, given, state, hydraulic, friction, leakage, seen, parameters, active)
     history[-1] = newest
     keep(
         state, time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity,
