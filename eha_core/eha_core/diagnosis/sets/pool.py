@@ -139,10 +139,11 @@ class Pool:
         at = self.found[hypothesis]
         instants = [parameter.name for parameter in at.free if parameter.resolution]
         for reach, name in product((REACH, FINER * REACH), instants):
-            shifts = reach * np.linspace(-1.0, 1.0, LANES)
+            shifts = reach * np.linspace(-1.0, 1.0, LANES - 1)  # none among them
             points = [({**at.values, name: max(at.values[name] + float(shift), 0.0)}, at.states) for shift in shifts]
-            values, states = points[int(np.argmin(objectives_at(self.problem, points)))]
-            at = self.try_set(step, hypothesis, values, states, iterations)
+            best = int(np.argmin(objectives_at(self.problem, points)))
+            if shifts[best] != 0.0:
+                at = self.try_set(step, hypothesis, *points[best], iterations)
 
     def release(self, hypothesis: Hypothesis) -> None:
         """Fit a set on without the bounds of belief that it rests on, if it does, and every other from then on.
@@ -173,14 +174,10 @@ class Pool:
 
     def _in_plant(self, at: Fit) -> tuple[FreeParameter, ...]:
         """What a fit moves, the nominal parameters as they are now."""
-        plant, _ = in_each(self.plant, at.values, self.problem.shooting.per_recording, self.recordings)
+        shooting = self.problem.shooting
+        plant, _ = in_each(self.plant, at.values, shooting.per_recording, len(shooting.first_windows))
         names = {one.name for one in plant}
         return (*plant, *(one for one in at.free if one.name not in names))
-
-    @property
-    def recordings(self) -> int:
-        """How many recordings are fitted together."""
-        return len(self.problem.shooting.first_windows)
 
     def measure_noise(self, hypothesis: Hypothesis) -> None:
         """Take each channel's noise from what a set leaves, if that is near it, and every fit so far with it.
