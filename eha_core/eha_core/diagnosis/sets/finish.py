@@ -156,7 +156,7 @@ def rivals(
     for hypothesis, proposal in sorted(near.items(), key=lambda item: item[1].predicted)[:RIVALS]:
         values, states = model.start(proposal.options)
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
-    for hypothesis, values in (*_other_forms(pool, best, columns), *_named_instead(pool, best, columns)):
+    for hypothesis, values in _other_forms(pool, best, columns):
         _compare(pool, "form", hypothesis, values, at.states, at.objective + within, progress)
     close = [
         hypothesis for hypothesis, result in pool
@@ -196,21 +196,6 @@ def _other_forms(
             acts = dict(zip(column.effect.acting_names(), span, strict=True)) if span else {}
             if hypothesis not in pool.found:
                 yield hypothesis, {**at.values, **neutral(member.effect), **as_large(column, member, at), **acts}
-
-
-def _named_instead(
-    pool: Pool, best: Hypothesis, columns: Sequence[Column]
-) -> Iterator[tuple[Hypothesis, dict[str, float]]]:
-    """The set with each named effect of its site in a law's place: a curve may have drawn what has a name."""
-    law = best.law
-    if law is None:
-        return
-    at = pool.found[best]
-    off = {name: value for name, value in neutral(law.effect).items() if name in at.values}
-    for column in columns:
-        if column.variable or column.effect.site != law.effect.site or not best.without(law).admits(column.effect):
-            continue
-        yield best.without(law).with_effects([column.effect]), {**at.values, **off, **column.values}
 
 
 def as_large(column: Column, member: Member, result: Fit) -> dict[str, float]:
