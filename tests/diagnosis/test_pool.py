@@ -98,7 +98,7 @@ def test_an_instant_that_derivatives_do_not_reach_is_found_by_trying_others():
         assert found.values[name] == pytest.approx(value, abs=max(4.0 * found.deviation(name), 0.01 * value))
 
 
-def test_a_bound_of_belief_comes_back_where_it_costs_nothing(rig, pool):
+def test_a_prior_bound_comes_back_where_it_costs_nothing(rig, pool):
     both = rig.set_of("constant_load", "valve_deadband")
     pool.released = frozenset({"moving_mass"})
     believed = {parameter.name: parameter.upper for parameter in pool.believed}
@@ -106,11 +106,11 @@ def test_a_bound_of_belief_comes_back_where_it_costs_nothing(rig, pool):
     pool.try_set("released", both, pool.found[both].values, pool.found[both].states, 2)
     pool.believe(both)
     assert pool.released == frozenset()
-    assert pool.trace.steps[-1].step == "within a bound of belief"
+    assert pool.trace.steps[-1].step == "within a prior bound"
     assert {p.name: p.upper for p in pool.found[both].free if p.name in believed} == believed
 
 
-def test_a_bound_of_belief_that_costs_stays_away():
+def test_a_prior_bound_that_costs_stays_away():
     damped = 20.0 * nominal_values()["damping_coefficient"]
     rig = bench({"damping_coefficient": damped}, duration=3.0)
     bound = rig.pool.found[NOTHING]

@@ -24,7 +24,7 @@ def attribute(
 ) -> tuple[Location, ...]:
     """The sites by the share of the unexplained chi^2 that their best hypothesis takes away, the largest first.
 
-    Where in state space and when is told of one `recording`, counted from one.
+    Where in state space and when is reported of one `recording`, counted from one.
     """
     shooting = calibration.shooting
     unexplained = max(nominal.objective - nominal.count, 1.0)

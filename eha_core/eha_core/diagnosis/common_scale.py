@@ -3,7 +3,7 @@
 The plant's equations keep their form where time, the position or both pressures are counted in another unit, and where
 the piston has another area; each parameter is then another by a power of the factor that follows from its unit. The
 piston's area and the lines' volume are held in every fit, so that the powers below are those that are left for the
-others. So a recording of another clock reads as many wrong values, and is told as one.
+others. So a recording of another clock reads as many wrong values, and is reported as one.
 """
 
 from __future__ import annotations

@@ -239,7 +239,7 @@ def _unknown(evidence: Evidence) -> UnknownLaw | None:
 def _best_law(evidence: Evidence) -> UnknownLaw | None:
     """The law as the equations' residuals hold it, or as the simulated curve where that explains more.
 
-    The residuals tell the site; a curve of another site only makes up for what it does not describe.
+    The residuals tell the site; a curve of another site only compensates for what it does not describe.
     """
     law, curve = weak_law(evidence.equation_residuals), evidence.recovery
     if curve is not None and curve.named:

@@ -1,6 +1,6 @@
 """Every threshold that decides which effects are named: its meaning and where it comes from.
 
-What a hypothesis gains is told in chi^2, the squared residual in units of the noise's variance. Where no origin is
+What a hypothesis gains is in chi^2, the squared residual in units of the noise's variance. Where no origin is
 stated a value is assumed, and kept as it served development cases of the exam (seeds up to 2028). `tests/diagnosis/
 test_criteria.py` fails when one of them moves.
 """
@@ -41,7 +41,7 @@ OF_ITS_FORM = 6e-4
 """Share of what a law of several forms explains that it may leave over for its form. Measured as above."""
 
 NOISE_KNOWN = 0.02
-"""Share to which a channel's noise variance is known: what is left may seem to be noise by so much. The deviation of
+"""Share to which a channel's noise variance is known: so much of a residual may seem to be noise. The deviation of
 `residual_noise` is 0.9 % of a record of 20,000 samples, that of its square 1.8 %."""
 
 CONVINCING = 0.63
@@ -55,7 +55,7 @@ of: no recording tells it from none (assumed; weak effects of the exam have as m
 
 
 WORTH_ADDING = 0.1
-"""Share of what is left over that an effect must explain to be added, or an exchange: the first of several does, and it
+"""Share of the excess chi^2 that an effect must explain to be added, or an exchange: the first of several does, and it
 ends a search that only bends what is there (assumed)."""
 
 HARDLY = 0.1
@@ -63,17 +63,18 @@ HARDLY = 0.1
 this share of what that gained is not tried."""
 
 OVER = 0.05
-"""Share of what is left beside noise that a model may leave when it explains nearly all: without the bounds of belief
+"""Share of the excess chi^2 that a model may leave when it explains nearly all: without the prior bounds
 that it rests on, too. A value twenty times what was believed led there; in 22 development cases of the exam (seed
 70219) whose single effects rest on bounds and leave more than FAR_FROM_NOISE, none came below 0.76."""
 
 UNTOUCHED = 0.05
 """Share of what a set leaves a sample of the whole record, beside noise, that it may leave of the rest where an effect
-acts for a while beside it. Assumed; 0.25 let sets through that only had other parameters there (three rigs)."""
+acts over an interval together with it. Assumed; 0.25 let sets through that only had other parameters there (three
+rigs)."""
 
 LEFT_IN_A_CHANNEL = 1.2
-"""RMS of what is left in a channel, over its noise, from which an explanation is not complete. Estimates of the noise
-are good to a few per cent; at 1.5 half of what is left would be no noise (assumed)."""
+"""RMS of a channel's residual, over its noise, from which an explanation is not complete. Estimates of the noise
+are good to a few per cent; at 1.5 half of the residual would be no noise (assumed)."""
 
 UNFITTED = 1.3
 """Chi^2 a sample above which a model is held to leave physics over, if its residual is coherent; and above which a
@@ -90,13 +91,13 @@ ENOUGH = 20.0
 """An effect is named only if its score exceeds this: far beyond what the best of many hypotheses gains by chance."""
 
 TIE = 10.0
-"""Rivals within this of the best score are not told apart."""
+"""Rivals within this of the best score cannot be distinguished."""
 
 
 ADEQUATE = 1.05
 DEAR = 0.03
 """Where even the best model leaves more than ADEQUATE times the noise, its residual is no noise but more physics, and
-small gains mean little: a parameter must then pay for itself by up to this share of what is left over (assumed)."""
+small gains mean little: a parameter must then pay for itself by up to this share of the excess chi^2 (assumed)."""
 
 HELD_OUT = 5.0
 """A named effect must lower chi^2 on held-out windows by this."""
@@ -149,7 +150,7 @@ EXPANSIONS, EXPANSIONS_LATER = 8, 3
 (assumed)."""
 
 IDLE, IMPROVES = 2, 0.05
-"""Expansions in a row, none of which lowers what is left beside noise by this share, after which a search ends
+"""Expansions in a row, none of which lowers the excess chi^2 by this share, after which a search ends
 (assumed)."""
 
 EXPANSIONS_IN_ALL = 24

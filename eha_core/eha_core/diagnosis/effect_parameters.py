@@ -20,7 +20,7 @@ KNOT_PRIOR = 3.0
 
 MOST_ABOVE = 3.0
 """Share by which friction at rest may exceed that in motion. Seals show up to twice as much (assumed); without a bound
-friction that vanishes in motion stands for Coulomb's with damping that grows with the speed."""
+friction that vanishes in motion is confounded with Coulomb's and damping that grows with the speed."""
 
 SHORTEST_INSTANT = 0.01
 """s; over this much an instant is moved to see what that changes."""

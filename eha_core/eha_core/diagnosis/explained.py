@@ -1,4 +1,4 @@
-"""Stage 5, what is left: how much the fitted model explains, where the rest sits, and how far it predicts."""
+"""Stage 5, the residual: how much the fitted model explains, where the rest sits, and how far it predicts."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ AHEAD = (0.25, 1.0)
 
 
 def explained(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]) -> Explained:
-    """What the final fit takes away of the recalibrated nominal model's error, and what is left: in each channel the
-    more of what the fit leaves and of what is left where nothing was fitted."""
+    """What the final fit takes away of the recalibrated nominal model's error, and the residual: in each channel the
+    larger of that of the fit and that where nothing was fitted."""
     names = evidence.calibration.shooting.names
     fitted = {name: root_mean_square(residual) for name, residual in zip(names, final.residuals, strict=True)}
     # a local minimum can pass for noise where it was fitted, and nowhere else

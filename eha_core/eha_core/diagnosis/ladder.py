@@ -26,7 +26,7 @@ REFITTED = 8
 
 
 def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, Residual]]:
-    """The models from the nominal to the final one; and what is left without each of several effects, most first."""
+    """The models from the nominal to the final one; and the residual without each of several effects, most first."""
     winner = evidence.decision.winner
     scales = _scales(evidence)
     steps = [

@@ -25,14 +25,14 @@ SIMPLE = 0.95
 PERIODIC = (0.5, 10.0)
 """Hz; the forces over time that are looked for."""
 
-TOLD = 0.9
+EXPRESSED = 0.9
 """R^2 from which a law of the residuals is written out: noise in the states it is over lowers it."""
 
 WORTH_A_FORMULA = 0.5
 """An expression is looked for where a curve explains this share of what the best law before it does."""
 
 FEWEST_WAVES = 1.5
-"""Cycles over the range of the variable: with less, a wave is not told from a power."""
+"""Cycles over the range of the variable: with less, a wave cannot be distinguished from a power."""
 
 MOST_WAVES = 0.25
 """Cycles a knot of a curve: four knots draw a wave."""
@@ -175,10 +175,11 @@ def _law(form: Form, residuals: Sequence[EquationResidual], least_share: float =
     if not found.terms and share <= 0.0:
         return None
     beyond = data.total / max(data.total - len(data.seen), 1.0)
-    told, drawn = min(found.r_squared * beyond, 1.0), min(share * beyond, 1.0)
-    if told < SIMPLE * drawn:
+    explained, drawn = min(found.r_squared * beyond, 1.0), min(share * beyond, 1.0)
+    if explained < SIMPLE * drawn:
         return UnknownLaw(form.site, form.title, "", drawn, curve)
-    return UnknownLaw(form.site, form.title, _text(form, found) if told >= TOLD else "", told, _drawn(data, found))
+    text = _text(form, found) if explained >= EXPRESSED else ""
+    return UnknownLaw(form.site, form.title, text, explained, _drawn(data, found))
 
 
 def _regression_data(form: Form, residuals: Sequence[EquationResidual]) -> RegressionData:
@@ -231,7 +232,7 @@ def _curve(data: RegressionData) -> tuple[tuple[tuple[float, float], ...], float
     freedom = (data.independent - 1.0) / max(data.independent - KNOTS, 1.0)
     share = 1.0 - float(left @ left) / data.total * freedom
     samples = zip(places, heights, np.linalg.norm(columns, axis=0) > 0.0, strict=True)
-    return tuple((float(place), float(height)) for place, height, told in samples if told), share
+    return tuple((float(place), float(height)) for place, height, known in samples if known), share
 
 
 def _drawn(data: RegressionData, found: Sum) -> tuple[tuple[float, float], ...]:

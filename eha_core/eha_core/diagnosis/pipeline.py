@@ -100,7 +100,7 @@ def _without(model: NominalModel, bounds: frozenset[str], progress: Progress) ->
 
 
 def _held_back_alone(singles: _Singles) -> frozenset[str]:
-    """The bounds of belief without which the nominal model or a single effect explains nearly all that the best of them
+    """The prior bounds without which the nominal model or a single effect explains nearly all that the best of them
     leaves within them, if that is far from noise: else a set that stays within them is near."""
     count, comparison = singles.calibration.problem.count(), singles.comparison
     leading = [entry.fit for entry in (comparison.nominal, *comparison.entries[:RIVALS])]
@@ -116,7 +116,7 @@ def _held_back_alone(singles: _Singles) -> frozenset[str]:
 
 
 def _holding_back(evidence: Evidence) -> frozenset[str]:
-    """The bounds of belief without which the model found would explain more, or a rival more than it.
+    """The prior bounds without which the model found would explain more, or a rival more than it.
 
     Rivals are asked where more than noise is left: what rests on no bound may lead because another form of its law took
     up what the others may not.
@@ -251,7 +251,7 @@ def diagnose_together(
     Args:
         recordings: of the same rig; the report draws the one of which the nominal equations leave most unexplained.
         nominal: every parameter of the model, and which are unknown or have a value of their own in each recording.
-        progress: is told each stage as it begins.
+        progress: receives each stage as it begins.
         jobs: threads that simulate side by side.
         tests: recordings that nothing is fitted to; the result says how well they are predicted.
         search: how effects are found, one of SEARCHES.

@@ -64,7 +64,7 @@ def recover(
     progress("recovering an unknown law as a curve")
     bases = [comparison.nominal, *([best] if best.effects and not best.hypothesis.limited else [])]
     found = [_beside(problem, base, comparison, scales, progress) for base in bases]
-    # beside a curve that is not the law either, a name only makes up for what the curve leaves
+    # together with a curve that is not the law either, a name only compensates for the curve's residual
     stands = [
         recovery
         for recovery in found

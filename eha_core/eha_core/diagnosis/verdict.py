@@ -37,8 +37,8 @@ from eha_core.identification.validate import Judged, instants_of, judge
 
 @dataclass(frozen=True)
 class Decision:
-    """The verdict, its winner (the nominal entry where nothing is named) and the rivals it was not told apart from;
-    `as_given` where that is the nominal model with its own values, which nothing predicts better than."""
+    """The verdict, its winner (the nominal entry where nothing is named) and the rivals it cannot be distinguished
+    from; `as_given` where that is the nominal model with its own values, which nothing predicts better than."""
 
     verdict: str
     winner: Entry

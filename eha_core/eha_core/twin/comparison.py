@@ -14,7 +14,7 @@ FROZEN, STALE = "frozen", "stale"
 
 @dataclass(frozen=True)
 class Settings:
-    """What a twin is told beside the plant's parameters.
+    """What a twin is set to beside the plant's parameters.
 
     Attributes:
         window: time after which the model is put back to the measured state [s].

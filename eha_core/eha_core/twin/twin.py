@@ -141,9 +141,9 @@ class Twin:
     def _voltages(self, start: int, end: int) -> Array:
         """The drive's voltage in each of the plant's steps from `start` to `end` [ns]."""
         times = np.arange(start, end, self._step_ns)
-        told = self._applied
-        if told.stamps and told.stamps[0] <= start and told.newest >= end:
-            return np.array(told.values)[np.searchsorted(told.stamps, times, side="right")]
+        applied = self._applied
+        if applied.stamps and applied.stamps[0] <= start and applied.newest >= end:
+            return np.array(applied.values)[np.searchsorted(applied.stamps, times, side="right")]
         if not self._commands.stamps:
             return np.zeros(len(times))
         position, settings = self._channels["position"], self._settings

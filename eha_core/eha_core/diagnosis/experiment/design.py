@@ -116,10 +116,10 @@ def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, 
         record = tuple(name for name in PRESSURES if name not in noises)
         best = _best_discrimination(fits, {**PRESSURES, **noises}, level, voltage_limit)
     beside = ", with the chambers' pressures recorded too," if record else ""
-    told = "should tell" if best.separation > TELLING else "may tell" if best.separation > PERHAPS else "hardly tells"
+    verb = "should tell" if best.separation > TELLING else "may tell" if best.separation > PERHAPS else "hardly tells"
     statement = (
         f"{' or '.join(' and '.join(ids) for ids in names)}: a {best.trial.signal} of voltage ({best.trial.settings()})"
-        f" for {best.duration:g} s{beside} {told} them apart"
+        f" for {best.duration:g} s{beside} {verb} them apart"
         f" (expected: {np.sqrt(best.separation):.0f} deviations of noise)"
     )
     separates = tuple(dict.fromkeys(name for ids in names for name in ids))
@@ -144,9 +144,9 @@ def _best_discrimination(
     discriminations: list[Discrimination] = []
     while not discriminations and voltage_limit > FAINTEST:
         for trial in trials(level, voltage_limit):
-            told = separation(trial.voltage(short), rivals, noises)
-            if told is not None:
-                discriminations.append(Discrimination(trial, short, told))
+            separated = separation(trial.voltage(short), rivals, noises)
+            if separated is not None:
+                discriminations.append(Discrimination(trial, short, separated))
         voltage_limit = min(GENTLEST * level, voltage_limit)  # where the rig bears none of them, fainter ones
         level = GENTLEST * voltage_limit
     if not discriminations:
@@ -163,5 +163,5 @@ def _lasting(discrimination: Discrimination, rivals: Sequence[Fit], noises: Mapp
     """The same trial for as long as it takes, if the rig bears that."""
     per_second = discrimination.separation / discrimination.duration
     duration = next((seconds for seconds in DURATIONS if seconds * per_second > TELLING), DURATIONS[-1])
-    told = separation(discrimination.trial.voltage(duration), rivals, noises)
-    return discrimination if told is None else Discrimination(discrimination.trial, duration, told)
+    separated = separation(discrimination.trial.voltage(duration), rivals, noises)
+    return discrimination if separated is None else Discrimination(discrimination.trial, duration, separated)

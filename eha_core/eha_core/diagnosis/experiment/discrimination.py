@@ -28,7 +28,7 @@ PRESSURE_SHARE = 1.2
 """Of the supply pressure, that a chamber may reach in it; and none may fall to a vacuum."""
 
 MOVES = 6
-"""How often, at most, a rival's parameters are moved to imitate another's outcome; what is left is linear in them."""
+"""How often, at most, a rival's parameters are moved to imitate another's outcome; the residual is linear in them."""
 
 NUDGE = 1e-3
 """Of a parameter's coordinate, to see what it changes."""

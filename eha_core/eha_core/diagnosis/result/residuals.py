@@ -10,12 +10,12 @@ from eha_core.diagnosis.result.findings import Location
 
 @dataclass(frozen=True)
 class Explained:
-    """How much the fitted model explains, and what is left.
+    """How much the fitted model explains, and the residual.
 
     `share` is the part of the recalibrated nominal model's squared error beyond noise that it takes away, `times_noise`
-    the RMS of what is left in each channel over that channel's noise, in the fit or on held-out windows, whichever is
-    more. `complete` says that what is left has the size of noise and is white, and that each named effect's strength is
-    told from nothing; `vague` that only the second fails. Where the first does, `left_over` says where and when it
+    the RMS of each channel's residual over that channel's noise, in the fit or on held-out windows, whichever is
+    more. `complete` says that the residual has the size of noise and is white, and that each named effect's strength is
+    identified; `vague` that only the second fails. Where the first does, `left_over` says where and when it
     sits.
     """
 

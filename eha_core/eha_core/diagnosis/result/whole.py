@@ -65,7 +65,7 @@ class Diagnosis:
     `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
     calibrated model, less the cost of its parameters. `whiteness` is each channel's largest autocorrelation in units of
     the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
-    what, when, as text. `steps` lead from the nominal model to that with all effects; `without` has what is left
+    what, when, as text. `steps` lead from the nominal model to that with all effects; `without` has the residual
     when one of several effects is taken out and the rest fitted again, most first: the order of `effects`, too.
     `sets` are those that together hold 95 % of the probability, the most probable first; `trace` has every fit of the
     search. `health` has the faults of the channels, each with the number of its recording among several (1 of a single

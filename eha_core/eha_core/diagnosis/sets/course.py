@@ -140,7 +140,7 @@ def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, law
     others = [column for column in material.columns if not (friction.known and column.effect.kind)]
     _search(pool, begin, others, material)
     if friction.known and friction.held is None and not at_the_noise(pool):
-        _search(pool, begin, material.columns, material)  # the balance of a whole record hides what drags for a while
+        _search(pool, begin, material.columns, material)  # the whole record's balance hides what acts in a part
     if laws and not at_the_noise(pool) and not pool.trace.is_over:
         _search_laws(pool, begin, others if friction.held else material.columns, material)
     return pool if friction.held is None else _released(pool, free, friction, material)

@@ -31,14 +31,14 @@ FINER = 0.2
 """Share of that within which an instant is tried once more: the first places were a tenth of it apart (assumed)."""
 
 RELEASED = 12
-"""Iterations of a set without the bounds of belief that it rested on."""
+"""Iterations of a set without the prior bounds that it rested on."""
 
 SAME_NOISE = 0.01
 """Share by which a channel's noise may seem to change before everything is weighed anew."""
 
 
 Progress = Callable[[str], None]
-"""Is told what is being tried."""
+"""Receives what is being tried."""
 
 
 @dataclass
@@ -146,7 +146,7 @@ class Pool:
                 at = self.try_set(step, hypothesis, *points[best], iterations)
 
     def release(self, hypothesis: Hypothesis) -> None:
-        """Fit a set on without the bounds of belief that it rests on, if it does, and every other from then on.
+        """Fit a set on without the prior bounds that it rests on, if it does, and every other from then on.
 
         How far a nominal value is believed must not decide which physics is named.
         """
@@ -155,7 +155,7 @@ class Pool:
         if not names:
             return
         self.released |= names
-        self.try_set("without bounds of belief", hypothesis, at.values, at.states, RELEASED, self._in_plant(at), 2)
+        self.try_set("without prior bounds", hypothesis, at.values, at.states, RELEASED, self._in_plant(at), 2)
 
     def believe(self, hypothesis: Hypothesis) -> None:
         """Bring back each bound that was released, if a set gains no more without it than by chance."""
@@ -166,7 +166,7 @@ class Pool:
             bounds = {one.name: (one.lower, one.upper) for one in free if base_name(one.name) == name}
             values = {**at.values, **{own: min(max(at.values[own], low), up) for own, (low, up) in bounds.items()}}
             result = fit(self.posed(hypothesis), values, free, at.states, iterations=RELEASED, in_a_row=2)
-            self.trace.add("within a bound of belief", hypothesis, result)
+            self.trace.add("within a prior bound", hypothesis, result)
             if result.objective - at.objective > chance_gain(at.count, at.data / at.count):
                 self.released |= {name}
             else:

@@ -1,7 +1,7 @@
 """The quadratic model of chi^2 about a fitted set: every other set of effects is a point in it.
 
 One Jacobian of the nominal parameters, the windows' states and the members' parameters, and one secant for each column
-of the catalogue. The states are eliminated from the Gram matrix; what is left is small, and a set costs microseconds. A
+of the catalogue. The states are eliminated from the Gram matrix; the rest is small, and a set costs microseconds. A
 move beyond a bound is no way to explain anything, so each is kept within its bounds.
 """
 
