@@ -2,7 +2,7 @@
 
     python -m tools.pump_rigs --rigs 12 --seed 7
 
-Each is drawn from the seed and simulated by the exam's truth, which shares no code with the plant. The model is told
+Each is drawn from the seed and simulated by the exam's truth, which shares no code with the plant. The model is given
 the data sheet's values, up to a tenth off, and nothing of how the valve switches or of the pump's line, which stay at
 the catalogue's. Concealed is in turn nothing, dry friction, a leak, a steady load.
 """
@@ -36,7 +36,7 @@ RIG = compose("switched_pump", "single_rod")
 
 @dataclass(frozen=True)
 class PumpRig:
-    """A rig: the truth's parameters, the concealed effect (or none), what the model is told, and what was recorded."""
+    """A rig: the truth's parameters, the concealed effect (or none), what the model is given, and what was recorded."""
 
     truth: dict[str, float]
     concealed: Effect | None

@@ -310,7 +310,7 @@ def verdict(kind: FaultKind, faults: Sequence[Fault], spans: tuple[Span, ...], t
     own = [fault for fault in faults if fault.channel == kind.channel]
     named = [fault for fault in own if fault.fault in kind.told]
     if not named:
-        return f"told as {own[0].fault}" if own else "not told"
+        return f"reported as {own[0].fault}" if own else "not found"
     if spans and overlap(tuple(fault.span for fault in named), spans, time) < OVERLAP:
         return "found, with another span"
     return "found"

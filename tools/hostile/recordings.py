@@ -1,4 +1,4 @@
-"""Recordings with a mistake or a fault, and sound ones: told, and let pass."""
+"""Recordings with a mistake or a fault, and sound ones: found, and let pass."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tools.hostile.sound_recordings import Sound, sound_recordings
 from tools.hostile.wrong_recordings import as_recording, kinds, make_wrong, rigs
 
 MOST_RECORDINGS = 500
-"""Sound recordings that a trial checks at most where it is not told how many; of another number, they are others."""
+"""Sound recordings that a trial checks at most unless it is given how many; of another number, they are others."""
 MADE_IN = 5
 """Of so many sound recordings one has faults made in it."""
 MOST_RIGS = 500
@@ -49,9 +49,9 @@ def try_mistakes(extent: Extent, seed: int) -> list[Row]:
                 return [row]
             finding = check(make_wrong(mistake, rig, other, without), rig.nominal)
             if finding is None:
-                row.count("not told")
+                row.count("not found")
             elif mistake.told in str(finding):
-                row.count("told")
+                row.count("found")
             else:
                 row.fail(f"{rig.case.name} of seed {seed}, {mistake.name} without {without}: {finding}")
     return [row]

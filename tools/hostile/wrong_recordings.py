@@ -26,7 +26,7 @@ Arrays = Mapping[str, tuple[FloatArray, FloatArray]]
 
 @dataclass(frozen=True)
 class Rig:
-    """A simulated rig: what was recorded of it, and the nominal values that a diagnosis of it is told."""
+    """A simulated rig: what was recorded of it, and the nominal values that a diagnosis of it is given."""
 
     case: Case
     arrays: Arrays
@@ -64,7 +64,7 @@ def as_recording(arrays: Arrays) -> Recording:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A mistake: what it is, the words by which it is told, and what it makes of a rig's channels."""
+    """A mistake: what it is, the words by which it is reported, and what it makes of a rig's channels."""
 
     name: str
     told: str
