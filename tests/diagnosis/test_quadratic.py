@@ -102,6 +102,16 @@ def test_what_dropping_a_member_costs_is_what_a_refit_without_it_finds(rig):
         assert objective_without(about, [member]) - at.objective == pytest.approx(refitted, rel=0.1)
 
 
+def test_a_set_is_predicted_as_it_is_however_much_its_members_explain():
+    """Else a small effect beside a large one would not be seen to gain anything."""
+    large = {"constant_load.force": 3000.0}
+    rig = bench(large, duration=4.0)
+    at, hypothesis = rig.fitted(large, 20), rig.set_of("constant_load")
+    about = quadratic_model(exact(rig.pool.problem), at, hypothesis, rig.pool.plant, ())
+    assert objective_without(about, hypothesis.members) > 1e4 * at.count
+    assert predicted(about, about.options) == pytest.approx(at.objective, abs=2.0)
+
+
 def test_members_that_are_not_in_a_set_are_put_out_and_stay_out(rig):
     at = rig.fitted({"constant_load.force": 10.0, "valve_null_offset.offset": 2e-6})
     hypothesis = rig.set_of("constant_load", "valve_null_offset")

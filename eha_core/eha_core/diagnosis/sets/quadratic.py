@@ -24,7 +24,8 @@ from eha_core.identification.per_recording import base_name, in_each
 from eha_core.identification.problem import Linearised, Problem, changes, linearise, normal_equations
 
 RIDGE = 1e-7
-"""Of the unit diagonal: columns that are one and the same to seven digits share a coefficient."""
+"""Of the unit diagonal, on moves from where the model was made: columns that are one and the same to seven digits share
+a coefficient."""
 
 ITS_OWN = 1e-6
 """Share of a column's energy that the nominal parameters must not be able to imitate for it to be an option."""
@@ -191,11 +192,12 @@ def quadratic_model(
     lower, upper = _bounds(free, q, columns)
     slope = slope - curvature @ to_neutral
     scale = np.sqrt(np.maximum(np.diag(curvature), 1e-300))
+    made_at = -to_neutral * scale
     return QuadraticModel(
         at, hypothesis, options, count,
-        curvature / np.outer(scale, scale) + RIDGE * np.eye(size), slope / scale,
+        curvature / np.outer(scale, scale) + RIDGE * np.eye(size), slope / scale + RIDGE * made_at,
         (lower - to_neutral) * scale, (upper - to_neutral) * scale, scale,
-        at.objective - float(scaled[size:] @ states) - constant, to_neutral,
+        at.objective - float(scaled[size:] @ states) - constant + RIDGE * float(made_at @ made_at), to_neutral,
         states / system.scale[size:],
         system.carried * (system.scale[None, :size] / system.scale[size:, None]),
     )  # fmt: skip
