@@ -8,7 +8,7 @@ the valve's flow does not matter. Values are within a few per cent where the mot
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import log
@@ -17,12 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.identification.numbers import Array
-from eha_core.identification.observation import Observation
+from eha_core.identification.observation import Measured, Observation
 from eha_core.identification.segments import smooth
 from eha_core.weak_form.grid import HOPS, Grid, make_grid
 
 HALF_WIDTH = 0.03
 """s; of the test functions: short enough to fit between two reversals."""
+
+SPANS = (0.5 * HALF_WIDTH, HALF_WIDTH)
+"""s over which the speed is smoothed: the first in which friction is clear. A longer one hides how the piston sticks
+and slips within it, a shorter one leaves more noise in the speed."""
 
 MOVING = 0.02
 NOISE_TIMES = 4.0
@@ -37,7 +41,7 @@ MOST_TERMS = 3
 CLEAR = 10.0
 """What dry friction must lower the information criterion by: very strong evidence by the usual scale."""
 
-STRIBECK_SPEEDS = np.geomspace(0.02, 0.6, 16)
+STRIBECK_SPEEDS = np.geomspace(0.02, 1.5, 20)
 """Stribeck velocities that are tried, in standard deviations of the speed."""
 
 MOST_OF_LOAD = 0.5
@@ -82,11 +86,20 @@ def dry_friction(observation: Observation, values: Mapping[str, float]) -> tuple
     if any(channel is None for channel in measured):
         return ()
     channels = [channel for channel in measured if channel is not None]
+    answers = [found for span in SPANS if (found := _over_a_span(span, observation.duration, channels, values))]
+    clear = (found for found in answers if next((form.clear >= CLEAR for form in found if not form.form), True))
+    return next(clear, answers[0] if answers else ())
+
+
+def _over_a_span(
+    span: float, duration: float, channels: Sequence[Measured], values: Mapping[str, float]
+) -> tuple[DryFriction, ...]:
+    """The forms that the balance of position and both pressures allows, speeds smoothed over a span [s]."""
     spacing = max(float(np.median(np.diff(channel.time))) for channel in channels)
-    grid = make_grid(observation.duration, spacing, channels, HALF_WIDTH)
+    grid = make_grid(duration, spacing, channels, HALF_WIDTH)
     x, a, b = (np.interp(grid.time, channel.time, channel.values) for channel in channels)
-    velocity = np.interp(grid.time, channels[0].time, smooth(channels[0], 1, HALF_WIDTH))
-    between = _between_reversals(grid, velocity, channels[0].noise, spacing)
+    velocity = np.interp(grid.time, channels[0].time, smooth(channels[0], 1, span))
+    between = _between_reversals(grid, velocity, channels[0].noise, spacing, span)
     if np.count_nonzero(between) < FEWEST:
         return ()
     area = values["piston_area"]
@@ -117,9 +130,9 @@ def dry_friction(observation: Observation, values: Mapping[str, float]) -> tuple
     return tuple(DryFriction(found.form, found.values, criterion - least) for criterion, found in ranked)
 
 
-def _between_reversals(grid: Grid, velocity: Array, noise: float, spacing: float) -> NDArray[np.bool_]:
-    """Which test functions lie where the piston moves in one direction."""
-    samples = max(5, round(HALF_WIDTH / spacing))
+def _between_reversals(grid: Grid, velocity: Array, noise: float, spacing: float, span: float) -> NDArray[np.bool_]:
+    """Which test functions lie where the piston, whose speed is smoothed over a span [s], moves in one direction."""
+    samples = max(5, round(span / spacing))
     of_speed = noise / spacing * np.sqrt(12.0 / samples**3)  # of a slope fitted to so many samples
     threshold = max(NOISE_TIMES * of_speed, MOVING * float(np.std(velocity)))
     windows = np.lib.stride_tricks.sliding_window_view(velocity, len(grid.weight))[:: len(grid.weight) // HOPS]
