@@ -57,6 +57,19 @@ def test_stribecks_curve_is_told_from_coulombs_friction(flow):
     assert values["stribeck_velocity"] == pytest.approx(0.03, rel=0.15)
 
 
+def test_a_piston_that_sticks_and_slips_within_a_test_function_is_not_taken_for_one_that_creeps():
+    heavy = {"moving_mass": 30.0}
+    rubbing = {
+        "stribeck_friction.force": 540.0,
+        "stribeck_friction.static_force": 1000.0,
+        "stribeck_friction.stribeck_velocity": 0.017,
+    }
+    forms = found(rubbing, heavy, duration=12.0, rate=1000.0, amplitude=0.1, sine=0.25)
+    assert forms[0].form == "stribeck_friction"
+    for name, value in rubbing.items():
+        assert forms[0].values[name.partition(".")[2]] == pytest.approx(value, rel=0.15)
+
+
 @pytest.mark.parametrize("flow", FLOW)
 def test_where_there_is_no_friction_none_is_clear(flow):
     forms = found(FLOW[flow], **LONG)
