@@ -7,6 +7,7 @@ from made import LAWS, bench
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.sets.instants import shift_instants
 from eha_core.diagnosis.sets.pool import REACH, Pool, Trace
 from eha_core.identification.fit import fit
 from eha_core.parameters import nominal_values
@@ -91,7 +92,7 @@ def test_an_instant_that_derivatives_do_not_reach_is_found_by_trying_others():
     stuck = rig.fitted(begun)
     assert stuck.data > 1.5 * stuck.count
     onset = rig.set_of("leakage_onset")
-    rig.pool.shift_instants("other instants", onset, 12)
+    shift_instants(rig.pool, "other instants", onset, 12)
     found = rig.pool.found[onset]
     assert found.data < 1.1 * found.count
     for name, value in planted.items():

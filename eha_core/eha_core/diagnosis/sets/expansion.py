@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,6 +27,7 @@ from eha_core.diagnosis.criteria import (
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.sets.best_sets import Proposal, best_sets
 from eha_core.diagnosis.sets.columns import Column
+from eha_core.diagnosis.sets.instants import shift_instants
 from eha_core.diagnosis.sets.pool import Pool, Progress
 from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit
@@ -52,13 +53,14 @@ def leader(pool: Pool) -> Hypothesis:
 
 @dataclass
 class Search:
-    """A search over windows of one length: its pool, what can be added, how many sets it goes on from at `most`, and
-    those that it has gone on from."""
+    """A search over windows of one length: its pool, what can be added, how many sets it goes on from at `most`, when
+    it is content before the noise is reached, and the sets that it has gone on from."""
 
     pool: Pool
     columns: Sequence[Column]
     say: Progress = lambda _: None
     most: int = EXPANSIONS_LATER
+    content: Callable[[Pool], bool] = lambda _: False
     expanded: dict[Hypothesis, float] = field(default_factory=dict)
 
     def next(self) -> Hypothesis | None:
@@ -81,7 +83,7 @@ def search_sets(search: Search) -> Hypothesis:
     pool, idle = search.pool, 0
     for number in range(search.most):
         base = search.next()
-        if base is None or idle == IDLE or pool.trace.is_over:
+        if base is None or idle == IDLE or pool.trace.is_over or search.content(pool):
             break
         before = pool.found[leader(pool)]
         expand(search, base, f"expansion {number + 1}")
@@ -114,7 +116,7 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     if pool.found[now].data > NEAR_NOISE * at.count and (now != lead or base == lead):
         # what a fit that stopped short leaves would be taken for more effects
         pool.go_on(step, now, TO_THE_END, 2)
-        pool.shift_instants(step, now, TO_THE_END)
+        shift_instants(pool, step, now, TO_THE_END)
     left = pool.found[now].data / at.count
     search.say(f"{step}: {tried} sets tried, best {_shown(now)}, {left:.4g} times the noise")
     pool.measure_noise(now)

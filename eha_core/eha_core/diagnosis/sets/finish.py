@@ -22,6 +22,7 @@ from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
 from eha_core.diagnosis.sets.best_sets import Proposal, best_sets, objective_without
 from eha_core.diagnosis.sets.columns import Column
 from eha_core.diagnosis.sets.expansion import cost
+from eha_core.diagnosis.sets.instants import shift_instants
 from eha_core.diagnosis.sets.pool import Pool, Progress
 from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
@@ -45,7 +46,8 @@ RIVALS = 5
 
 
 def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) -> Fit:
-    """Fit a set until nothing is gained, with derivatives at the full step, unless it cannot come low enough."""
+    """Fit a set until nothing is gained, with derivatives at the full step and from other instants too, unless it
+    cannot come low enough."""
     at = pool.found[hypothesis]
     result = fit(
         exact(pool.problem),
@@ -57,7 +59,9 @@ def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) 
         give_up_above=give_up_above,
     )
     pool.trace.add("converge", hypothesis, result)
-    return pool.keep(hypothesis, result)
+    pool.keep(hypothesis, result)
+    shift_instants(pool, "converge", hypothesis, CONVERGED)
+    return pool.found[hypothesis]
 
 
 def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypothesis, dict[Member, float]]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import product
 from math import inf
 
 import numpy as np
@@ -19,16 +18,12 @@ from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter, not_believed
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name, in_each
-from eha_core.identification.problem import Problem, objectives_at
+from eha_core.identification.problem import Problem
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import with_finer_slopes
-from eha_core.plant.lane_rows import LANES
 
 REACH = 1.0
 """s; how far a fit may move an instant from where the linear model has it."""
-
-FINER = 0.2
-"""Share of that within which an instant is tried once more: the first places were a tenth of it apart (assumed)."""
 
 RELEASED = 12
 """Iterations of a set without the prior bounds that it rested on."""
@@ -132,18 +127,6 @@ class Pool:
         """Fit a set further from where it stands."""
         at = self.found[hypothesis]
         return self.try_set(step, hypothesis, at.values, at.states, iterations, at.free, in_a_row, give_up_above)
-
-    def shift_instants(self, step: str, hypothesis: Hypothesis, iterations: int) -> None:
-        """Fit a set on from other instants where one of those leaves less: derivatives lead no farther than what a
-        sample or two see."""
-        at = self.found[hypothesis]
-        instants = [parameter.name for parameter in at.free if parameter.resolution]
-        for reach, name in product((REACH, FINER * REACH), instants):
-            shifts = reach * np.linspace(-1.0, 1.0, LANES - 1)  # none among them
-            points = [({**at.values, name: max(at.values[name] + float(shift), 0.0)}, at.states) for shift in shifts]
-            best = int(np.argmin(objectives_at(self.problem, points)))
-            if shifts[best] != 0.0:
-                at = self.try_set(step, hypothesis, *points[best], iterations)
 
     def release(self, hypothesis: Hypothesis) -> None:
         """Fit a set on without the prior bounds that it rests on, if it does, and every other from then on.

@@ -1,0 +1,51 @@
+"""Fits that go on from other instants: derivatives lead no farther than what a sample or two see."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from eha_core.diagnosis.hypothesis import Hypothesis, Member
+from eha_core.diagnosis.sets.columns import Column
+from eha_core.diagnosis.sets.pool import REACH, Pool
+from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
+from eha_core.identification.fit import Fit
+from eha_core.identification.per_recording import base_name
+from eha_core.plant.lane_rows import LANES
+
+FINER = 0.2
+"""Share of REACH within which an instant is tried once more: the first places were a tenth of it apart (assumed)."""
+
+
+def shift_instants(pool: Pool, step: str, hypothesis: Hypothesis, iterations: int) -> None:
+    """Fit a set on from other instants where one of those leaves less once all else has adapted to it."""
+    instants = [parameter.name for parameter in pool.found[hypothesis].free if parameter.resolution]
+    for reach, name in product((REACH, FINER * REACH), instants):
+        at = pool.found[hypothesis]
+        member = next(one for one in hypothesis.members if base_name(name) in _names_of(one))
+        model = _elsewhere(pool, hypothesis, at, member, name, reach)
+        present = [option for option in model.options if option.present]
+        places = [(*present, option) for option in model.options if not option.present]
+        left = [model.empty - model.gain(place)[0] for place in places]
+        if left and min(left) < at.objective:
+            values, states = model.start(places[int(np.argmin(left))])
+            pool.try_set(step, hypothesis, values, states, iterations)
+
+
+def _names_of(member: Member) -> tuple[str, ...]:
+    return (*member.effect.parameter_names(), *member.effect.acting_names())
+
+
+def _elsewhere(pool: Pool, hypothesis: Hypothesis, at: Fit, member: Member, name: str, reach: float) -> QuadraticModel:
+    """The model about a fit with one instant at other places besides, each a column that is there as it is."""
+    shifts = [float(shift) for shift in reach * np.linspace(-1.0, 1.0, LANES - 1) if shift]
+    columns = [
+        Column(member.effect, {name: max(at.values[name] + shift, 0.0)}, (), number, True, 1.0)
+        for number, shift in enumerate(shifts)
+    ]
+    model = quadratic_model(pool.posed(hypothesis), at, hypothesis, pool.plant, columns)
+    lower = model.lower.copy()
+    lower[len(lower) - len(columns) :] = model.upper[len(lower) - len(columns) :]
+    return replace(model, lower=lower)
