@@ -1,15 +1,16 @@
 """A whole search: what is planted is named and nothing else, and what it cost is told."""
 
 import pytest
-from made import LAWS, recorded
+from made import LAWS, bench, recorded
 
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.sets.columns import applicable_effects
-from eha_core.diagnosis.sets.course import find_sets
-from eha_core.diagnosis.sets.equations import friction_of
+from eha_core.diagnosis.sets.course import find_sets, is_due_to
+from eha_core.diagnosis.sets.equations import Friction, FrictionStart, friction_of
+from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe
 from eha_core.identification.parallel import side_by_side
 from eha_core.nominal import NominalModel
@@ -105,3 +106,14 @@ def test_friction_that_drags_for_a_while_is_found_though_the_whole_balance_shows
     assert best.ids == ("coulomb_friction",) and best.hypothesis.limited
     for name, value in planted.items():
         assert best.fit.values[name] == pytest.approx(value, abs=max(4.0 * best.fit.deviation(name), 0.01 * value))
+
+
+def test_friction_is_released_where_what_is_left_may_be_its_own():
+    coulomb = LAWS["coulomb_friction"]
+    rig = bench({"coulomb_friction.force": 250.0, "constant_load.force": 100.0}, duration=4.0)
+    for force, load, due in ((200.0, 100.0, True), (250.0, 0.0, False), (250.0, 100.0, False)):
+        held = FrictionStart(coulomb, {"coulomb_friction.force": force})
+        hypothesis = rig.set_of("constant_load") if load else NOTHING
+        values = {**nominal_values(), **held.values, "constant_load.force": load}
+        rig.pool.found = {hypothesis: fit(rig.pool.problem, values, (), iterations=12)}
+        assert is_due_to(Friction(True, held, (held,)), held, rig.pool) == due

@@ -23,6 +23,7 @@ def test_no_threshold_moved():
         "OVER": 0.05,
         "UNTOUCHED": 0.05,
         "OF_EXCESS": 0.01,
+        "OF_FRICTION": 0.25,
         "CHANCE": 25.0,
         "CERTAINTY": 0.95,
         "OF_SAMPLES": 0.001,

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration, at_a_finer_step, filtered_channels, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE, UNFITTED
+from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE, OF_FRICTION, UNFITTED
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.sets.best_sets import objective_without, one_more
 from eha_core.diagnosis.sets.columns import Column, columns_of, law_columns
 from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, residual_variance
-from eha_core.diagnosis.sets.equations import Friction, friction_of
+from eha_core.diagnosis.sets.equations import Friction, FrictionStart, friction_columns, friction_of
 from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.sets.finish import finish, refit_nominal, rivals
 from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of
-from eha_core.diagnosis.sets.quadratic import QuadraticModel
+from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter
@@ -88,9 +88,6 @@ def _over_growing_windows(calibration: Calibration, friction: Friction, material
     else:
         short = searched(short, begin, friction, material)
         pool = carried(short, long, material)
-        best = short.found[leader(short)]
-        if best.data > UNFITTED * best.count:  # longer windows cannot be explained either
-            return pool
     if at_the_noise(pool):
         return pool
     material.progress("searching sets over longer windows")
@@ -112,9 +109,7 @@ def _plant(fitted: Fit) -> tuple[FreeParameter, ...]:
     return tuple(parameter for parameter in fitted.free if "@" not in parameter.name)
 
 
-def begun(
-    problem: Problem, nominal: Mapping[str, float], friction: Friction, material: Material
-) -> tuple[Pool, Fit]:
+def begun(problem: Problem, nominal: Mapping[str, float], friction: Friction, material: Material) -> tuple[Pool, Fit]:
     """The nominal equations over some windows, the friction of the force balance held in them; and where to begin."""
     plant = held(material.plant, nominal)
     pool = Pool(problem, plant, material.trace, filtered=material.filtered)
@@ -129,54 +124,79 @@ def begun(
 
 
 def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool = True) -> Pool:
-    """Sets over the windows of a pool: the friction of the force balance alone, then held while the others are found,
-    then free."""
-    free = Pool(pool.problem, pool.believed, pool.trace, filtered=pool.filtered, released=pool.released)
-    if friction.held is not None and not at_the_noise(pool):
-        alone, at = NOTHING.with_effects([friction.held.effect]), pool.found[NOTHING]
-        result = free.try_set("friction free", alone, at.values, at.states, ALONE, in_a_row=2)
-        if result.data < NEAR_NOISE * result.count:
-            return free
-    others = [column for column in material.columns if not (friction.known and column.effect.kind)]
-    _search(pool, begin, others, material)
-    if friction.known and friction.held is None and not at_the_noise(pool):
-        _search(pool, begin, material.columns, material)  # the whole record's balance hides what acts in a part
+    """Sets over the windows of a pool: the friction of the force balance alone, then held while what is large beside it
+    is found, then free; then laws in no catalogue."""
+    base = NOTHING
+    if friction.held is None:
+        others = [column for column in material.columns if not (friction.known and column.effect.kind)]
+        _search(pool, begin, others, material)
+        if friction.known and not at_the_noise(pool):
+            _search(pool, begin, material.columns, material)  # the whole record's balance hides what acts in a part
+    else:
+        base = NOTHING.with_effects([friction.held.effect])
+        pool = _around_friction(pool, begin, friction, friction.held, material)
+        free = pool.free(base, begin.values)
+        begin = fit(pool.posed(base), begin.values, free, begin.states, iterations=0)
     if laws and not at_the_noise(pool) and not pool.trace.is_over:
-        _search_laws(pool, begin, others if friction.held else material.columns, material)
-    return pool if friction.held is None else _released(pool, free, friction, material)
+        _search_laws(pool, base, begin, material)
+    return pool
 
 
-def _released(pool: Pool, free: Pool, friction: Friction, material: Material) -> Pool:
-    """The best sets with the friction `free` that was held, and with its other forms where more than noise is left."""
-    assert friction.held is not None
+def _around_friction(pool: Pool, begin: Fit, friction: Friction, held: FrictionStart, material: Material) -> Pool:
+    """Sets with the friction that was held in a pool: alone, beside what was found while it was held, and its other
+    forms where more than noise is left."""
+    free = Pool(pool.problem, pool.believed, pool.trace, filtered=pool.filtered, released=pool.released)
+    at = pool.found[NOTHING]
+    free.try_set("friction free", NOTHING.with_effects([held.effect]), at.values, at.states, ALONE, in_a_row=2)
+    if at_the_noise(free):
+        return free
+    others = [column for column in material.columns if not column.effect.kind]
+    _search(pool, begin, others, material, lambda pool: is_due_to(friction, held, pool))
     free.found = {h: in_noise_of(pool.problem, free.problem.shooting, result) for h, result in free}
     free.problem, free.released = pool.problem, pool.released
     ahead = _ahead(pool)
     for hypothesis in ahead:
         at = pool.found[hypothesis]
-        free.try_set("friction free", hypothesis.with_effects([friction.held.effect]), at.values, at.states, RELEASED)
+        free.try_set("friction free", hypothesis.with_effects([held.effect]), at.values, at.states, RELEASED)
     if at_the_noise(free):
         return free
     at = pool.found[ahead[0]]
     for start in friction.forms[1:]:
-        values = {**at.values, **neutral(friction.held.effect), **start.values}
+        values = {**at.values, **neutral(held.effect), **start.values}
         free.try_set("form of friction", ahead[0].with_effects([start.effect]), values, at.states, RELEASED)
-    search_sets(Search(free, material.columns, material.progress))
+    search_sets(Search(free, material.columns, material.progress, EXPANSIONS))
     return free
 
 
-def _search(pool: Pool, begin: Fit, columns: Sequence[Column], material: Material) -> None:
-    """Search among named effects from the nominal equations of `begin` on."""
-    search = Search(pool, columns, material.progress, EXPANSIONS)
+def is_due_to(friction: Friction, held: FrictionStart, pool: Pool) -> bool:
+    """Whether much of what the best set leaves beside noise may be that the friction held has other values, or another
+    form: more effects would be named for it."""
+    best = leader(pool)
+    at = pool.found[best]
+    if at_the_noise(pool):
+        return False
+    columns = friction_columns(friction, held)
+    model = quadratic_model(pool.posed(best), at, best, pool.plant, columns)
+    present = [option for option in model.options if option.present]
+    left = [model.empty - model.gain((*present, option))[0] for option in model.options if not option.present]
+    return bool(left) and min(left) - at.count < (1.0 - OF_FRICTION) * (at.objective - at.count)
+
+
+def _search(
+    pool: Pool, begin: Fit, columns: Sequence[Column], material: Material,
+    content: Callable[[Pool], bool] = lambda _: False,
+) -> None:  # fmt: skip
+    """Search among named effects from the nominal equations of `begin` on, until it is content."""
+    search = Search(pool, columns, material.progress, EXPANSIONS, content)
     expand(search, NOTHING, "first expansion", begin)
     search_sets(search)
 
 
-def _search_laws(pool: Pool, begin: Fit, columns: Sequence[Column], material: Material) -> None:
+def _search_laws(pool: Pool, base: Hypothesis, begin: Fit, material: Material) -> None:
     """Search among named effects and laws in no catalogue, from the nominal equations of `begin` on: what names did
     wrongly must not stand in a law's way. What a law drew may have a name."""
-    search = Search(pool, [*columns, *material.laws], material.progress)
-    expand(search, NOTHING, "with laws in no catalogue", begin)
+    search = Search(pool, [*material.columns, *material.laws], material.progress)
+    expand(search, base, "with laws in no catalogue", begin)
     search_sets(search)
     best = leader(pool)
     at = pool.found[best]
@@ -187,7 +207,7 @@ def _search_laws(pool: Pool, begin: Fit, columns: Sequence[Column], material: Ma
         off = {name: value for name, value in neutral(best.law.effect).items() if name in at.values}
         values = {**at.values, **off}
         undrawn = fit(pool.problem, values, pool.free(rest, values), at.states, iterations=0)
-        expand(Search(pool, columns, material.progress), rest, "names in the law's place", undrawn)
+        expand(Search(pool, material.columns, material.progress), rest, "names in the law's place", undrawn)
 
 
 def carried(pool: Pool, problem: Problem, material: Material) -> Pool:

@@ -6,12 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.sets.columns import columns_of
+from eha_core.diagnosis.hypothesis import neutral
+from eha_core.diagnosis.sets.columns import Column, columns_of
 from eha_core.effects import Effect
 from eha_core.identification.observation import Observation
 from eha_core.weak_form.dry_friction import CLEAR, DryFriction, dry_friction
 
 KIND = "dry friction"
+
+KNOWN, MOST_OFF = 0.1, 0.5
+"""Share of a value of the force balance by which it is moved to see what it does, and by which it may be off."""
 
 ABOVE = 1.2
 """Share of the friction in motion that a law begins with at rest where the balance shows none higher (assumed)."""
@@ -63,6 +67,22 @@ def friction_of(
         ]
         return Friction(True, starts[0], tuple(starts))
     return Friction(False, None, ())
+
+
+def friction_columns(friction: Friction, held: FrictionStart) -> tuple[Column, ...]:
+    """What the friction held may be off by, as columns: each of its values, and each other form in its place."""
+    rows = {f"{held.effect.id}.{row.name}": row for row in held.effect.parameters}
+    own = [
+        Column(held.effect, {name: (1.0 + KNOWN) * held.values[name]}, (), 0, False, MOST_OFF / KNOWN)
+        for name, row in rows.items()
+        if held.values.get(name) and row.switches | (row.relative_to == "speed")
+    ]
+    forms = [
+        Column(start.effect, {**neutral(held.effect), **start.values}, (), number, True, 1.0)
+        for number, start in enumerate(friction.forms, 1)
+        if start is not held
+    ]
+    return (*own, *forms)
 
 
 def _begun(effect: Effect, form: DryFriction, scales: Scales) -> dict[str, float]:
