@@ -95,7 +95,12 @@ def _over_growing_windows(calibration: Calibration, friction: Friction, material
     bridge = replace(longer, found=dict(longer.found))  # what leads to nothing must not stand in the search's way
     carry(short, bridge)
     pool = carried(bridge, long, material)
-    return pool if at_the_noise(pool) else carried(searched(longer, begin, friction, material), long, material)
+    if at_the_noise(pool):
+        return pool
+    found = carried(searched(longer, begin, friction, material), long, material)
+    for hypothesis, at in pool:
+        found.keep(hypothesis, in_noise_of(found.problem, pool.problem.shooting, at))
+    return found
 
 
 def at_the_noise(pool: Pool) -> bool:
