@@ -55,13 +55,13 @@ def test_only_forms_that_are_offered_are_held():
 def test_what_the_friction_held_may_be_off_by_is_its_values_and_its_form():
     found = asked(recorded({"coulomb_friction.force": 250.0}, duration=6.0))
     assert found.held is not None
-    own = [column for column in friction_columns(found, found.held) if column.effect == found.held.effect]
+    own = [column for column in friction_columns(found) if column.effect == found.held.effect]
     moved = [name for column in own for name, value in column.values.items()]
     assert moved and all("shape" not in name for name in moved)
     for column in own:
         ((name, value),) = column.values.items()
         assert value == pytest.approx((1.0 + KNOWN) * found.held.values[name])
-    others = [column for column in friction_columns(found, found.held) if column not in own]
+    others = [column for column in friction_columns(found) if column not in own]
     assert {column.effect.id for column in others} == FORMS - {found.held.effect.id}
     for column in others:
         assert column.values[f"{found.held.effect.id}.force"] == 0.0

@@ -7,7 +7,6 @@ from made import LAWS, bench
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.instants import shift_instants
 from eha_core.diagnosis.sets.pool import REACH, Pool, Trace
 from eha_core.identification.fit import fit
 from eha_core.parameters import nominal_values
@@ -85,18 +84,14 @@ def test_a_fit_moves_the_plant_its_members_and_when_a_limited_one_acts(pool):
     assert spans == [(0.0, pytest.approx(0.4 + REACH)), (pytest.approx(1.5), pytest.approx(min(3.5, longest)))]
 
 
-def test_an_instant_that_derivatives_do_not_reach_is_found_by_trying_others():
-    planted = {"leakage_onset.time": 2.37, "leakage_onset.internal_leakage": 3e-11}
-    rig = bench(planted, length=1.0, duration=5.0)
-    begun = {**planted, "leakage_onset.time": 3.0}
-    stuck = rig.fitted(begun)
-    assert stuck.data > 1.5 * stuck.count
-    onset = rig.set_of("leakage_onset")
-    shift_instants(rig.pool, "other instants", onset, 12)
-    found = rig.pool.found[onset]
-    assert found.data < 1.1 * found.count
-    for name, value in planted.items():
-        assert found.values[name] == pytest.approx(value, abs=max(4.0 * found.deviation(name), 0.01 * value))
+def test_fits_of_another_pool_are_kept_where_they_are_better(rig, pool):
+    both, rest = rig.set_of("constant_load", "valve_deadband"), rig.set_of("constant_load")
+    other = pool.fresh()
+    assert not other.found and other.trace is pool.trace
+    other.keep(rest, replace(pool.found[both], objective=pool.found[both].objective + 1e9))
+    pool.found[rest] = pool.found[both]
+    other.adopt(pool)
+    assert other.found[rest].objective == pool.found[both].objective and other.found.keys() == pool.found.keys()
 
 
 def test_a_prior_bound_comes_back_where_it_costs_nothing(rig, pool):

@@ -244,8 +244,7 @@ def advance(state, memory, history, parameters, active, propagator, inputs, step
                 state, time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity,
                 position, velocity, pressure_a, pressure_b,
             )
-            row = rows[(index + 1) // every - 1]
-            write(row, given, state, hydraulic, friction, leakage, seen, parameters, active)
+            write(rows[(index + 1) // every - 1], given, state, hydraulic, friction, leakage, seen, parameters, active)
     history[-1] = newest
     keep(
         state, time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity,

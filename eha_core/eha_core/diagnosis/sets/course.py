@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.sets.best_sets import objective_without, one_more
 from eha_core.diagnosis.sets.columns import Column, columns_of, law_columns
 from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, residual_variance
-from eha_core.diagnosis.sets.equations import Friction, FrictionStart, friction_columns, friction_of
+from eha_core.diagnosis.sets.equations import Friction, friction_columns, friction_of
 from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.sets.finish import finish, refit_nominal, rivals
 from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of
@@ -98,8 +98,7 @@ def _over_growing_windows(calibration: Calibration, friction: Friction, material
     if at_the_noise(pool):
         return pool
     found = carried(searched(longer, begin, friction, material), long, material)
-    for hypothesis, at in pool:
-        found.keep(hypothesis, in_noise_of(found.problem, pool.problem.shooting, at))
+    found.adopt(pool)
     return found
 
 
@@ -120,7 +119,7 @@ def begun(problem: Problem, nominal: Mapping[str, float], friction: Friction, ma
     pool = Pool(problem, plant, material.trace, filtered=material.filtered)
     values = {**nominal, **friction.held.values} if friction.held else dict(nominal)
     states = fit(pool.problem, values, (), iterations=OF_STATES).states
-    given = fit(pool.problem, values, plant, states, iterations=0)
+    given = pool.at_rest(NOTHING, values, states)
     calibrated = pool.try_set("nominal", NOTHING, values, states, CARRIED_ON)
     pool.measure_noise(NOTHING)
     pool.release(NOTHING)
@@ -134,65 +133,59 @@ def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, law
     base = NOTHING
     if friction.held is None:
         others = [column for column in material.columns if not (friction.known and column.effect.kind)]
-        _search(pool, begin, others, material)
+        _search(Search(pool, others, material.progress, EXPANSIONS), begin)
         if friction.known and not at_the_noise(pool):
-            _search(pool, begin, material.columns, material)  # the whole record's balance hides what acts in a part
+            # the whole record's balance hides what acts in a part
+            _search(Search(pool, material.columns, material.progress, EXPANSIONS), begin)
     else:
         base = NOTHING.with_effects([friction.held.effect])
-        pool = _around_friction(pool, begin, friction, friction.held, material)
-        free = pool.free(base, begin.values)
-        begin = fit(pool.posed(base), begin.values, free, begin.states, iterations=0)
+        pool = _around_friction(pool, begin, friction, material)
+        begin = pool.at_rest(base, begin.values, begin.states)
     if laws and not at_the_noise(pool) and not pool.trace.is_over:
         _search_laws(pool, base, begin, material)
     return pool
 
 
-def _around_friction(pool: Pool, begin: Fit, friction: Friction, held: FrictionStart, material: Material) -> Pool:
-    """Sets with the friction that was held in a pool: alone, beside what was found while it was held, and its other
-    forms where more than noise is left."""
-    free = Pool(pool.problem, pool.believed, pool.trace, filtered=pool.filtered, released=pool.released)
-    at = pool.found[NOTHING]
-    free.try_set("friction free", NOTHING.with_effects([held.effect]), at.values, at.states, ALONE, in_a_row=2)
-    if at_the_noise(free):
-        return free
-    others = [column for column in material.columns if not column.effect.kind]
-    _search(pool, begin, others, material, lambda pool: is_due_to(friction, held, pool))
-    free.found = {h: in_noise_of(pool.problem, free.problem.shooting, result) for h, result in free}
-    free.problem, free.released = pool.problem, pool.released
-    ahead = _ahead(pool)
+def _around_friction(pool: Pool, begin: Fit, friction: Friction, material: Material) -> Pool:
+    """Sets with the friction that was held in a pool: alone, together with what was found while it was held, and its
+    other forms where more than noise is left."""
+    held, *others = friction.forms
+    at, alone = pool.found[NOTHING], pool.fresh()
+    alone.try_set("friction free", NOTHING.with_effects([held.effect]), at.values, at.states, ALONE, in_a_row=2)
+    if at_the_noise(alone):
+        return alone
+    columns = [column for column in material.columns if not column.effect.kind]
+    _search(Search(pool, columns, material.progress, EXPANSIONS, lambda pool: is_due_to(friction, pool)), begin)
+    free, ahead = pool.fresh(), _ahead(pool)
+    free.adopt(alone)
     for hypothesis in ahead:
         at = pool.found[hypothesis]
         free.try_set("friction free", hypothesis.with_effects([held.effect]), at.values, at.states, RELEASED)
     if at_the_noise(free):
         return free
     at = pool.found[ahead[0]]
-    for start in friction.forms[1:]:
-        values = {**at.values, **neutral(held.effect), **start.values}
-        free.try_set("form of friction", ahead[0].with_effects([start.effect]), values, at.states, RELEASED)
+    for other in others:
+        values = {**at.values, **neutral(held.effect), **other.values}
+        free.try_set("form of friction", ahead[0].with_effects([other.effect]), values, at.states, RELEASED)
     search_sets(Search(free, material.columns, material.progress, EXPANSIONS))
     return free
 
 
-def is_due_to(friction: Friction, held: FrictionStart, pool: Pool) -> bool:
-    """Whether much of what the best set leaves beside noise may be that the friction held has other values, or another
-    form: more effects would be named for it."""
-    best = leader(pool)
-    at = pool.found[best]
+def is_due_to(friction: Friction, pool: Pool) -> bool:
+    """Whether much of the best set's excess chi^2 may be that the friction held has other values, or another form: more
+    effects would be named for it."""
     if at_the_noise(pool):
         return False
-    columns = friction_columns(friction, held)
-    model = quadratic_model(pool.posed(best), at, best, pool.plant, columns)
+    best = leader(pool)
+    at = pool.found[best]
+    model = quadratic_model(pool.posed(best), at, best, pool.plant, friction_columns(friction))
     present = [option for option in model.options if option.present]
     left = [model.empty - model.gain((*present, option))[0] for option in model.options if not option.present]
     return bool(left) and min(left) - at.count < (1.0 - OF_FRICTION) * (at.objective - at.count)
 
 
-def _search(
-    pool: Pool, begin: Fit, columns: Sequence[Column], material: Material,
-    content: Callable[[Pool], bool] = lambda _: False,
-) -> None:  # fmt: skip
-    """Search among named effects from the nominal equations of `begin` on, until it is content."""
-    search = Search(pool, columns, material.progress, EXPANSIONS, content)
+def _search(search: Search, begin: Fit) -> None:
+    """Search among named effects from the nominal equations of `begin` on."""
     expand(search, NOTHING, "first expansion", begin)
     search_sets(search)
 
@@ -211,7 +204,7 @@ def _search_laws(pool: Pool, base: Hypothesis, begin: Fit, material: Material) -
         rest = best.without(best.law)
         off = {name: value for name, value in neutral(best.law.effect).items() if name in at.values}
         values = {**at.values, **off}
-        undrawn = fit(pool.problem, values, pool.free(rest, values), at.states, iterations=0)
+        undrawn = pool.at_rest(rest, values, at.states)
         expand(Search(pool, material.columns, material.progress), rest, "names in the law's place", undrawn)
 
 

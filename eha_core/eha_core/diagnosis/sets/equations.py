@@ -36,7 +36,7 @@ class Friction:
     Attributes:
         known: whether it could be asked. Without both pressures, or hardly any motion between reversals, it could not.
         held: the form that it shows clearly; None for none.
-        forms: every form as it would begin, the most probable first.
+        forms: every form as it would begin, the one that is held first.
     """
 
     known: bool
@@ -69,18 +69,18 @@ def friction_of(
     return Friction(False, None, ())
 
 
-def friction_columns(friction: Friction, held: FrictionStart) -> tuple[Column, ...]:
+def friction_columns(friction: Friction) -> tuple[Column, ...]:
     """What the friction held may be off by, as columns: each of its values, and each other form in its place."""
-    rows = {f"{held.effect.id}.{row.name}": row for row in held.effect.parameters}
+    held, *others = friction.forms
+    rows = dict(zip(held.effect.parameter_names(), held.effect.parameters, strict=True))
     own = [
         Column(held.effect, {name: (1.0 + KNOWN) * held.values[name]}, (), 0, False, MOST_OFF / KNOWN)
         for name, row in rows.items()
-        if held.values.get(name) and row.switches | (row.relative_to == "speed")
+        if held.values.get(name) and (row.switches or row.relative_to == "speed")
     ]
     forms = [
-        Column(start.effect, {**neutral(held.effect), **start.values}, (), number, True, 1.0)
-        for number, start in enumerate(friction.forms, 1)
-        if start is not held
+        Column(other.effect, {**neutral(held.effect), **other.values}, (), number, True, 1.0)
+        for number, other in enumerate(others, 1)
     ]
     return (*own, *forms)
 

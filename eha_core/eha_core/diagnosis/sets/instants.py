@@ -46,6 +46,5 @@ def _elsewhere(pool: Pool, hypothesis: Hypothesis, at: Fit, member: Member, name
         for number, shift in enumerate(shifts)
     ]
     model = quadratic_model(pool.posed(hypothesis), at, hypothesis, pool.plant, columns)
-    lower = model.lower.copy()
-    lower[len(lower) - len(columns) :] = model.upper[len(lower) - len(columns) :]
-    return replace(model, lower=lower)
+    first = len(model.lower) - len(columns)
+    return replace(model, lower=np.concatenate([model.lower[:first], model.upper[first:]]))

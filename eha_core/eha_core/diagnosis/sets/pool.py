@@ -110,6 +110,19 @@ class Pool:
         self.trace.add(step, hypothesis, result)
         return result
 
+    def at_rest(self, hypothesis: Hypothesis, values: Mapping[str, float], states: Array) -> Fit:
+        """A set as it stands at values and states, fitted to nothing; it is not kept."""
+        return fit(self.posed(hypothesis), values, self.free(hypothesis, values), states, iterations=0)
+
+    def fresh(self) -> Pool:
+        """A pool of the same windows, noise and bounds that has no fits yet."""
+        return replace(self, found={})
+
+    def adopt(self, other: Pool) -> None:
+        """Keep the fits of another pool of the same windows, in the noise of this one."""
+        for hypothesis, result in other:
+            self.keep(hypothesis, in_noise_of(self.problem, other.problem.shooting, result))
+
     def posed(self, hypothesis: Hypothesis) -> Problem:
         """The problem with derivatives taken as finely as the set needs."""
         return with_finer_slopes(self.problem) if hypothesis.kinds else self.problem
