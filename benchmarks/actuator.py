@@ -23,7 +23,7 @@ STROKE = 0.1
 
 
 class Setting(NamedTuple):
-    """What the right-hand side is told: the voltage, held or a sine [V, Hz]; friction [N, N, m/s] over a width [m/s];
+    """What the right-hand side is given: the voltage, held or a sine [V, Hz]; friction [N, N, m/s] over a width [m/s];
     the ends' stiffness [N/m] and damping [N s/m]."""
 
     held: float = 0.0
@@ -48,10 +48,10 @@ def _signed_root(difference: float) -> float:
 
 
 @numba.njit(error_model="numpy")
-def rate(time: float, state: Array, out: Array, told: Array) -> None:
-    """Write the state's rate into `out`; `told` is a `Setting` as an array."""
+def rate(time: float, state: Array, out: Array, setting: Array) -> None:
+    """Write the state's rate into `out`; `setting` is a `Setting` as an array."""
     current, spool, spool_rate, position, velocity, pressure_a, pressure_b = state
-    held, amplitude, frequency, sliding, static, stribeck_velocity, width, stiffness, damping = told
+    held, amplitude, frequency, sliding, static, stribeck_velocity, width, stiffness, damping = setting
     voltage = held + amplitude * sin(2.0 * pi * frequency * time) if amplitude else held
     if spool >= 0.0:
         flow_a = 2.38e-5 * spool * _signed_root(2.1e7 - pressure_a)
@@ -79,34 +79,34 @@ def rate(time: float, state: Array, out: Array, told: Array) -> None:
 
 
 @numba.njit(error_model="numpy")
-def odeint_rate(time: float, state: Array, told: Array) -> Array:
+def odeint_rate(time: float, state: Array, setting: Array) -> Array:
     """`rate` as SciPy calls it."""
     out = np.empty(7)
-    rate(time, state, out, told)
+    rate(time, state, out, setting)
     return out
 
 
 @numba.njit(error_model="numpy")
-def rk4(state: Array, voltages: Array, hold: float, steps: int, told: Array) -> Array:
+def rk4(state: Array, voltages: Array, hold: float, steps: int, setting: Array) -> Array:
     """Classical RK4 with so many steps a hold; the states (n, 7) at each hold's end."""
     rows = np.empty((len(voltages), 7))
-    state, told, between = state.copy(), told.copy(), np.empty(7)
+    state, setting, between = state.copy(), setting.copy(), np.empty(7)
     first, second, third, fourth = np.empty(7), np.empty(7), np.empty(7), np.empty(7)
     step = hold / steps
     for k in range(len(voltages)):
-        told[0] = voltages[k]
+        setting[0] = voltages[k]
         for part in range(steps):
             time = k * hold + part * step
-            rate(time, state, first, told)
+            rate(time, state, first, setting)
             for j in range(7):
                 between[j] = state[j] + 0.5 * step * first[j]
-            rate(time + 0.5 * step, between, second, told)
+            rate(time + 0.5 * step, between, second, setting)
             for j in range(7):
                 between[j] = state[j] + 0.5 * step * second[j]
-            rate(time + 0.5 * step, between, third, told)
+            rate(time + 0.5 * step, between, third, setting)
             for j in range(7):
                 between[j] = state[j] + step * third[j]
-            rate(time + step, between, fourth, told)
+            rate(time + step, between, fourth, setting)
             for j in range(7):
                 state[j] += step / 6.0 * (first[j] + 2.0 * (second[j] + third[j]) + fourth[j])
         rows[k] = state
@@ -118,7 +118,7 @@ _VECTOR = types.CPointer(types.CPointer(types.CPointer(types.float64)))
 
 
 @numba.cfunc(types.int32(types.float64, _VECTOR, _VECTOR, types.CPointer(types.float64)), error_model="numpy")
-def cvode_rate(time, state, out, told):  # type: ignore[no-untyped-def]
+def cvode_rate(time, state, out, setting):  # type: ignore[no-untyped-def]
     """`rate` as CVODE calls it."""
-    rate(time, numba.carray(state[0][1], (7,)), numba.carray(out[0][1], (7,)), numba.carray(told, (9,)))
+    rate(time, numba.carray(state[0][1], (7,)), numba.carray(out[0][1], (7,)), numba.carray(setting, (9,)))
     return 0

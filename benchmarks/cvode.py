@@ -43,10 +43,10 @@ class Cvode:
         OSError: the library is not there.
     """
 
-    def __init__(self, tolerance: float, told: Array) -> None:
+    def __init__(self, tolerance: float, setting: Array) -> None:
         for name in ("core", "nvecserial", "sunmatrixdense", "sunlinsoldense"):
             _library(name)
-        self._state, self._absolute, self._told = np.zeros(7), tolerance * SCALES, told.copy()
+        self._state, self._absolute, self._told = np.zeros(7), tolerance * SCALES, setting.copy()
         context = _integer()
         _function("core", "SUNContext_Create", _whole, _whole, ctypes.c_void_p)(0, ctypes.byref(context))
         vector = _function("nvecserial", "N_VMake_Serial", _integer, _whole, _integer, _integer)
@@ -85,14 +85,14 @@ def _compiled_loop() -> tuple[Callable[..., Array], Any, Any]:
 
     @numba.njit
     def loop(
-        advance: Any, again: Any, memory: int, vector: int, state: Array, told: Array, voltages: Array, hold: float,
+        advance: Any, again: Any, memory: int, vector: int, state: Array, setting: Array, voltages: Array, hold: float,
         anew: bool,
     ) -> Array:  # fmt: skip
         rows = np.full((len(voltages), 7), np.nan)
         reached = np.zeros(1)
         again(memory, 0.0, vector)
         for k in range(len(voltages)):
-            told[0] = voltages[k]
+            setting[0] = voltages[k]
             if anew and k > 0:
                 again(memory, k * hold, vector)
             if advance(memory, (k + 1) * hold, vector, reached.ctypes.data, 1) < 0:

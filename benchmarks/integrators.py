@@ -45,14 +45,14 @@ class Task:
 
     Attributes:
         name: as the table has it.
-        told: the right-hand side's setting; the plant has `effects` for it.
-        voltages: (n,) [V] held for HOLD each; None where `told` has a sine.
+        rhs: the right-hand side's setting; the plant has `effects` for it.
+        voltages: (n,) [V] held for HOLD each; None where `rhs` has a sine.
         within: error allowed in position [m] and in a pressure [Pa]; the largest, or of `squares` the root mean square.
         smoothed: what smooths friction and ends, each alternative less; the last one the judge's.
     """
 
     name: str
-    told: Setting
+    rhs: Setting
     voltages: Array | None = None
     effects: Mapping[str, float] | None = None
     position: float = 0.0
@@ -222,7 +222,7 @@ def _steps(task: Task, every: int) -> Array:
     if task.voltages is not None:
         return np.repeat(task.voltages, every)
     middles = HOLD / every * (np.arange(len(TIMES) * every) + 0.5)
-    return np.asarray(task.told.amplitude * np.sin(2.0 * pi * task.told.frequency * middles))
+    return np.asarray(task.rhs.amplitude * np.sin(2.0 * pi * task.rhs.frequency * middles))
 
 
 @cache
@@ -233,7 +233,7 @@ def _at_rest(name: str, step: float) -> Plant:
 
 
 def _told(task: Task, smoothed: Mapping[str, float]) -> Array:
-    return np.array(task.told._replace(**smoothed))
+    return np.array(task.rhs._replace(**smoothed))
 
 
 def _rk4_in_c(run: Callable[..., Array], task: Task, steps: int) -> Array:
@@ -252,22 +252,22 @@ def _cvode(task: Task, smoothed: Mapping[str, float], tolerance: float) -> Run:
 
 def _scipy(integrate: Callable[..., Array], task: Task, smoothed: Mapping[str, float], tolerance: float) -> Array:
     """Start anew at each jump of the voltage, as LSODA's manual advises."""
-    told, state = _told(task, smoothed), start(task.position)
+    rhs, state = _told(task, smoothed), start(task.position)
     if task.voltages is None:
-        return integrate(state, np.append(TIMES, DURATION), tolerance, told)[1:]
+        return integrate(state, np.append(TIMES, DURATION), tolerance, rhs)[1:]
     rows, ends = [], np.array([0.0, HOLD])
     for voltage in task.voltages:
-        told[0] = voltage
-        state = integrate(state, ends, tolerance, told)[-1]
+        rhs[0] = voltage
+        state = integrate(state, ends, tolerance, rhs)[-1]
         rows.append(state)
     return np.array(rows)
 
 
-def _odeint(state: Array, times: Array, tolerance: float, told: Array) -> Array:
+def _odeint(state: Array, times: Array, tolerance: float, rhs: Array) -> Array:
     options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * SCALES, "mxstep": 100_000, "tfirst": True}
-    return np.asarray(odeint(odeint_rate, state, times, args=(told,), **options))
+    return np.asarray(odeint(odeint_rate, state, times, args=(rhs,), **options))
 
 
-def _solve_ivp(state: Array, times: Array, tolerance: float, told: Array) -> Array:
-    options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * SCALES, "t_eval": times, "args": (told,)}
+def _solve_ivp(state: Array, times: Array, tolerance: float, rhs: Array) -> Array:
+    options: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * SCALES, "t_eval": times, "args": (rhs,)}
     return np.asarray(solve_ivp(odeint_rate, (0.0, times[-1]), state, method="LSODA", **options).y.T)

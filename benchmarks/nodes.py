@@ -70,8 +70,8 @@ def _observe(rclpy: Any, processes: list[int]) -> tuple[Reports, float]:
     node.create_subscription(DiagnosticArray, "/diagnostics", on_report, 100)
     _spin(rclpy, node, lambda: len(reports) == NODES, START_LIMIT)
     _spin(rclpy, node, lambda: False, 2.0 * WINDOW)  # a report and more that still tell of the start
-    for told in reports.values():
-        del told[:-1]
+    for published in reports.values():
+        del published[:-1]
     before, begun = sum(map(cpu_seconds, processes)), time.monotonic()
     _spin(rclpy, node, lambda: False, SECONDS + WINDOW)
     return reports, (sum(map(cpu_seconds, processes)) - before) / (time.monotonic() - begun)
@@ -84,9 +84,9 @@ def _spin(rclpy: Any, node: Any, done: Callable[[], bool], limit: float) -> None
 
 
 def _rows(reports: Reports, used: float, bare: list[list[float]]) -> list[Row]:
-    lost = [float(told[-1]["lost_time"]) - float(told[0]["lost_time"]) for told in reports.values()]
+    lost = [float(published[-1]["lost_time"]) - float(published[0]["lost_time"]) for published in reports.values()]
     late = tuple(
-        max(float(report[f"lateness_{name}"]) for told in reports.values() for report in told[1:])
+        max(float(report[f"lateness_{name}"]) for published in reports.values() for report in published[1:])
         for name in PERCENTILES
     )
     loops = tuple(max(several) for several in zip(*bare, strict=True))

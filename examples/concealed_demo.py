@@ -132,8 +132,8 @@ def compare(answer: Answer, document: dict) -> dict[str, object]:
             within = "" if inside[title] else ": outside, as one in twenty is"
             print(f"  {title:32s} {value:12.5g} {row['value']:12.5g}   {low:.5g} to {high:.5g} {row['unit']}{within}")
     missed, extra = set(answer.effects) - set(named), set(named) - set(answer.effects)
-    told = f"{len(set(answer.effects) & set(named))} of {len(answer.effects)} concealed effects were named"
-    print(f"\n  {told}" + (f"; also named: {', '.join(sorted(extra))}" if extra else ", and nothing else"))
+    score = f"{len(set(answer.effects) & set(named))} of {len(answer.effects)} concealed effects were named"
+    print(f"\n  {score}" + (f"; also named: {', '.join(sorted(extra))}" if extra else ", and nothing else"))
     return {"missed": sorted(missed), "extra": sorted(extra), "inside": inside}
 
 

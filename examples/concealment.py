@@ -1,7 +1,7 @@
 """What a demonstration's rig conceals: drawn at random, sealed in a file, and opened at the end.
 
-The seal is the SHA-256 of the answer. It is told before anything is recorded, so that an answer opened afterwards is
-known to be the one that was drawn. The file is packed, so that nobody reads it by looking at it.
+The seal is the SHA-256 of the answer. It is published before anything is recorded, so that an answer opened afterwards
+is known to be the one that was drawn. The file is packed, so that nobody reads it by looking at it.
 """
 
 from __future__ import annotations

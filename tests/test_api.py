@@ -55,7 +55,7 @@ def test_a_data_frame_is_diagnosed_in_five_lines(found: eha.Results) -> None:
 
 
 def test_a_recording_that_cannot_be_right_is_no_missing_physics() -> None:
-    """A position that counts the other way is told before any fit, as on the command line, and can be overruled."""
+    """A position that counts the other way is reported before any fit, as on the command line, and can be overruled."""
     made = eha.simulate(COMMAND, 2.0, noise=1.0)
     frame = pd.DataFrame(made.to_dict()).assign(position=lambda columns: -columns["position"])
     recording = eha.Recording.from_dataframe(frame.drop(columns="velocity"), pressures="gauge", name="rig")
@@ -143,12 +143,12 @@ def test_given_motion_goes_its_own_way_as_on_the_command_line(tmp_path: Path) ->
     bench = eha.Recording.from_arrays(
         time=time, position=np.cumsum(speed) / 500.0, velocity=speed, force=force, name="bench"
     )
-    told = eha.diagnose(bench)
-    values = {effect.id: effect.parameters for effect in told.effects}
+    diagnosed = eha.diagnose(bench)
+    values = {effect.id: effect.parameters for effect in diagnosed.effects}
     assert set(values) == {"viscous_friction", "coulomb_friction"}
     assert values["coulomb_friction"]["force"].value == pytest.approx(80.0, rel=0.02)
-    assert told.diagnosis.provenance["nominal"].startswith("none: the motion is given")
-    assert told.plot.law().axes
+    assert diagnosed.diagnosis.provenance["nominal"].startswith("none: the motion is given")
+    assert diagnosed.plot.law().axes
     with pytest.raises(EhaError, match="there is no plot 'residuals'"):
-        told.plot.residuals()
-    assert {path.name for path in told.save(tmp_path)} == {"figures", "diagnosis.json"}
+        diagnosed.plot.residuals()
+    assert {path.name for path in diagnosed.save(tmp_path)} == {"figures", "diagnosis.json"}

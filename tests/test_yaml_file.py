@@ -28,13 +28,13 @@ HOSTILE = {
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_one_line_for_what_is_hostile(tmp_path: Path, name: str) -> None:
-    text, told = HOSTILE[name]
+    text, expected = HOSTILE[name]
     path = tmp_path / "file.yaml"
     path.write_text(text)
     for load, error in ((load_topics_file, RecordingError), (load_parameters, ParameterError)):
         with pytest.raises(error) as caught:
             load(path)
-        assert told in str(caught.value) and "\n" not in str(caught.value) and str(path) in str(caught.value)
+        assert expected in str(caught.value) and "\n" not in str(caught.value) and str(path) in str(caught.value)
 
 
 @pytest.mark.parametrize(

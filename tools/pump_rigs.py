@@ -40,7 +40,7 @@ class PumpRig:
 
     truth: dict[str, float]
     concealed: Effect | None
-    told: dict[str, float]
+    given: dict[str, float]
     recording: eha.Recording
 
 
@@ -110,9 +110,9 @@ def _told(truth: dict[str, float], g: np.random.Generator) -> dict[str, float]:
              "return_pressure")  # fmt: skip
     vague = ("moving_mass", "damping_coefficient", "bulk_modulus", "internal_leakage", "supply_pressure",
              "pump_displacement", "pump_leakage")  # fmt: skip
-    told = {name: truth[name] for name in exact}
-    told |= {name: truth[name] * g.uniform(0.9, 1.1) for name in vague}
-    return told | {
+    given = {name: truth[name] for name in exact}
+    given |= {name: truth[name] * g.uniform(0.9, 1.1) for name in vague}
+    return given | {
         "tank_gain": truth["valve_gain"] * (AMPERES - truth["overlap"]) * g.uniform(0.9, 1.1),
         "relief_gain": truth["pump_relief_gain"] * g.uniform(0.9, 1.1),
     }
@@ -168,7 +168,7 @@ def main() -> None:
     right = 0
     for number in range(arguments.first, arguments.first + arguments.rigs):
         rig, begun = draw(number, arguments.seed), monotonic()
-        found = eha.diagnose(rig.recording, nominal_of(rig.told, composition=RIG), jobs=1)
+        found = eha.diagnose(rig.recording, nominal_of(rig.given, composition=RIG), jobs=1)
         concealed = [rig.concealed[0]] if rig.concealed else []
         named = [effect.id for effect in found.effects]
         is_right = named == concealed and found.diagnosis.verdict not in ("unknown_physics", "ambiguous")

@@ -107,7 +107,7 @@ def diagnose(
             position and force are all that was recorded and there is no model, the motion is taken as given and the
             law of the force is found.
         jobs: threads that simulate side by side.
-        progress: is told each stage as it begins.
+        progress: receives each stage as it begins.
         tests: recordings that nothing is fitted to, only predicted.
         as_recorded: go on where a recording cannot be right (a sign, a scale or a unit is wrong); a remark warns of it.
 
@@ -170,9 +170,9 @@ def nominal_model(nominal: Nominal, recording: Recording) -> Mapping[str, float]
 
 def known_model(nominal: Nominal, recording: Recording) -> NominalModel:
     """The model that a recording is held against, and which of its parameters are unknown or differ by recording."""
-    told = given_model(nominal, recording.parts)
-    if told is not None:
-        return told
+    model = given_model(nominal, recording.parts)
+    if model is not None:
+        return model
     composition = composition_of(recording.parts)
     kept = {name: value for name, value in recording.parameters.items() if name not in effect_names()}
     known = {name: value for name, value in kept.items() if name in composition.rows}

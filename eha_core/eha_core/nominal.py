@@ -48,7 +48,7 @@ def load_nominal(path: str | Path) -> NominalModel:
 def nominal_of(
     given: Mapping[str, object], per_recording: object = None, composition: Composition = PAPER
 ) -> NominalModel:
-    """The nominal model of values by name, each a number [SI] or `unknown`; what is left out is the catalogue's.
+    """The nominal model of values by name, each a number [SI] or `unknown`; the rest is the catalogue's.
 
     Args:
         given: values by catalogue name, or in the names of the composition's parts.

@@ -1,4 +1,4 @@
-"""Reads YAML files of strangers: within ceilings of size and depth, without aliases, any fault told in one line."""
+"""Reads YAML files of strangers: within ceilings of size and depth, without aliases, any fault reported in one line."""
 
 from __future__ import annotations
 

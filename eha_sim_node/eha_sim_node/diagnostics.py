@@ -12,7 +12,7 @@ from rclpy.node import Node
 
 from eha_sim_node.stamps import set_stamp
 
-_STANDSTILL = 1.0  # s beyond its period that a report may be late before that is told
+_STANDSTILL = 1.0  # s beyond its period that a report may be late before that is reported
 
 
 @dataclass

@@ -98,7 +98,7 @@ class MonitorNode(rclpy.node.Node):
                     " and lacks what came after its last flush"
                 )
         except OSError:
-            pass  # a folder that cannot be read is told when the recording starts
+            pass  # a folder that cannot be read is reported when the recording starts
 
     def _on_measured(self, data: bytes) -> None:
         message = deserialize_message(data, JointState)

@@ -151,7 +151,7 @@ class ReferenceNode(rclpy.node.Node):
             self._sample(now, self.get_clock().now().nanoseconds)
 
     def _is_heard(self) -> bool:
-        """Whether subscribers are there and have been the same for a while.
+        """Whether subscribers are there and have been the same for some time.
 
         The piston integrates the voltage: if a signal began before the simulator listens, it would stay beside its
         reference for good.

@@ -107,8 +107,8 @@ def _refuse_namesake(node: Node) -> None:
     """Raise StartError if another node of this one's full name runs, or began to start before this one did.
 
     Each says on a latched topic when it began, and 0 once it runs; who hears a smaller number gives way, so that of
-    several that start at once one stays. A node that was killed is in the graph for a while, but says nothing: it does
-    not keep its successor out.
+    several that start at once one stays. A node that was killed is in the graph for some time, but says nothing: it
+    does not keep its successor out.
     """
     name = node.get_fully_qualified_name()
     latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)

@@ -27,7 +27,7 @@ from eha_sim_node.stamps import nanoseconds_of
 NAME = "eha_twin"
 _PERIOD = 0.05  # s between two looks whether a window is complete
 _SILENCE = 5.0  # s beyond the window's length without a comparison until that is said
-# Best effort matches whatever a rig's drivers publish; a simulator in lockstep may be faster than the twin for a while.
+# Best effort matches whatever a rig's drivers publish; a simulator in lockstep may be faster than the twin.
 _QUALITY = QoSProfile(depth=10_000, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 OWN_ROWS = (
     Row("model", "", "parameters file of the model, as the simulator takes it (fitted.yaml); empty: nominal",
@@ -142,7 +142,7 @@ class TwinNode(rclpy.node.Node):
 
 
 def _news(comparison: Comparison) -> set[tuple[str, str]]:
-    """What is told of a comparison as soon as it changes."""
+    """What is reported of a comparison as soon as it changes."""
     departing = {(name, "departs") for name in comparison.departs}
     return departing | {(name, what) for name, (what, _) in comparison.unsound.items()}
 

@@ -17,7 +17,7 @@ from rclpy.node import Node
 from rclpy.qos import HistoryPolicy, QoSProfile
 from std_msgs.msg import Float64
 
-SETTLING = 2.0  # s; the node has then told its services to whom it may concern
+SETTLING = 2.0  # s; the node has then announced its services to whom it may concern
 
 
 class Calls:

@@ -31,7 +31,7 @@ def topics_file(folder: Path, text: str) -> str:
 
 
 @pytest.mark.parametrize(
-    ("mapping", "told"),
+    ("mapping", "expected"),
     [
         ("channels: {position: {scale: -1}}", "position has the opposite sign"),
         ("channels: {position: {scale: 1000.0}}", "position is in mm"),
@@ -42,19 +42,19 @@ def topics_file(folder: Path, text: str) -> str:
     ],
 )
 def test_one_line_with_a_cure_that_can_be_pasted(
-    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], mapping: str, told: str
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], mapping: str, expected: str
 ) -> None:
     out = tmp_path / "out"
     assert main(["diagnose", str(recording), "--topics", topics_file(tmp_path, mapping), "--out", str(out)]) == 2
     lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1 and told in lines[0] and "--as-recorded" in lines[0]
+    assert len(lines) == 1 and expected in lines[0] and "--as-recorded" in lines[0]
     assert not out.exists()
 
 
 def test_the_line_can_be_pasted_as_a_whole_topics_file(
     recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Read backwards, the recording is told to be swapped; read as the cure says, it is read as it was recorded."""
+    """Read backwards, the recording is reported as swapped; read as the cure says, it is read as it was recorded."""
     swapped = "channels: {pressure_a: {topic: /chamber_b/pressure}, pressure_b: {topic: /chamber_a/pressure}}"
     assert main(["diagnose", str(recording), "--topics", topics_file(tmp_path, swapped), "--each"]) == 2
     cure = re.search(r"`(channels: .*)`", capsys.readouterr().err)

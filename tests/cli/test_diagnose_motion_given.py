@@ -48,9 +48,9 @@ def test_a_test_recording_is_predicted(bench: Path, tmp_path: Path) -> None:
     np.savetxt(other, table, delimiter=",", header="time,position,velocity,force", comments="", fmt="%.9g")
     answer = tmp_path / "answer.json"
     assert main(["diagnose", str(bench), "--test", str(other), "--json", str(answer)]) == 0
-    told = json.loads(answer.read_text())["fit"]["held_out"]["force"]
-    assert told["rmse_after"] < 0.05 * told["rmse_before"]
-    assert told["rmse_after"] < 0.2 * told["rmse_calibrated"]
+    errors = json.loads(answer.read_text())["fit"]["held_out"]["force"]
+    assert errors["rmse_after"] < 0.05 * errors["rmse_before"]
+    assert errors["rmse_after"] < 0.2 * errors["rmse_calibrated"]
 
 
 def test_a_model_sends_it_the_usual_way(bench: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

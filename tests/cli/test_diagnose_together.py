@@ -24,9 +24,9 @@ def test_two_recordings_give_one_model_and_a_third_is_only_predicted(
     words = ["--nominal", str(nominal), "--test", str(third), "--json", str(tmp_path / "found.json")]
     # the second of them was cut short, which the status says
     assert main(["diagnose", *(str(BAGS / name) for name in names), *words]) == 3
-    told = capsys.readouterr().out
-    assert "Recordings fitted together" in told
-    assert "Test on rig_as_modelled.mcap" in told
+    printed = capsys.readouterr().out
+    assert "Recordings fitted together" in printed
+    assert "Test on rig_as_modelled.mcap" in printed
     found = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))
     assert [effect["id"] for effect in found["effects"]] == ["coulomb_friction"]
     assert [Path(one["path"]).name for one in found["recordings"]] == list(names)

@@ -52,9 +52,9 @@ def test_answers_make_the_same_file_as_options(
     monkeypatch.setattr("sys.stdin", io.StringIO("\n".join(answers) + "\n"))
     assert main(["init-rig", "--out", str(by_answers), "--ask"]) == 0
     assert by_answers.read_text() == by_options.read_text()
-    told = capsys.readouterr().err
-    assert told.count("diameter of the piston [40 mm]") == 3
-    assert "in which unit" in told and "is no number with a unit" in told
+    printed = capsys.readouterr().err
+    assert printed.count("diameter of the piston [40 mm]") == 3
+    assert "in which unit" in printed and "is no number with a unit" in printed
 
 
 def test_answers_that_end_leave_the_rest_unknown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

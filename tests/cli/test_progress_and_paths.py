@@ -1,4 +1,4 @@
-"""What is tried and what is left, on a terminal, in a file; and paths that are checked before any work."""
+"""What is tried and its residual, on a terminal, in a file; and paths that are checked before any work."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_a_terminal_shows_what_is_tried_and_what_is_left_in_one_line() -> None:
 
 
 @pytest.mark.parametrize(
-    ("message", "told"),
+    ("message", "expected"),
     [
         ("reading hour.mcap: 30 s", "[>.....] reading"),
         ("calibrating the nominal equations", "[#>....] calibration"),
@@ -48,9 +48,9 @@ def test_a_terminal_shows_what_is_tried_and_what_is_left_in_one_line() -> None:
         ("writing the report", "[#####>] report"),
     ],
 )
-def test_each_message_has_its_place(message: str, told: str) -> None:
+def test_each_message_has_its_place(message: str, expected: str) -> None:
     placed = Progress(long=True, out=Terminal()).placed(message)
-    assert placed.startswith(f"{told}: {message}")
+    assert placed.startswith(f"{expected}: {message}")
     assert ("left: " in placed) is (message != "writing the report")
 
 
@@ -80,7 +80,7 @@ def test_a_log_gets_every_message_with_its_time(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "expected"),
     [
         (["--out", "{file}/report"], "{file}: cannot be written (Not a directory); choose another --out"),
         (["--json", "{folder}/none/it.json"], "cannot be written (No such file or directory); choose another --json"),
@@ -92,7 +92,7 @@ def test_a_log_gets_every_message_with_its_time(tmp_path: Path) -> None:
     ],
 )
 def test_paths_are_checked_before_any_work(
-    words: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    words: list[str], expected: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "file"
     file.write_text("in the way", encoding="utf-8")
@@ -105,5 +105,5 @@ def test_paths_are_checked_before_any_work(
     monkeypatch.chdir(tmp_path)
     assert main(["diagnose", BAG, *(word.format(**places) for word in words)]) == 2
     said = capsys.readouterr().err
-    assert told.format(**places) in said
+    assert expected.format(**places) in said
     assert said.count("\n") == 1

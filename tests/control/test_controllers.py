@@ -60,7 +60,7 @@ def test_feedforward_from_a_diagnosis_beats_the_pid_threefold_on_a_rig_with_fric
 
 @pytest.mark.parametrize("name", list(CONTROLLERS))
 def test_a_reference_out_of_reach_leaves_no_windup(name: str) -> None:
-    """Held at the stroke's end for a while by a reference beyond it, the piston comes back without a swing."""
+    """Held at the stroke's end for some time by a reference beyond it, the piston comes back without a swing."""
     controller, plant = make_controller(name, nominal_values(), PERIOD, 0.05), Plant()
     positions = []
     for number in range(3000):

@@ -87,9 +87,9 @@ def test_five_effects_are_found_together():
         "pressure_sensor_lag.time_constant_a": 3e-3,
         "pressure_sensor_lag.time_constant_b": 3e-3,
     }
-    told = {**nominal_values(), "moving_mass": 11.0, "bulk_modulus": 1.2e9, "valve_gain": 2.9e-5}
+    given = {**nominal_values(), "moving_mass": 11.0, "bulk_modulus": 1.2e9, "valve_gain": 2.9e-5}
     observation = observe(recorded(planted, duration=8.0))
-    calibration = calibrate([observation], NominalModel(told), 2e-4)
+    calibration = calibrate([observation], NominalModel(given), 2e-4)
     scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
     search = Search(calibration.problem, applicable_effects([observation]), scales, shorter=calibration.shorter)
     nominal = search.keep(NOTHING, calibration.fitted)

@@ -28,13 +28,13 @@ def test_an_unknown_value_may_go_a_thousandfold():
 
 @pytest.mark.parametrize("unknown", [(), ("damping_coefficient",)], ids=["believed", "said to be unknown"])
 def test_damping_far_from_its_guess_is_found_and_the_friction_beside_it(unknown):
-    told: list[str] = []
+    lines: list[str] = []
     model = NominalModel(nominal_values(), frozenset(unknown))
-    found = diagnose_together([recorded(RIG, duration=8.0)], model, told.append)
-    released = [place for place, line in enumerate(told) if line.startswith("once more: damping_coefficient")]
+    found = diagnose_together([recorded(RIG, duration=8.0)], model, lines.append)
+    released = [place for place, line in enumerate(lines) if line.startswith("once more: damping_coefficient")]
     assert len(released) == (0 if unknown else 1)
     # before any set is grown within the bounds
-    assert not any(" + " in line for line in told[: sum(released)])
+    assert not any(" + " in line for line in lines[: sum(released)])
     assert [effect.id for effect in found.effects] == ["coulomb_friction"]
     damping = next(one for one in found.parameters if one.name == "damping_coefficient")
     assert damping.fitted == pytest.approx(RIG["damping_coefficient"], rel=0.02)

@@ -65,8 +65,8 @@ def test_the_plant_keeps_its_form_under_each_scale(of, units):
     """Changed by the powers, its parameters make the nominal answer in the other unit, or that of the other area."""
     changed = {name: NOMINAL[name] * 1.25**power for name, power in POWERS[of].items()}
     other = {"piston_area": 1.25 * 645e-6, "piston_area_b": 1.25 * 645e-6} if of == AREA else {}
-    true, told = run(other), run(changed, slower=1.25 if of == CLOCK else 1.0)
-    for seen, expected, unit in zip(told, true, (units[0], units[1], units[1]), strict=True):
+    true, changed_values = run(other), run(changed, slower=1.25 if of == CLOCK else 1.0)
+    for seen, expected, unit in zip(changed_values, true, (units[0], units[1], units[1]), strict=True):
         assert np.ptp(expected) > 1e-4
         assert np.max(np.abs(seen - unit * expected)) < 0.01 * unit * np.ptp(expected)
     assert np.max(np.abs(run({})[0] - true[0])) > 0.01 * np.ptp(true[0]) or of != AREA

@@ -31,8 +31,8 @@ from eha_core.recording import Recording
 CURVE = next(effect for effect in effects() if effect.id == "recovered_force")
 
 
-@pytest.mark.parametrize(("share", "told"), [(0.3, False), (0.8, True)])
-def test_a_function_that_leaves_more_than_it_explains_is_no_law(share, told):
+@pytest.mark.parametrize(("share", "expected"), [(0.3, False), (0.8, True)])
+def test_a_function_that_leaves_more_than_it_explains_is_no_law(share, expected):
     speeds = np.linspace(-0.2, 0.2, 12)
     knots = tuple((float(speed), 3000.0 * float(speed)) for speed in speeds)
     evidence = SimpleNamespace(
@@ -41,7 +41,7 @@ def test_a_function_that_leaves_more_than_it_explains_is_no_law(share, told):
         recovery=Recovery(CURVE, "velocity", NOTHING.with_effects([CURVE]), explanation({}), 500.0, share, knots),
     )
     law = _unknown(evidence)
-    assert (law is not None) == told
+    assert (law is not None) == expected
     if law is not None:
         assert law.function_of == "velocity"
         assert law.expression == "3e3 v [N], v in m/s"
@@ -94,7 +94,7 @@ BALANCED = UnknownLaw("force", "velocity, times the load", "", 0.7, ())
         ("force", 0.71, False, "velocity"),
         ("force", 0.69, False, BALANCED.function_of),
         ("force", 0.70, False, BALANCED.function_of),  # the residuals' law stands where the curve explains no more
-        ("chamber", 0.99, False, BALANCED.function_of),  # another site's curve only makes up for the law
+        ("chamber", 0.99, False, BALANCED.function_of),  # another site's curve only compensates for the law
         ("force", 0.60, True, "velocity"),  # the residuals lack what is named, too
     ],
 )
@@ -165,12 +165,12 @@ def test_each_channels_error_is_told_on_the_windows_fitted_to_and_on_those_held_
         Judged(0.0, 1, {"position": 1e-5}, {"position": 3e-5}),
     )
     evidence = SimpleNamespace(calibration=SimpleNamespace(shooting=shooting))
-    told = conclude._channel_fits(evidence, before, None, Decision("missing_physics", winner, (), nominal, after))
-    assert told[0]["position"] == ChannelFit(pytest.approx(3e-5), 2e-5, 1e-5, 1e-5)
-    assert told[1]["position"] == ChannelFit(pytest.approx(5e-5), 4e-5, 3e-5, 1e-5)
+    expected = conclude._channel_fits(evidence, before, None, Decision("missing_physics", winner, (), nominal, after))
+    assert expected[0]["position"] == ChannelFit(pytest.approx(3e-5), 2e-5, 1e-5, 1e-5)
+    assert expected[1]["position"] == ChannelFit(pytest.approx(5e-5), 4e-5, 3e-5, 1e-5)
     monkeypatch.setattr(conclude, "judge", lambda shooting, model: {"recalibrated": nominal}[model])
-    told = conclude._channel_fits(evidence, before, "recalibrated", Decision("consistent", winner, (), None, None))
-    assert told[1]["position"] == ChannelFit(pytest.approx(5e-5), 4e-5, 4e-5, 1e-5)
+    expected = conclude._channel_fits(evidence, before, "recalibrated", Decision("consistent", winner, (), None, None))
+    assert expected[1]["position"] == ChannelFit(pytest.approx(5e-5), 4e-5, 4e-5, 1e-5)
 
 
 def test_remarks_name_their_recording_where_there_are_several_and_the_units_of_what_turns():

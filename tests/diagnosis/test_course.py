@@ -1,4 +1,4 @@
-"""A whole search: what is planted is named and nothing else, and what it cost is told."""
+"""A whole search: what is planted is named and nothing else, and its cost is in the trace."""
 
 import pytest
 from made import LAWS, bench, recorded

@@ -1,4 +1,4 @@
-"""What could stand in a member's place competes for it, with one effect more where it stands for two."""
+"""What could stand in a member's place competes for it, with one effect more where it compensates for two."""
 
 from dataclasses import replace
 
@@ -75,7 +75,7 @@ def test_over_short_windows_those_ahead_after_one_iteration_compete_too(search, 
 
 
 def test_a_rival_that_leads_with_one_effect_more_is_taken_that_far(search):
-    """The offset stands for the load and the late sensor together, and is ahead of the load alone."""
+    """The offset compensates for the load and the late sensor together, and is ahead of the load alone."""
     rival = fitted(search, {"constant_load.force": 400.0, "turbulent_leakage.coefficient": 2e-8})
     at = fitted(search, IMITATED)
     ahead = Candidate(at.hypothesis, replace(at.fit, objective=rival.fit.objective - 50.0))

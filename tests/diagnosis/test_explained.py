@@ -95,7 +95,7 @@ def test_the_true_model_predicts_to_the_noise_and_a_wrong_one_worse_the_further_
 
 @pytest.mark.parametrize(("deviation", "complete"), [(5.9e5, False), (100.0, True)])
 def test_an_effect_of_any_size_completes_no_result(deviation, complete, monkeypatch):
-    """18 kN of friction are told with 593 kN or with 100 N to either side."""
+    """18 kN of friction are estimated with 593 kN or with 100 N to either side."""
     monkeypatch.setattr(stage, "whereabouts", lambda *_: ("near zero speed", ((1.0, 2.0),)))
     (friction,) = [effect for effect in effects() if effect.id == "coulomb_friction"]
     seen = evidence(20.0 * COUNT, 1.0 * COUNT, force=1.0)

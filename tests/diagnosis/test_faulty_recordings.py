@@ -132,11 +132,11 @@ REFUSED: dict[str, tuple[Callable[[Recording], Recording], str]] = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_tells_nothing_is_refused_with_what_to_do(name: str, sound: Recording) -> None:
-    make, told = REFUSED[name]
-    with pytest.raises(RecordingError, match=told):
+    make, expected = REFUSED[name]
+    with pytest.raises(RecordingError, match=expected):
         admit(make(sound), nominal_values())
     (warning, *_) = admit(make(sound), nominal_values(), as_recorded=True).remarks
-    assert told in warning
+    assert expected in warning
 
 
 def test_a_test_that_was_cut_to_pieces_is_refused(sound: Recording) -> None:

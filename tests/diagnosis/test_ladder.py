@@ -70,7 +70,7 @@ def test_parameters_that_a_recording_tells_only_together_are_correlated(evidence
     assert np.allclose(np.diag(matrix), 1.0)
     assert np.abs(matrix).max() <= 1.0
     assert np.linalg.eigvalsh(matrix).min() > -1e-6
-    # the flow is the gain times the root of the pressure drop: more supply pressure makes up for less gain
+    # the flow is the gain times the root of the pressure drop: more supply pressure compensates for less gain
     gain, supply = found.names.index("valve_gain"), found.names.index("supply_pressure")
     assert matrix[gain, supply] < -0.5
 

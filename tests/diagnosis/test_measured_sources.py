@@ -75,7 +75,7 @@ def test_a_recording_is_simulated_through_as_the_plant_would(source: str, truth:
     plant = Plant(ROD, shooting.step_size, composition=rig)
     plant.place(*shooting.initial_states[0])
     alone = plant.run(shooting.inputs.T, shooting.every)
-    # the valve starts at rest here, and settled there: what is left of that after the record's settling
+    # the valve starts at rest here, and settled there: the rest of that after the record's settling
     assert np.max(np.abs(alone.flow_a - rows[:, 8])[600:]) < 1e-2 * np.ptp(rows[:, 8])
 
 
@@ -85,7 +85,7 @@ def test_a_recording_without_the_sources_channel_is_refused(truth: dict[str, np.
 
 
 def test_friction_on_a_vane_is_found_within_its_interval() -> None:
-    """The truth's piston of 50 ml per radian is a vane of that displacement; its inertia is told a tenth too large."""
+    """The truth's piston of 50 ml per radian is a vane of that displacement; its inertia is given a tenth too large."""
     time = np.arange(round(1000 * SECONDS) + 1) / 1000.0
     voltage = sum(size * np.sin(2.0 * np.pi * hertz * time) for size, hertz in ((0.05, 0.7), (0.04, 2.3), (0.02, 7.1)))
     vane = {"piston_area": 5e-5, "piston_area_b": 5e-5, "actuator_displacement": 1.5, "moving_mass": 0.5,
@@ -93,9 +93,9 @@ def test_friction_on_a_vane_is_found_within_its_interval() -> None:
     torque = 60.0
     truth = simulate_truth(vane, [("coulomb_friction", {"force": torque})], voltage, SECONDS)
     rig = compose(cylinder="rotary_vane")
-    told = {"vane_displacement": 5e-5, "half_travel": 1.5, "moment_of_inertia": 0.55, "rotational_damping": 40.0}
+    given = {"vane_displacement": 5e-5, "half_travel": 1.5, "moment_of_inertia": 0.55, "rotational_damping": 40.0}
     found = eha.diagnose(recorded(truth | {"voltage_command": voltage}, ("voltage_command",)),
-                         nominal_of(told, composition=rig), jobs=1)  # fmt: skip
+                         nominal_of(given, composition=rig), jobs=1)  # fmt: skip
     assert [effect.id for effect in found.effects] == ["coulomb_friction"]
     value = found.effects[0].parameters["force"]
     assert value.unit == "N m" and "N m" in found.effects[0].statement

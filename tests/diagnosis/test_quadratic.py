@@ -134,7 +134,7 @@ def test_a_guess_that_changes_nothing_is_no_option(model):
 def test_no_parameter_is_predicted_beyond_its_bounds(rig, model):
     """A return pressure at nothing cannot go lower, whatever it would gain there."""
     rows = {parameter.name: parameter for parameter in model.at.free}
-    told = 0
+    at_bounds = 0
     for option in model.options:
         values, _ = model.start((option,))
         for name, parameter in rows.items():
@@ -143,5 +143,5 @@ def test_no_parameter_is_predicted_beyond_its_bounds(rig, model):
         for place, parameter in enumerate(model.at.free):
             reached = model.at.q[place] + moves[place]
             assert parameter.coordinate(parameter.lower) - 1e-6 <= reached if np.isfinite(parameter.lower) else True
-            told += parameter.lower == values[parameter.name]
-    assert told > 0
+            at_bounds += parameter.lower == values[parameter.name]
+    assert at_bounds > 0

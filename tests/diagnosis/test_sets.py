@@ -1,4 +1,4 @@
-"""Sets of effects: found together, thinned out to what earns its place, and honest about what is left."""
+"""Sets of effects: found together, without what is not significant, with the residual stated."""
 
 from dataclasses import replace
 

@@ -127,7 +127,7 @@ def test_two_effects_at_once_are_both_named(tmp_path, capsys):
 
 
 def test_a_second_effect_is_named_that_explains_hardly_any_of_what_the_first_does():
-    """A slower or faster valve stands for most of such a delay: the recording tells it to 0.8 ms, as its standard
+    """A slower or faster valve compensates for most of such a delay: the recording tells it to 0.8 ms, as its standard
     deviation says."""
     result = diagnosed({"constant_load.force": 900.0, "command_delay.delay": 8e-3, "moving_mass": 10.0}, duration=6.0)
     found = {effect.id: effect.parameters for effect in result.effects}
@@ -144,14 +144,14 @@ def test_a_damaged_recording_is_diagnosed_as_far_as_it_goes(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "expected"),
     [
         ("time,u,x\n" + "".join(f"{k / 100},0.01,{k * 1e-5}\n" for k in range(50)), "too short"),
         ("time,u,x\n" + "".join(f"{k / 100},0.0,{(k % 7) * 1e-3}\n" for k in range(500)), "constant"),
         ("time,u,x\n" + "".join(f"{k / 100},{(k % 9) * 1e-3},0.01\n" for k in range(500)), "does not move"),
     ],
 )
-def test_a_recording_that_shows_nothing_is_refused_in_one_line(tmp_path, capsys, text, told):
+def test_a_recording_that_shows_nothing_is_refused_in_one_line(tmp_path, capsys, text, expected):
     recording, topics = tmp_path / "rig.csv", tmp_path / "topics.yaml"
     recording.write_text(text)
     topics.write_text("channels:\n  voltage_command: {column: u}\n  position: {column: x}\n")
@@ -159,7 +159,7 @@ def test_a_recording_that_shows_nothing_is_refused_in_one_line(tmp_path, capsys,
     assumed, error = capsys.readouterr().err.splitlines()
     assert "the catalogue's cylinder is assumed" in assumed  # a table tells nothing of its rig
     assert "`eha init-rig` makes the file of a rig" in assumed
-    assert told in error
+    assert expected in error
 
 
 def test_a_missing_recording_is_one_line(capsys):

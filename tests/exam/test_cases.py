@@ -1,4 +1,4 @@
-"""Cases: drawn alike from the same seed, sound tests, sensors as stated, and an oracle that knows what can be told."""
+"""Cases: drawn alike from the same seed, sound tests, sensors as stated, and an oracle of what can be identified."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def test_what_the_oracle_sees_beside_another_effect_is_what_that_does_not_explai
 
 
 def test_the_oracle_lets_the_shape_of_another_law_imitate_a_sensors_scale() -> None:
-    """A position that reads 8 % short moves a worn place and makes it narrower, and is no longer told from that."""
+    """A position that reads 8 % short moves a worn place, makes it narrower, and cannot be distinguished from that."""
     worn = ("bore_wear_leakage", {"coefficient": 4e-11, "centre": 0.01, "width": 0.008})
     case = short("single", 12, duration=3.0, effects=(worn, ("position_sensor_scale", {"ratio": -0.08})))
     truth = simulate_case(case)

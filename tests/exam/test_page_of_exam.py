@@ -59,10 +59,10 @@ def test_false_discoveries_are_few_only_if_the_upper_end_of_the_interval_is_low(
 
 def test_what_must_always_hold_is_missed_by_one_case_and_open_without_one() -> None:
     kept = [replace(marked(k, "coulomb_friction"), complete=True) for k in range(300)]
-    always = target(kept, "`complete` told truly")
+    always = target(kept, "`complete` stated correctly")
     assert (always.aim, always.judged) == ("100 %", "open")
     lied = replace(kept[0], held_out_ratio=1.6)
-    assert target([lied, *kept[1:]], "`complete` told truly").judged == "no"
+    assert target([lied, *kept[1:]], "`complete` stated correctly").judged == "no"
 
 
 def test_the_page_has_key_matrix_shares_and_linked_cases() -> None:

@@ -21,7 +21,7 @@ def own_values(rig: PumpRig) -> dict[str, float]:
     truth = rig.truth
     assert rig.concealed is not None
     effect, concealed = rig.concealed
-    return rig.told | {name: truth[name] for name in SAME} | {
+    return rig.given | {name: truth[name] for name in SAME} | {
         "tank_gain": truth["valve_gain"] * (AMPERES - truth["overlap"]),
         "valve_overlap": truth["overlap"] / AMPERES,
         "relief_gain": truth["pump_relief_gain"],
@@ -33,12 +33,12 @@ def own_values(rig: PumpRig) -> dict[str, float]:
 
 
 def test_the_plant_with_the_truth_s_values_errs_by_the_noise() -> None:
-    """A closed centre; of a tandem one the two write the bypass' edge differently. A pump's speed that is told half a
+    """A closed centre; of a tandem one the two write the bypass' edge differently. A pump's speed that is given half a
     sample late costs 1.4 times the noise in position."""
     rig = draw(1, 1)
     assert rig.truth["pump_bypass_gain"] == 0.0
     observation = observe(rig.recording, RIG)
     found = errors_held(observation, nominal_of(own_values(rig), composition=RIG).values)
     assert found == pytest.approx(NOISE, rel=0.1)
-    without = errors_held(observation, nominal_of(rig.told, composition=RIG).values)
+    without = errors_held(observation, nominal_of(rig.given, composition=RIG).values)
     assert all(without[name] > 50.0 * found[name] for name in found)

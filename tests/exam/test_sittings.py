@@ -1,4 +1,4 @@
-"""Several sittings of one exam are scored as the exam in one sitting would be."""
+"""Several runs of one exam are scored as the exam in one run would be."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ class Rig:
         return value
 
     def spin(self, seconds: float) -> None:
-        """Serve the node for a while."""
+        """Serve the node for some time."""
         deadline = time.monotonic() + seconds
         while (left := deadline - time.monotonic()) > 0:
             rclpy.spin_once(self.node, timeout_sec=min(left, 0.02))
@@ -121,7 +121,7 @@ class Rig:
         return future.result()
 
     def command(self, volts: float, seconds: float, rate: float = 100.0) -> None:
-        """Publish a steady voltage for a while."""
+        """Publish a steady voltage for some time."""
         self.wait(lambda: self.commands.get_subscription_count() > 0, "the simulator's command input")
         for _ in range(round(seconds * rate)):
             self.commands.publish(Float64(data=volts))

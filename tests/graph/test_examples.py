@@ -77,12 +77,12 @@ def test_what_is_concealed_in_a_rig_is_named_and_simulated(tmp_path: Path) -> No
     with rig.open("rb") as stream:
         reader = make_reader(stream)
         topics = {channel.topic for channel in reader.get_summary().channels.values()}
-        told = repr([record for record in reader.iter_metadata() if record.name != "eha_coverage"]).encode()
-        assert told == b"[]"
+        text = repr([record for record in reader.iter_metadata() if record.name != "eha_coverage"]).encode()
+        assert text == b"[]"
         stream.seek(0)
-        told = b"".join(message.data for _, _, message in make_reader(stream).iter_messages())
+        text = b"".join(message.data for _, _, message in make_reader(stream).iter_messages())
     assert not topics & {"/state", "/internal_leakage"}
-    assert not any(effect.encode() in told for effect in answer.effects)
+    assert not any(effect.encode() in text for effect in answer.effects)
     # What the nominal error is measured between is what the two plants do.
     volts = read_recording(rig).channels["voltage_command"].values[:6000]
     truth = simulate_truth(answer.plant, tuple(answer.effects.items()), np.append(volts, 0.0), 12.0, 500.0)
@@ -108,18 +108,18 @@ def test_a_demonstration_that_fails_says_so_in_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "text"),
     [
         (["concealed_rig.py"], "usage: "),
         (["concealed_rig.py", "nowhere"], "concealed_rig: nowhere: is no sealed file"),
         (["log_files.py", "nowhere", "out"], "log_files: nowhere: "),
     ],
 )
-def test_an_example_that_was_given_no_file_says_so_in_one_line(tmp_path: Path, words: list[str], told: str) -> None:
+def test_an_example_that_was_given_no_file_says_so_in_one_line(tmp_path: Path, words: list[str], text: str) -> None:
     command = [sys.executable, str(EXAMPLES / words[0]), *words[1:]]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, cwd=tmp_path)
     assert done.returncode == 1
-    assert done.stderr.startswith(told) and done.stderr.count("\n") == 1
+    assert done.stderr.startswith(text) and done.stderr.count("\n") == 1
 
 
 def test_a_controller_of_ones_own_follows_a_position(rig: Rig) -> None:

@@ -257,6 +257,6 @@ def test_the_file_says_what_it_covers_of_each_topic(rig: Rig) -> None:
     assert monitor.end() == 0
     with recording_of(rig.folder).open("rb") as stream:
         (record,) = [one for one in make_reader(stream).iter_metadata() if one.name == "eha_coverage"]
-    told = dict(part.split("=") for part in record.metadata[f"{rig.namespace}/voltage_command"].split())
-    assert int(told["count"]) == 40
-    assert (int(told["gap_end"]) - int(told["gap_start"])) / 1e9 == pytest.approx(1.0, abs=0.3)
+    coverage = dict(part.split("=") for part in record.metadata[f"{rig.namespace}/voltage_command"].split())
+    assert int(coverage["count"]) == 40
+    assert (int(coverage["gap_end"]) - int(coverage["gap_start"])) / 1e9 == pytest.approx(1.0, abs=0.3)

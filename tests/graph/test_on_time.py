@@ -1,4 +1,4 @@
-"""What is promised against the wall clock: rates of the outputs, how soon late and lost time are told, and a leak."""
+"""What is promised against the wall clock: rates of the outputs, how soon late and lost time are said, and a leak."""
 
 from __future__ import annotations
 
@@ -73,8 +73,8 @@ def test_late_and_lost_time_are_seen_within_two_seconds(rig: Rig) -> None:
         time.sleep(seconds)
         sim.process.send_signal(signal.SIGCONT)
 
-    def seconds_until(told: str, since: float) -> float:
-        rig.wait(lambda: any(told in report["message"] for report in reports), f"a report of {told}", 10)
+    def seconds_until(message: str, since: float) -> float:
+        rig.wait(lambda: any(message in report["message"] for report in reports), f"a report of {message}", 10)
         return time.monotonic() - since
 
     reports.clear()
@@ -87,7 +87,7 @@ def test_late_and_lost_time_are_seen_within_two_seconds(rig: Rig) -> None:
     stop(1.0)
     resumed = time.monotonic()
     lost = seconds_until("of time lost", resumed)
-    print(f"\nlate time was told after {late:.2f} s, lost time after {lost:.2f} s")
+    print(f"\nlate time was reported after {late:.2f} s, lost time after {lost:.2f} s")
     assert reports[-1]["level"] == str(b"\x01")
     assert late < SOON and lost < SOON
 

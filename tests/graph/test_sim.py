@@ -232,8 +232,8 @@ def test_a_process_that_stood_still_says_so(rig: Rig) -> None:
     sim.process.send_signal(signal.SIGSTOP)
     rig.spin(2.0)
     sim.process.send_signal(signal.SIGCONT)
-    assert rig.wait(lambda: any("the process stood still" in report["message"] for report in reports), "the pause told")
-    assert rig.wait(lambda: any("of time lost" in report["message"] for report in reports), "the loss told")
+    assert rig.wait(lambda: any("the process stood still" in report["message"] for report in reports), "the pause said")
+    assert rig.wait(lambda: any("of time lost" in report["message"] for report in reports), "the loss said")
 
 
 def test_help_is_printed_and_nothing_started(tmp_path: Path) -> None:

@@ -34,24 +34,24 @@ def judge_of(recording: Recording, found: dict[str, float], fitted: set[int]) ->
 def test_the_right_model_errs_alike_all_over_the_record() -> None:
     recording = recorded(FRICTION, duration=12.0, rate=250.0)
     judge = judge_of(recording, FRICTION, {0, 5})
-    told = long_record("rig.mcap", 12.0, [(0.0, 2.0), (10.0, 12.0)], judge)
-    assert [(one.start, one.end, one.fitted) for one in told.blocks] == [
+    judged = long_record("rig.mcap", 12.0, [(0.0, 2.0), (10.0, 12.0)], judge)
+    assert [(one.start, one.end, one.fitted) for one in judged.blocks] == [
         (2.0 * number, 2.0 * number + 2.0, number in (0, 5)) for number in range(6)
     ]
-    assert told.departs == ()
-    assert told.passed_over == 0.0
-    for one in told.blocks:
+    assert judged.departs == ()
+    assert judged.passed_over == 0.0
+    for one in judged.blocks:
         assert one.after["position"] < 0.3 * one.before["position"]
-    assert told.statement.startswith("Of 12 s, 2 stretches of 2 s were fitted.")
-    assert "over the 8 s that were not fitted" in told.statement
+    assert judged.statement.startswith("Of 12 s, 2 stretches of 2 s were fitted.")
+    assert "over the 8 s that were not fitted" in judged.statement
 
 
 def test_what_acts_for_a_while_is_told_with_its_span() -> None:
     acting = {"effects_from": 6.0, "effects_until": 10.0}
     recording = recorded({"coulomb_friction.force": 400.0} | acting, duration=14.0, rate=250.0)
-    told = long_record("rig.mcap", 14.0, [(0.0, 2.0), (12.0, 14.0)], judge_of(recording, {}, {0, 6}))
-    assert told.departs == ((6.0, 10.0),)
-    assert "from 6 to 10 s it errs by more than 1.5 times" in told.statement
+    judged = long_record("rig.mcap", 14.0, [(0.0, 2.0), (12.0, 14.0)], judge_of(recording, {}, {0, 6}))
+    assert judged.departs == ((6.0, 10.0),)
+    assert "from 6 to 10 s it errs by more than 1.5 times" in judged.statement
 
 
 def test_what_cannot_be_compared_is_passed_over() -> None:
@@ -98,10 +98,10 @@ def test_a_long_record_is_fitted_in_stretches_and_told_in_its_own_time(
     diagnosis = found.diagnosis
     assert [one.id for one in diagnosis.effects] == ["coulomb_friction"]
     assert diagnosis.effects[0].parameters["force"].value == pytest.approx(250.0, abs=2.0)
-    (told,) = diagnosis.long_records
-    assert told.stretches == ((0.0, 3.0), (18.0, 21.0))
-    assert len(told.blocks) == 7
-    assert told.departs == ()
+    (judged,) = diagnosis.long_records
+    assert judged.stretches == ((0.0, 3.0), (18.0, 21.0))
+    assert len(judged.blocks) == 7
+    assert judged.departs == ()
     assert (diagnosis.path, diagnosis.duration, diagnosis.start_stamp) == (str(recording.path), 21.0, 0)
     # what is drawn is one of the stretches, at its place in the record
     begin, end = diagnosis.drawn

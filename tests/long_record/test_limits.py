@@ -7,8 +7,8 @@ from eha_core.long_record import limits
 
 
 def test_the_limits_are_those_whose_origins_are_written_beside_them() -> None:
-    told = {name: value for name, value in vars(limits).items() if name.isupper()}
-    assert told == {
+    stated = {name: value for name, value in vars(limits).items() if name.isupper()}
+    assert stated == {
         "LONGEST_WHOLE": 120.0,
         "STRETCH": 10.0,
         "STRETCHES": 6,

@@ -84,7 +84,7 @@ def test_fields_stand_as_in_a_row() -> None:
 
 
 @pytest.mark.parametrize(
-    ("state", "parameters", "told"),
+    ("state", "parameters", "refusal"),
     [
         (REST._replace(position=0.11), {}, "0.11 m is outside the stroke"),
         (REST._replace(position=float("nan")), {}, "nan m is outside the stroke"),
@@ -92,6 +92,6 @@ def test_fields_stand_as_in_a_row() -> None:
         (REST, {"moving_mas": 9.0}, "did you mean moving_mass"),
     ],
 )
-def test_refuses(state: State, parameters: dict[str, float], told: str) -> None:
-    with pytest.raises(ParameterError, match=told):
+def test_refuses(state: State, parameters: dict[str, float], refusal: str) -> None:
+    with pytest.raises(ParameterError, match=refusal):
         derivatives(state, 0.0, parameters)

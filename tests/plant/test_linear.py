@@ -94,7 +94,7 @@ def test_names_and_shapes_belong_together() -> None:
 
 
 @pytest.mark.parametrize(
-    ("parameters", "position", "opening", "told"),
+    ("parameters", "position", "opening", "refusal"),
     [
         ({}, 0.0, 0.02, "less than the 0.02 A of saturation"),
         ({}, 0.11, 0.0, "outside the stroke"),
@@ -103,6 +103,6 @@ def test_names_and_shapes_belong_together() -> None:
         ({"coulomb_friction.force": 250.0}, 0.0, 0.0, "switched on"),
     ],
 )
-def test_refuses(parameters: dict[str, float], position: float, opening: float, told: str) -> None:
-    with pytest.raises(ParameterError, match=told):
+def test_refuses(parameters: dict[str, float], position: float, opening: float, refusal: str) -> None:
+    with pytest.raises(ParameterError, match=refusal):
         linearise(parameters, position, opening)

@@ -1,4 +1,4 @@
-"""Mistakes are told on rigs of an independent plant, with the line that cures them; what can be right is let pass."""
+"""Mistakes are found on rigs of an independent plant, with the line that cures them; what can be right is let pass."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_each_mistake_is_told_and_its_cure_gives_the_rig_back(rigs: dict[str, wr
     recording = wrong.make_wrong(mistake, rig, other)
     finding = check(recording, rig.nominal)
     assert finding is not None
-    assert mistake.told in finding.mistake
+    assert mistake.expected in finding.mistake
     assert "\n" not in str(finding)
     whole = cured(recording, finding.cure)
     assert check(whole, rig.nominal) is None
@@ -125,9 +125,9 @@ def test_a_force_against_the_motion_is_told() -> None:
     speed = 0.02 * 2.0 * np.pi * 0.7 * np.cos(2.0 * np.pi * 0.7 * time)
     force = 2000.0 * speed + 100.0 * np.sign(speed) + 5.0 * rng.standard_normal(len(time))
     nominal = {**draw_nominal(), "damping_coefficient": 2000.0}
-    for factor, told in ((1.0, None), (-1.0, "force has the opposite sign"), (1e-3, "force is in kN")):
+    for factor, expected in ((1.0, None), (-1.0, "force has the opposite sign"), (1e-3, "force is in kN")):
         finding = check(wrong.as_recording({"position": (time, position), "force": (time, factor * force)}), nominal)
-        assert (finding.mistake if finding else None) == told
+        assert (finding.mistake if finding else None) == expected
 
 
 @pytest.mark.parametrize("noise", [0.0, 1e4])
@@ -193,12 +193,12 @@ SLOW = ("null_parameters", 0, SEED)
 
 @pytest.mark.parametrize("name", ["pressures in kPa", "pressures times 10", "one pressure times 10", "position in mm"])
 def test_a_unit_is_told_where_little_but_noise_lies_between_the_pressures(name: str) -> None:
-    """The valve hardly opens. What no leak explains is told, and noise between pressures is not taken for a copy."""
+    """The valve hardly opens. What no leak explains is found, and noise between pressures is not taken for a copy."""
     rig = small_test(*SLOW)
     mistake = next(one for one in wrong.MISTAKES if one.name == name)
     assert check(wrong.as_recording(rig.arrays), rig.nominal) is None
     finding = check(wrong.make_wrong(mistake, rig, rig), rig.nominal)
-    assert finding is not None and mistake.told in finding.mistake
+    assert finding is not None and mistake.expected in finding.mistake
 
 
 @pytest.mark.parametrize("end", [1.0, -1.0])

@@ -1,4 +1,4 @@
-"""What little motion allows to be told, and a command that did not bring it about."""
+"""What little motion allows to be found, and a command that did not bring it about."""
 
 from __future__ import annotations
 
@@ -141,13 +141,13 @@ def test_a_velocity_that_is_mostly_noise_is_of_this_run() -> None:
     assert finding is not None and "velocity has nothing to do" in finding.mistake
 
 
-@pytest.mark.parametrize(("unit", "told"), [("cm", "position is in cm"), ("inches", "position is in inches")])
-def test_cm_and_inches_are_both_named_where_the_valve_gives_half_its_flow(unit: str, told: str) -> None:
+@pytest.mark.parametrize(("unit", "expected"), [("cm", "position is in cm"), ("inches", "position is in inches")])
+def test_cm_and_inches_are_both_named_where_the_valve_gives_half_its_flow(unit: str, expected: str) -> None:
     weak = rig("null_parameters", 1)
     nominal = {**weak.nominal, "valve_gain": 2.0 * weak.nominal["valve_gain"]}
     wrong_unit = wrong.make_wrong(made(f"position in {unit}"), weak, weak, ("velocity", "pressure_a", "pressure_b"))
     finding = check(wrong_unit, nominal)
-    assert finding is not None and told in str(finding)
+    assert finding is not None and expected in str(finding)
 
 
 @pytest.mark.parametrize("factor", [1e2, 1e3, 1e6])
@@ -159,10 +159,10 @@ def test_a_piston_that_stands_still_has_no_unit(factor: float) -> None:
     assert finding is None
 
 
-@pytest.mark.parametrize(("half_strokes", "told"), [(-3.0, True), (1.5, True), (4.5, True), (40.0, False)])
-def test_a_zero_lies_near_the_cylinder(half_strokes: float, told: bool) -> None:
+@pytest.mark.parametrize(("half_strokes", "expected"), [(-3.0, True), (1.5, True), (4.5, True), (40.0, False)])
+def test_a_zero_lies_near_the_cylinder(half_strokes: float, expected: bool) -> None:
     driven = rig("null_parameters", 1)
     time, position = driven.arrays["position"]
     shift = half_strokes * driven.nominal["actuator_displacement"]
     finding = check(wrong.as_recording({**driven.arrays, "position": (time, position + shift)}), driven.nominal)
-    assert (finding is not None and "mid-stroke" in finding.mistake) == told
+    assert (finding is not None and "mid-stroke" in finding.mistake) == expected

@@ -1,4 +1,4 @@
-"""Recordings whose channels speak against the plant's source: told, with the line that names another; others pass."""
+"""Recordings whose channels speak against the plant's source: found, with the line that names another; others pass."""
 
 from __future__ import annotations
 

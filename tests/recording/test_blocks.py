@@ -262,21 +262,21 @@ def test_a_file_s_pieces_end_after_30_s_or_a_million_messages(monkeypatch: pytes
         return len(gathered) > before
 
     gate, second = blocks._Gate(lambda: gathered.append(1)), 10**9
-    told = [is_gathered(gate, time) for time in (7, 30 * second, 30 * second + 6, 30 * second + 7, 31 * second)]
-    assert told == [False, False, False, True, False]
+    gathered = [is_gathered(gate, time) for time in (7, 30 * second, 30 * second + 6, 30 * second + 7, 31 * second)]
+    assert gathered == [False, False, False, True, False]
     assert [is_gathered(gate, time) for time in (60 * second + 6, 60 * second + 7, 61 * second)] == [False, True, False]
     many = blocks._Gate(lambda: gathered.append(1))
-    told = [is_gathered(many, 0, count) for count in (400_000, 600_000, 1, 999_999, 1, 7)]
-    assert told == [False, False, True, False, True, False]
+    gathered = [is_gathered(many, 0, count) for count in (400_000, 600_000, 1, 999_999, 1, 7)]
+    assert gathered == [False, False, True, False, True, False]
     far = blocks._Gate(lambda: gathered.append(1))
     assert [is_gathered(far, 0, count) for count in (1, 2_000_000)] == [False, True]
 
 
 def test_progress_is_told_with_what_is_known(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(blocks, "PIECE", 10.0)
-    source, told = BlocksOfFile(path, None, 5.0), list[str]()
+    source, gathered = BlocksOfFile(path, None, 5.0), list[str]()
     for _ in range(2):
-        source.each(lambda block: None, None, told.append)
-    assert told[-1] == "reading run.mcap: 23 of 23 s"
-    assert told[len(told) // 2 - 1] == "reading run.mcap: 23 s"
-    assert told[0] == "reading run.mcap: 10 s"
+        source.each(lambda block: None, None, gathered.append)
+    assert gathered[-1] == "reading run.mcap: 23 of 23 s"
+    assert gathered[len(gathered) // 2 - 1] == "reading run.mcap: 23 s"
+    assert gathered[0] == "reading run.mcap: 10 s"

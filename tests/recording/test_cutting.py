@@ -65,7 +65,7 @@ def test_a_stretch_that_begins_between_samples_counts_from_its_first() -> None:
     ("start", "times", "values"),
     [
         (0.75, [0.0, 0.25, 0.5], [5.0, 6.0, 7.0]),  # the one before holds
-        (1.0, [0.0, 0.25], [6.0, 7.0]),  # one at the start stands for itself
+        (1.0, [0.0, 0.25], [6.0, 7.0]),  # one at the start counts alone
         (1.3, [0.0], [7.0]),
         (0.0, [0.5, 1.0, 1.25], [5.0, 6.0, 7.0]),  # none before: nothing holds
     ],
@@ -96,7 +96,7 @@ A, B, C = 1e-12, 5e-12, 9e-12
 
 
 @pytest.mark.parametrize(
-    ("changes", "start", "end", "told"),
+    ("changes", "start", "end", "expected"),
     [
         (((2.0, A), (5.0, B)), 0.0, 10.0, ((0.0, A), (2.0, A), (5.0, B))),  # before its first word: what that says
         (((2.0, A), (5.0, B)), 1.0, 4.0, ((0.0, A), (1.0, A))),
@@ -109,6 +109,6 @@ A, B, C = 1e-12, 5e-12, 9e-12
     ],
 )
 def test_a_stretch_tells_what_was_in_force_and_what_changed(
-    changes: tuple[tuple[float, float], ...], start: float, end: float, told: tuple[tuple[float, float], ...]
+    changes: tuple[tuple[float, float], ...], start: float, end: float, expected: tuple[tuple[float, float], ...]
 ) -> None:
-    assert leakage_within(changes, start, end) == told
+    assert leakage_within(changes, start, end) == expected

@@ -219,7 +219,7 @@ def test_damaged_chunks_are_counted_with_their_messages(tmp_path: Path, sound: b
         content[index.chunk_start_offset + index.chunk_length - 20] ^= 1
     recording = read_bytes(tmp_path, bytes(content))
     assert recording is not None and recording.damaged is not None
-    told = recording.damaged.split("; ")
-    assert told[0] == f"damaged chunks left out: {len(numbers)}"
-    assert told[1] == f"{80 * len(numbers)} of 3200 messages are missing"
+    remarks = recording.damaged.split("; ")
+    assert remarks[0] == f"damaged chunks left out: {len(numbers)}"
+    assert remarks[1] == f"{80 * len(numbers)} of 3200 messages are missing"
     assert len(recording.channels["position"].time) == 800 - 20 * len(numbers)

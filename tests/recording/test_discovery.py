@@ -33,7 +33,7 @@ LEAKAGES = ["/a/internal_leakage", "/b/internal_leakage"]
         ({"position": "/a/joint_states", "pressure_a": "/b/chamber_a/pressure"}, LEAKAGES[1:], "/b/internal_leakage"),
         ({"position": "/c/joint_states"}, LEAKAGES, None),
         ({"position": "/c/joint_states"}, LEAKAGES[:1], "/a/internal_leakage"),
-        ({"position": "/laser"}, LEAKAGES, None),  # no namespace can be told from it
+        ({"position": "/laser"}, LEAKAGES, None),  # no namespace can be found from it
         ({"position": "/laser", "velocity": "/b/joint_states"}, LEAKAGES, "/b/internal_leakage"),
         ({"current": "/a/current", "position": "/b/joint_states"}, LEAKAGES, "/b/internal_leakage"),
         ({"position": "/a/joint_states"}, ["/a/no_internal_leakage", "/a/internal_leakage/raw"], None),

@@ -154,7 +154,7 @@ def test_a_command_holds_for_an_hour(before: int, is_kept: bool) -> None:
 
 
 def test_the_longest_is_one_that_is_measured_where_one_is() -> None:
-    """However often the command was sent; alone it stands for itself."""
+    """However often the command was sent; alone it counts as it is."""
     channels = {"voltage_command": series(5 * HOUR, 500), "position": series(0, 10)}
     assert list(on_one_span(channels, channels, ("voltage_command",))[0]) == ["position"]
     alone = {"voltage_command": series(0, 5)}

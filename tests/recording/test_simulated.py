@@ -143,12 +143,12 @@ def test_the_leakage_is_told_from_the_start_and_from_where_it_was_set(tmp_path: 
     record = simulate(Experiment(TIMES, VOLTAGES, 0.4, {"internal_leakage": 5e-12}, changes))
     path = tmp_path / "run.mcap"
     write_simulated(path, record)
-    told = read_recording(path).leakage_changes
-    assert told == ((0.0, 5e-12), (period / 500.0, 1e-9), ((period + 1) / 500.0, 2e-9))
+    changes = read_recording(path).leakage_changes
+    assert changes == ((0.0, 5e-12), (period / 500.0, 1e-9), ((period + 1) / 500.0, 2e-9))
 
 
 def test_a_change_counts_from_the_first_instant_of_publishing_that_has_come() -> None:
-    """At 500 Hz: 3.9 ms is told at 4 ms, 4 ms at 4 ms; at the record's end and beyond nothing changes."""
+    """At 500 Hz: 3.9 ms is noted at 4 ms, 4 ms at 4 ms; at the record's end and beyond nothing changes."""
     changes = [(0.004, "damping_coefficient", 9.0), (0.0039, "moving_mass", 12.0), (0.02, "damping_coefficient", 1.0)]
     record = simulate(Experiment(TIMES, VOLTAGES, 0.02, {}, [*changes, (1.0, "moving_mass", 1.0)]))
     assert record.changes == [(4_000_000, "moving_mass", 12.0), (4_000_000, "damping_coefficient", 9.0)]

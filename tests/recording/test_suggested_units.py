@@ -82,8 +82,8 @@ def test_a_pressure_is_gauge_where_it_says_so_or_none_can_be_so_low(
     low: float, unit: str, references: list[str]
 ) -> None:
     found = of_table(a_column("druck_kolben", low, 60.0, unit))
-    told = [(one.unit, one.reference) for one in found.certain if one.channel == "pressure_a"]
-    assert told == [("bar", reference) for reference in references]
+    pressures = [(one.unit, one.reference) for one in found.certain if one.channel == "pressure_a"]
+    assert pressures == [("bar", reference) for reference in references]
     assert found.questions == ()
     is_word = unit != "bar" or low < -0.2
     assert [one.assumed for one in found.certain if one.channel == "pressure_a"] == [

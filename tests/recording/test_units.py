@@ -59,11 +59,11 @@ def test_one_impossible_sample_in_a_hundred_is_left_out_and_two_are_a_unit() -> 
 
 
 def test_pressures_become_those_above_the_atmosphere() -> None:
-    absolute, told = scaled("pressure_a", [1e6, 2e6])
-    assert absolute.values.tolist() == [1e6 - ATMOSPHERE, 2e6 - ATMOSPHERE] and "taken as absolute" in told[0]
+    absolute, remarks = scaled("pressure_a", [1e6, 2e6])
+    assert absolute.values.tolist() == [1e6 - ATMOSPHERE, 2e6 - ATMOSPHERE] and "taken as absolute" in remarks[0]
     assert scaled("pressure_a", [1e6, 2e6], reference=ABSOLUTE)[1] == ()
-    gauge, told = scaled("pressure_a", [10.0, 20.0], scale=1e5, offset=5.0, reference=GAUGE)
-    assert gauge.values.tolist() == [1e6 + 5.0, 2e6 + 5.0] and told == ()
+    gauge, remarks = scaled("pressure_a", [10.0, 20.0], scale=1e5, offset=5.0, reference=GAUGE)
+    assert gauge.values.tolist() == [1e6 + 5.0, 2e6 + 5.0] and remarks == ()
     with pytest.raises(RecordingError, match="mostly negative"):
         scaled("pressure_a", [-1e6, -1e6, 1e6], reference=ABSOLUTE)
     scaled("pressure_a", [-1e6, -1e6, 1e6], reference=GAUGE)

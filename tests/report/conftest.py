@@ -128,7 +128,7 @@ def residual(position: float, pressure: float) -> Residual:
 
 @pytest.fixture(scope="session")
 def several(friction: Diagnosis) -> Diagnosis:
-    """Three effects, with what each is worth; the overlap's edge is not told from a sharp one."""
+    """Three effects, with what each is worth; the overlap's edge is not distinguished from a sharp one."""
     overlap = {"half_width": FittedValue(5.96e-5, 4.3e-7, "A"), "rounding": FittedValue(0.0, 3.2e-5, "A")}
     effects = (
         NamedEffect("valve_deadband", "orifice", "opening = ...", overlap, 9000.0, "the lands overlap: 59.6 µA"),
@@ -152,11 +152,11 @@ def several(friction: Diagnosis) -> Diagnosis:
         "coulomb_friction": residual(9.0, 8.0),
         "constant_load": residual(6.0, 5.0),
     }
-    told = Correlation(
+    pair = Correlation(
         ("valve_gain", "valve_deadband.half_width", "constant_load.force"),
         ((1.0, 0.95, 0.1), (0.95, 1.0, -0.2), (0.1, -0.2, 1.0)),
     )
-    return replace(friction, effects=effects, steps=steps, without=without, correlation=told)
+    return replace(friction, effects=effects, steps=steps, without=without, correlation=pair)
 
 
 @pytest.fixture(scope="session")

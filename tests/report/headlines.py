@@ -41,9 +41,9 @@ def hold_against(page: str, document: Document) -> None:
     """Every headline and every answer at the top of a page against the document's numbers."""
     for stage, text in headlines(page).items():
         for pattern, check in CHECKS[stage].items():
-            told = re.fullmatch(pattern, text)
-            if told:
-                check(document, told)
+            match = re.fullmatch(pattern, text)
+            if match:
+                check(document, match)
                 break
         else:
             raise AssertionError(f"nothing holds {text!r} of {stage} against a number")
@@ -76,10 +76,10 @@ def titles(document: Document) -> list[str]:
     return [one["id"].replace("_", " ") for one in document["effects"]]
 
 
-def _named(document: Document, told: re.Match[str]) -> None:
+def _named(document: Document, match: re.Match[str]) -> None:
     """All effects and no other are named; where values stand beside them, they are the fitted ones, 1.96 deviations
     to either side."""
-    text = told[0].lower()
+    text = match[0].lower()
     assert all(title in text for title in titles(document))
     counted = re.search(r"leaves out (\w+) effects", text)
     assert counted is None or COUNTS.index(counted[1]) == len(document["effects"])
@@ -89,15 +89,15 @@ def _named(document: Document, told: re.Match[str]) -> None:
     law = document["unknown"]
     assert ("a law over" in text) == (law is not None)
     assert law is None or f"a law over {law['function_of']} that the catalogue does not name" in text
-    _values(document, told)
+    _values(document, match)
 
 
-def _values(document: Document, told: re.Match[str]) -> None:
+def _values(document: Document, match: re.Match[str]) -> None:
     fitted = [
         (name.replace("_", " "), one) for effect in document["effects"] for name, one in effect["parameters"].items()
     ]
-    shown = re.findall(r"([a-z ]+) (-?[\d.,]+) ± ([\d.,]+) (\S+?)[),;]", told[0])
-    assert bool(shown) == ("±" in told[0])
+    shown = re.findall(r"([a-z ]+) (-?[\d.,]+) ± ([\d.,]+) (\S+?)[),;]", match[0])
+    assert bool(shown) == ("±" in match[0])
     for name, value, half, unit in shown:
         size, wide = (float(one.replace(",", "")) for one in (value, half))
         rows = [one for title, one in fitted if title == name.strip()]
@@ -108,69 +108,69 @@ def _values(document: Document, told: re.Match[str]) -> None:
         ), (name, value, half, unit)
 
 
-def _nothing_missing(document: Document, told: re.Match[str]) -> None:
+def _nothing_missing(document: Document, match: re.Match[str]) -> None:
     assert not document["effects"]
     assert document["verdict"] in ("consistent", "parameters")
 
 
-def _something_missing(document: Document, told: re.Match[str]) -> None:
+def _something_missing(document: Document, match: re.Match[str]) -> None:
     assert document["verdict"] == "unknown_physics"
     assert not document["effects"]
 
 
-def _recorded(document: Document, told: re.Match[str]) -> None:
-    assert abs(float(told[1]) - document["recording"]["duration_s"]) <= 0.05
+def _recorded(document: Document, match: re.Match[str]) -> None:
+    assert abs(float(match[1]) - document["recording"]["duration_s"]) <= 0.05
     pairs = {"both chamber pressures": ("pressure_a", "pressure_b"), "both chamber flows": ("flow_a", "flow_b")}
-    for title in re.split(r", | and ", told[2]):
+    for title in re.split(r", | and ", match[2]):
         names = pairs.get(title, (title.replace(" ", "_"),))
         assert set(names) <= set(document["recording"]["channels"]), title
 
 
-def _changed(document: Document, told: re.Match[str]) -> None:
+def _changed(document: Document, match: re.Match[str]) -> None:
     """The parameters named have left their nominal values beyond their intervals, and so has each that is counted."""
     changed = [one for one in document["parameters"] if one["changed"]]
     assert changed
     assert all(abs(one["fitted"] - one["nominal"]) > 1.96 * one["std"] for one in changed)
-    if told[0][0].isdigit():
-        assert int(told[1]) == len(changed)
+    if match[0][0].isdigit():
+        assert int(match[1]) == len(changed)
     else:
-        assert {one.lower() for one in re.split(r", | and ", told[1])} == {
+        assert {one.lower() for one in re.split(r", | and ", match[1])} == {
             one["name"].replace("_", " ").replace("@", ", recording ") for one in changed
         }
 
 
-def _unchanged(document: Document, told: re.Match[str]) -> None:
+def _unchanged(document: Document, match: re.Match[str]) -> None:
     assert not any(one["changed"] for one in document["parameters"])
 
 
-def _located(document: Document, told: re.Match[str]) -> None:
+def _located(document: Document, match: re.Match[str]) -> None:
     first = document["location"][0]
-    assert float(told[1]) / 100.0 == round(first["share"], 2)
+    assert float(match[1]) / 100.0 == round(first["share"], 2)
     assert first["share"] == max(one["share"] for one in document["location"])
-    spans = re.search(r"in (\d+) spans of time, the first from ([\d.]+) s", told[0])
+    spans = re.search(r"in (\d+) spans of time, the first from ([\d.]+) s", match[0])
     if spans:
         assert int(spans[1]) == len(first["when"])
         assert abs(float(spans[2]) - first["when"][0][0]) <= 0.051
-    shown = re.search(r"from ([\d.]+) s to ([\d.]+) s", told[0])
+    shown = re.search(r"from ([\d.]+) s to ([\d.]+) s", match[0])
     if shown:
         assert np.allclose([float(shown[1]), float(shown[2])], first["when"][0], atol=0.01)
 
 
-def _no_location(document: Document, told: re.Match[str]) -> None:
+def _no_location(document: Document, match: re.Match[str]) -> None:
     assert not document["location"]
 
 
-def _best(document: Document, told: re.Match[str]) -> None:
+def _best(document: Document, match: re.Match[str]) -> None:
     """What the evidence points to has the highest score of all, and by how much the verdict says."""
     assert document["effects"]
-    assert ("a law that the catalogue does not name" in told[0]) == (document["unknown"] is not None)
-    assert all(title in told[0].lower() for title in titles(document))
+    assert ("a law that the catalogue does not name" in match[0]) == (document["unknown"] is not None)
+    assert all(title in match[0].lower() for title in titles(document))
     chosen = {one["id"] for one in document["effects"]}
     scores = {frozenset(one["effects"]): one["score"] for one in document["rivals"]}
     if frozenset(chosen) in scores:
         assert scores[frozenset(chosen)] >= 10.0
         assert scores[frozenset(chosen)] == max(scores.values()) or document["verdict"] == "ambiguous"
-    assert bool(document["alternatives"]) == ("not the only one" in told[0])
+    assert bool(document["alternatives"]) == ("not the only one" in match[0])
 
 
 def _named_alone(document: Document) -> None:
@@ -178,20 +178,20 @@ def _named_alone(document: Document) -> None:
     assert document["effects"]
 
 
-def _law(document: Document, told: re.Match[str]) -> None:
-    assert document["unknown"]["function_of"] == told[1]
+def _law(document: Document, match: re.Match[str]) -> None:
+    assert document["unknown"]["function_of"] == match[1]
     assert document["unknown"]["r_squared"] > 0.5
 
 
-def _stands(document: Document, told: re.Match[str]) -> None:
+def _stands(document: Document, match: re.Match[str]) -> None:
     assert not document["effects"]
     assert document["unknown"] is None
-    assert (told[1] == "with the fitted parameters") == (document["verdict"] == "parameters")
+    assert (match[1] == "with the fitted parameters") == (document["verdict"] == "parameters")
 
 
-def _rest(document: Document, told: re.Match[str] | None) -> None:
-    assert told is not None
-    text = told[1].lower()
+def _rest(document: Document, match: re.Match[str] | None) -> None:
+    assert match is not None
+    text = match[1].lower()
     if text == "noise":
         assert ratio(document) < NOISE
         assert is_white(document)
@@ -219,16 +219,16 @@ def _better(document: Document, answer: str, basis: str) -> None:
     shown = re.findall(r"([\d.,]+) (\S+)", f"{answer} {basis.rpartition('noise is ')[2].rstrip('.')}")
     name = "position" if "position" in judged(document) else next(iter(judged(document)))
     fit = judged(document)[name]
-    told = [float(one.replace(",", "")) * SCALES[unit] for one, unit in shown]
-    assert np.allclose(told, [fit["rmse_before"], fit["rmse_after"], fit["noise"]], rtol=6e-3)
+    match = [float(one.replace(",", "")) * SCALES[unit] for one, unit in shown]
+    assert np.allclose(match, [fit["rmse_before"], fit["rmse_after"], fit["noise"]], rtol=6e-3)
     assert ("kept from the fit" in basis) == bool(document["fit"]["held_out"])
 
 
 def _close(document: Document, answer: str, basis: str) -> None:
     shown = re.findall(r"([\d.,]+) (\S+)", f"{answer} {basis.rpartition('noise is ')[2].rstrip('.')}")
     name = "position" if "position" in judged(document) else next(iter(judged(document)))
-    told = [float(one.replace(",", "")) * SCALES[unit] for one, unit in shown]
-    assert np.allclose(told, [judged(document)[name][one] for one in ("rmse_before", "noise")], rtol=6e-3)
+    match = [float(one.replace(",", "")) * SCALES[unit] for one, unit in shown]
+    assert np.allclose(match, [judged(document)[name][one] for one in ("rmse_before", "noise")], rtol=6e-3)
 
 
 def _sure(document: Document, answer: str, basis: str) -> None:
@@ -252,15 +252,15 @@ def _sure(document: Document, answer: str, basis: str) -> None:
     assert gaps[0] >= TOLD_APART
 
 
-def _test(document: Document, told: re.Match[str]) -> None:
+def _test(document: Document, match: re.Match[str]) -> None:
     separates = document["next_experiment"]["separates"]
-    assert [one.replace("_", " ") for one in separates[:2]] == [told[1].lower(), told[2].lower()]
+    assert [one.replace("_", " ") for one in separates[:2]] == [match[1].lower(), match[2].lower()]
 
 
-def _no_test(document: Document, told: re.Match[str]) -> None:
+def _no_test(document: Document, match: re.Match[str]) -> None:
     assert document["next_experiment"] is None
     settled = document["verdict"] not in ("ambiguous", "unknown_physics")
-    assert settled == ("needed" in told[0])
+    assert settled == ("needed" in match[0])
 
 
 CHECKS: Mapping[str, Mapping[str, Check]] = {
@@ -289,7 +289,7 @@ CHECKS: Mapping[str, Mapping[str, Check]] = {
     "model": {
         r"A law over (.*) is missing": _law,
         r"The model stands (.*)": _stands,
-        r".*": lambda document, told: (_named_alone(document), _values(document, told))[0],
+        r".*": lambda document, match: (_named_alone(document), _values(document, match))[0],
     },
     "show": {r"What is left is (.*)": _rest},
     "next": {

@@ -45,7 +45,7 @@ def test_rivals_and_the_test_that_separates_them(ambiguous: Diagnosis) -> None:
 
 def test_an_unknown_law_is_told_with_its_expression(unknown: Diagnosis) -> None:
     assert "a law over velocity: 250 tanh(20 v) (R² 0.980)" in account(unknown)
-    assert "biased, it may be" in " ".join(account(unknown).split())
+    assert "may be biased by the missing effect" in " ".join(account(unknown).split())
     simulated = replace(unknown, fitted_values={**unknown.fitted_values, "recovered_force.knot_00": 3.0})
     assert "biased" not in account(simulated)
 

@@ -65,10 +65,10 @@ def test_white_noise_is_seldom_called_coloured_and_a_drift_always() -> None:
 def test_an_improvement_is_told_in_the_figures_own_numbers(friction: Diagnosis, ratio: float) -> None:
     made = diagnosis_with(friction, ratio, 1.0)
     text = improvement(made)
-    told = [float(value) * SCALES[unit] for value, unit in re.findall(r"([\d.]+) (µm|mm|nm)", text)]
+    stated = [float(value) * SCALES[unit] for value, unit in re.findall(r"([\d.]+) (µm|mm|nm)", text)]
     fit = made.held_out["position"]
     expected = [fit.rmse_before, fit.rmse_after]
-    assert told[:2] == pytest.approx(expected, rel=5e-3)
+    assert stated[:2] == pytest.approx(expected, rel=5e-3)
     assert ("falls" in text) == (fit.rmse_after < fit.rmse_before)
     assert ("that is its noise" in text) == (ratio == 1.0)
     assert "that is its noise" not in improvement(diagnosis_with(friction, 1.0, 9.0))
@@ -147,7 +147,7 @@ def test_an_explanation_that_is_not_complete_says_so_first(friction: Diagnosis) 
     text = " ".join(supporting(partly))
     assert "explains 91.2 % of what" in text
     assert (
-        "more is missing, most likely in the valve's flow: what is left is up to 3.21 times the noise, in position"
+        "more is missing, most likely in the valve's flow: the residual is up to 3.21 times the noise, in position"
         in text
     )
     whole = explaining(friction, explained=SimpleNamespace(share=0.9996, times_noise={"position": 1.0}, complete=True))

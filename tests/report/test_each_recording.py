@@ -32,7 +32,7 @@ OWN = {
 
 
 @pytest.mark.parametrize(
-    ("composition", "headings", "cells", "told"),
+    ("composition", "headings", "cells", "remark"),
     [
         (
             compose("switched_pump", "single_rod"),
@@ -50,7 +50,7 @@ OWN = {
     ids=["pump", "vane"],
 )
 def test_values_of_a_recording_are_called_as_in_their_parts(
-    friction: Diagnosis, composition: Composition, headings: tuple[str, ...], cells: tuple[str, ...], told: str
+    friction: Diagnosis, composition: Composition, headings: tuple[str, ...], cells: tuple[str, ...], remark: str
 ) -> None:
     fit = {"position": ChannelFit(9e-4, 5e-4, 1.02e-5, 1e-5)}
     together = (RecordingFit("bags/a.mcap", OWN[composition.source.id], fit),)
@@ -59,7 +59,7 @@ def test_values_of_a_recording_are_called_as_in_their_parts(
     assert table.headings == ("recording", "position [× noise]", *headings)
     assert table.rows == (("a.mcap", "1.02", *cells),)
     line = next(one for one in account(diagnosis).splitlines() if "a.mcap: position" in one)
-    assert line.endswith(f"on held-out data; {told}")
+    assert line.endswith(f"on held-out data; {remark}")
     assert headings[0] in page(diagnosis)
 
 

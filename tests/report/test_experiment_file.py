@@ -48,10 +48,10 @@ def test_the_page_names_the_causes_in_words_and_its_commands_fit_their_lines(amb
 def test_where_no_voltage_drives_the_rig_the_report_says_why_there_is_none(
     ambiguous: Diagnosis, tmp_path: Path
 ) -> None:
-    told = not_proposed([("coulomb_friction",), ("stribeck_friction",)], ("flow_a", "flow_b"), "measured_flow")
-    assert told.separates == ("coulomb_friction", "stribeck_friction")
-    assert "flow_a and flow_b of measured_flow" in told.statement and "\n" not in told.statement
-    without = replace(ambiguous, next_experiment=told)
+    refusal = not_proposed([("coulomb_friction",), ("stribeck_friction",)], ("flow_a", "flow_b"), "measured_flow")
+    assert refusal.separates == ("coulomb_friction", "stribeck_friction")
+    assert "flow_a and flow_b of measured_flow" in refusal.statement and "\n" not in refusal.statement
+    without = replace(ambiguous, next_experiment=refusal)
     assert tmp_path / "next_experiment.yaml" not in write_report(without, tmp_path)
     assert not (tmp_path / "next_experiment.yaml").exists()
     page = (tmp_path / "report.html").read_text()

@@ -26,8 +26,8 @@ def ill(friction: Diagnosis, *faults: Fault) -> Diagnosis:
 
 def test_the_terminal_names_channel_span_and_remedy_before_the_verdict(friction: Diagnosis) -> None:
     text = " ".join(account(ill(friction, FROZEN)).split())
-    told = "position: frozen at 0.1 m, from 2 s to 3 s (excluded); see why the sensor repeats its value"
-    assert told in text and text.index(told) < text.index("Verdict")
+    reported = "position: frozen at 0.1 m, from 2 s to 3 s (excluded); see why the sensor repeats its value"
+    assert reported in text and text.index(reported) < text.index("Verdict")
     assert "Health" not in account(friction)
     assert "frozen at 0.1" in str(summarise(ill(friction, FROZEN)))
     assert any("frozen" in sentence for sentence in read.stage(ill(friction, FROZEN)).sentences)

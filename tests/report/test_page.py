@@ -112,7 +112,7 @@ def test_the_ladder_has_every_rung_its_distance_and_the_model_that_adds_nothing(
     (bars,) = (mark for mark in panel.marks if isinstance(mark, Bars))
     assert bars.texts == ("best", "31 behind", "5,321 behind", "5,333 behind")
     (threshold,) = (mark for mark in panel.marks if isinstance(mark, Upright))
-    assert bars.x[0] < threshold.x < bars.x[1]  # 31 are told apart
+    assert bars.x[0] < threshold.x < bars.x[1]  # 31 are distinguished
     assert "turbulent leakage" in picture.caption
 
 
@@ -120,12 +120,12 @@ def test_where_it_comes_from_stands_on_the_page_and_in_json(friction: Diagnosis,
     file = tmp_path / "rig.csv"
     file.write_bytes(b"time,position\n0,1\n")
     recording = SimpleNamespace(path=file)
-    told = with_provenance(friction, [recording], "nominal.yaml", "eha diagnose rig.csv")
-    assert told.provenance["recording_sha256"] == hashlib.sha256(file.read_bytes()).hexdigest()
-    text = page(told)
-    for value in (*told.provenance.values(), eha_core.__version__):
+    shown = with_provenance(friction, [recording], "nominal.yaml", "eha diagnose rig.csv")
+    assert shown.provenance["recording_sha256"] == hashlib.sha256(file.read_bytes()).hexdigest()
+    text = page(shown)
+    for value in (*shown.provenance.values(), eha_core.__version__):
         assert value in text
-    assert json.loads(as_json(told))["provenance"] == dict(told.provenance)
+    assert json.loads(as_json(shown))["provenance"] == dict(shown.provenance)
     recording = SimpleNamespace(path=tmp_path / "absent")
     assert with_provenance(friction, [recording]).provenance["recording_sha256"] == "-"
 
@@ -170,10 +170,10 @@ def test_points_are_explained_where_there_are_some() -> None:
     x = np.array([-0.1, 0.1])
     law = Law("Constant load", Axis("velocity", "m/s"), Axis("Force", "N"), x, x, x, x)
     diagnosis: Any = None  # not asked, where its laws are given
-    for one, told in ((law, False), (replace(law, points_x=x, points_y=x), True)):
+    for one, shown in ((law, False), (replace(law, points_x=x, points_y=x), True)):
         picture = law_picture(diagnosis, {"constant_load": one})
         assert picture is not None
-        assert ("Points:" in picture.caption) == told
+        assert ("Points:" in picture.caption) == shown
 
 
 def test_a_per_cent_sign_stands_apart_from_its_number(friction: Diagnosis) -> None:
@@ -184,8 +184,8 @@ def test_a_per_cent_sign_stands_apart_from_its_number(friction: Diagnosis) -> No
 
 def test_parameters_that_are_hardly_told_are_as_many_as_the_sentence_says(friction: Diagnosis) -> None:
     def said(*names: str) -> str:
-        told = tuple(replace(one, note="held" if one.name in names else "") for one in friction.parameters)
-        stage = {one.name: one for one in report_stages(replace(friction, parameters=told))}["calibrate"]
+        shown = tuple(replace(one, note="held" if one.name in names else "") for one in friction.parameters)
+        stage = {one.name: one for one in report_stages(replace(friction, parameters=shown))}["calibrate"]
         return " ".join(stage.sentences)
 
     first, second = (one.name for one in friction.parameters[:2])
@@ -209,16 +209,16 @@ def test_hypotheses_whose_fits_stopped_short_are_said_to_have(friction: Diagnosi
 
 
 def test_where_nothing_is_named_no_hypothesis_has_the_colour_of_a_name(unknown: Diagnosis, friction: Diagnosis) -> None:
-    def told(diagnosis: Diagnosis) -> tuple[set[str], str]:
+    def shown(diagnosis: Diagnosis) -> tuple[set[str], str]:
         picture = evidence_picture(diagnosis)
         (bars,) = (mark for mark in picture.groups[0].panels[0].marks if isinstance(mark, Bars))
         return set(bars.roles), picture.caption
 
     scored = replace(unknown, rivals=((("quadratic_damping",), 2e4), (("coulomb_friction",), 1e4)))
-    roles, caption = told(scored)
+    roles, caption = shown(scored)
     assert roles == {"other"}
     assert "None of these explains enough" in caption and "what was named" not in caption
-    roles, caption = told(friction)
+    roles, caption = shown(friction)
     assert "after" in roles and "what was named" in caption
 
 

@@ -1,4 +1,4 @@
-"""Several effects told one by one: the order, the values, and what each is worth."""
+"""Several effects listed one by one: the order, the values, and what each is worth."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def test_what_is_not_told_from_nothing_is_no_finding(several: Diagnosis) -> None
         assert "rounding" not in text
     table = {one.name: one for one in report_stages(several)}["model"].tables[0]
     assert table.rows[1][0] == "valve_deadband.rounding"
-    assert table.rows[1][-1] == "not told from zero"
+    assert table.rows[1][-1] == "not distinguished from zero"
 
 
 def test_what_is_left_is_said_with_its_size_and_its_colour(several: Diagnosis) -> None:

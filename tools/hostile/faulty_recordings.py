@@ -33,7 +33,7 @@ class FaultKind:
     """A kind of fault: its name, the words under which it may be found, in which channel, and how it is made."""
 
     name: str
-    told: tuple[str, ...]
+    expected: tuple[str, ...]
     channel: str
     make: Make
 
@@ -308,7 +308,7 @@ def faulty(kind: FaultKind, arrays: Mapping[str, tuple[FloatArray, FloatArray]],
 def verdict(kind: FaultKind, faults: Sequence[Fault], spans: tuple[Span, ...], time: FloatArray) -> str:
     """What came of a recording with a fault: whether it was found, with its channel and span."""
     own = [fault for fault in faults if fault.channel == kind.channel]
-    named = [fault for fault in own if fault.fault in kind.told]
+    named = [fault for fault in own if fault.fault in kind.expected]
     if not named:
         return f"reported as {own[0].fault}" if own else "not found"
     if spans and overlap(tuple(fault.span for fault in named), spans, time) < OVERLAP:

@@ -50,7 +50,7 @@ def try_mistakes(extent: Extent, seed: int) -> list[Row]:
             finding = check(make_wrong(mistake, rig, other, without), rig.nominal)
             if finding is None:
                 row.count("not found")
-            elif mistake.told in str(finding):
+            elif mistake.expected in str(finding):
                 row.count("found")
             else:
                 row.fail(f"{rig.case.name} of seed {seed}, {mistake.name} without {without}: {finding}")

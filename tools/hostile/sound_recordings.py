@@ -41,8 +41,8 @@ class Sound:
 def sound_recordings(seed: int, count: int) -> Iterator[Sound]:
     """Recordings of the exam's rigs, every tier and every kind in turn.
 
-    One in ten, and those of effects that the catalogue does not have or that act for a while, by the exam's independent
-    truth; the others by the simulated plant.
+    One in ten, and those of effects that the catalogue does not have or that act over an interval, by the exam's
+    independent truth; the others by the simulated plant.
     """
     for index, (tier, number) in enumerate(plan(count)):
         kind = list(KINDS)[index % len(KINDS)]

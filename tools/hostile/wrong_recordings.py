@@ -67,7 +67,7 @@ class Mistake:
     """A mistake: what it is, the words by which it is reported, and what it makes of a rig's channels."""
 
     name: str
-    told: str
+    expected: str
     make: Callable[[Rig, Rig], Arrays]
 
 

@@ -21,7 +21,7 @@ class NoMoreAnswers(Exception):
 
 
 def answered(suggestions: Suggestions) -> Suggestions:
-    """The suggestions with every question answered by a person; what is left when the answers end stays open."""
+    """The suggestions with every question answered by a person; the rest stays open when the answers end."""
     certain = list(suggestions.certain)
     left: list[Question] = []
     questions = list(suggestions.questions)

@@ -29,7 +29,7 @@ WIDTH = 100
 
 
 class Progress:
-    """Tells what is being tried, and what is left.
+    """Shows what is being tried, and the residual.
 
     Args:
         long: whether a whole record will be judged.

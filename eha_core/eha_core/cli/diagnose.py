@@ -55,7 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("--out", type=Path, metavar="DIR", help="folder for the report (default out/diagnosis/<recording>)")
     add("--json", metavar="FILE|-", help="write diagnosis.json there (- is standard output) and no report")
     add("--no-report", action="store_true", help="write diagnosis.json alone in place of the whole report")
-    add("--log", type=Path, metavar="FILE", help="what is tried and what is left, with times, into a file")
+    add("--log", type=Path, metavar="FILE", help="what is tried and its residual, with times, into a file")
     add("--jobs", type=int, default=2, metavar="N", help="threads, with --each processes, side by side (default 2)")
     add("--each", action="store_true", help="diagnose every recording on its own, and print a line for each")
     add("--dask", metavar="ADDRESS", help="with --each: a Dask scheduler whose workers see the same folders")
@@ -114,7 +114,7 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
         remark for recording in (*recordings, *tests) for remark in recording.remarks if remark.startswith("warning")
     ):
         print(f"eha diagnose: {warning}", file=sys.stderr)
-    # compilers and plotting load slowly; bad input should be told at once
+    # compilers and plotting load slowly; bad input should be reported at once
     from eha_core.diagnosis import diagnose_together
     from eha_core.long_record.judging import judged
     from eha_core.report.provenance import with_provenance
@@ -280,8 +280,8 @@ def diagnose_alone(
         (write_report if with_report else write_document)(diagnosis, folder)
     except EhaError as error:
         return path, UNUSABLE, str(error)
-    told = " ".join([diagnosis.summary, *(long_record.statement for long_record in diagnosis.long_records)])
-    return path, DAMAGED if record.damaged else 0, told
+    summary = " ".join([diagnosis.summary, *(long_record.statement for long_record in diagnosis.long_records)])
+    return path, DAMAGED if record.damaged else 0, summary
 
 
 def _write(path: Path, text: str) -> Path:

@@ -16,7 +16,7 @@ RESET_TIME = 0.1
 class Pid(Controller):
     """u = k (e + integral of e / T_i - T_d v), the derivative on the measurement alone.
 
-    T_d = L / R makes up for the coil's lag.
+    T_d = L / R compensates for the coil's lag.
     """
 
     def reset(self) -> None:

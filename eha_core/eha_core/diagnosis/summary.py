@@ -44,9 +44,9 @@ def summary(
     many = "One effect" if len(effects) == 1 else f"{len(effects)} effects"
     many += " and a law explain" if unknown else " explains" if len(effects) == 1 else " explain"
     rest = (
-        f"what is left is {left.times_noise[most]:.3g} times the noise, most in {most.replace('_', ' ')}"
+        f"the residual is {left.times_noise[most]:.3g} times the noise, most in {most.replace('_', ' ')}"
         if left.times_noise[most] >= LEFT_IN_A_CHANNEL
-        else "what is left is small, but no noise"
+        else "the residual is small, but no noise"
     )
     return f"{many} {100.0 * left.share:.3g} % of the mismatch; {rest}, so more is missing. {said}"
 
@@ -67,7 +67,7 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
             " + ".join(ids) for ids in (decision.winner.ids, *(entry.ids for entry, _ in decision.rivals))
         )
         return (
-            f"Physics is missing: {kind}; most simply, {named}. Its law cannot be told from this recording:"
+            f"Physics is missing: {kind}; most simply, {named}. Its law cannot be identified from this recording:"
             f" {forms} explain it alike."
         )
     if decision.verdict == "ambiguous":

@@ -29,7 +29,7 @@ class Effect:
     no recording can show the effect. Effects of one `kind` are forms of one law: never two of them are named together.
     `approximate` says that the literature writes the law in other ways too: where the name is right, the form can still
     leave something over. `zeros` are pairs of a parameter and the channel whose reading it shifts, which a topics file
-    can undo. `named` is False for a curve that stands for a law nobody has named. `id` is the file's name,
+    can undo. `named` is False for a curve in place of a law nobody has named. `id` is the file's name,
     filled in on discovery.
     """
 

@@ -6,7 +6,8 @@ Equation: time_constant_a y' + y = P1, y the measured P1; time_constant_b likewi
 Sign: positive is late.
 Validity: first-order filter. One whose order is higher, or a channel that is stamped late, has the same delay at the
 frequencies of the motion. Pressures that are both late by T look like those of a load that is lighter by T times its
-damping coefficient: a difference between the two chambers is told sharply, what they share under a light load is not.
+damping coefficient: a difference between the two chambers is identified sharply, what they share under a light
+load is not.
 Source: E. O. Doebelin, Measurement Systems, McGraw-Hill 1966, chapter 3 (first-order instruments).
 """
 

@@ -2,7 +2,7 @@
 
 Signature: extension and retraction differ in speed and in pressure, and the pressures at rest are not equal.
 Equation: A_b -> ratio A_b in (5) and (10); with Table 1's symmetric cylinder, A_b = ratio A_a.
-Sign: a ratio below 1 stands for a rod in chamber B.
+Sign: a ratio below 1 means a rod in chamber B.
 Validity: any cylinder; the volume of chamber B changes with its area.
 Source: M. Jelali, A. Kroll, Hydraulic Servo-systems, Springer 2003, chapter 4 (differential cylinders).
 """

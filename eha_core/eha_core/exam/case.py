@@ -28,8 +28,8 @@ class Case:
 
     Attributes:
         name: tier and number. tier: one of TIERS. family: of plants.FAMILIES. seed: what it was drawn from.
-        plant: the truth's values. nominal: what the diagnosis is told, by the same names.
-        effects: what is concealed, (id, parameters). windows: time spans [s] of effects that act for a while.
+        plant: the truth's values. nominal: what the diagnosis is given, by the same names.
+        effects: what is concealed, (id, parameters). windows: time spans [s] of effects that act over an interval.
         shape, amplitude [m], speed [m/s], loop [rad/s], loop_integral [1/s^2]: the test; loop 0 is an open loop.
         duration [s], rate [1/s]: of the recording. noise: multiple of 10 um and 0.01 MPa.
         position_step [m], pressure_step [Pa]: resolution of the sensors, 0 for none. jitter [s]: standard deviation of

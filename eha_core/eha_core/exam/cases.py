@@ -25,8 +25,8 @@ HIDDEN = 1.1
 FARTHEST = 0.5
 """Relative change of a nominal parameter beyond which nobody would believe a refit."""
 INDISTINCT = 0.2
-"""Nats that an oracle may gain beyond a rival in its windows where the two count as not told apart: over the whole
-recording, whose windows also meet, that is some ten times as much ..."""
+"""Log-likelihood that an oracle may gain beyond a rival in its windows where the two count as not distinguished: over
+the whole recording, whose windows also meet, that is some ten times as much ..."""
 AIMED_AT = 0.1
 """... and those that an effect is made so small as to gain."""
 MAKERS = (

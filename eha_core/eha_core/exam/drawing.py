@@ -1,4 +1,4 @@
-"""Cases drawn from a seed: which rig, which test, what is concealed in it and what the diagnosis is told."""
+"""Cases drawn from a seed: which rig, which test, what is concealed in it and what the diagnosis is given."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ WINDOWED = (
     "quadratic_damping",
     "pressure_sensor_bias",
 )
-"""Effects that a rig can have for a while: a seal that drags, a load that hangs, a valve that a relief opens."""
+"""Effects that a rig can have over an interval: a seal that drags, a load that hangs, a valve that a relief opens."""
 
 TWINS = (
     ("constant_load", "flow_gain_asymmetry"),

@@ -29,7 +29,7 @@ def recording_name(case: Case) -> str:
 
 
 def write_case(case: Case, arrays: Arrays, path: Path) -> None:
-    """Write the recording of a case as MCAP, with the nominal parameters the diagnosis is told."""
+    """Write the recording of a case as MCAP, with the nominal parameters the diagnosis is given."""
     atmosphere = case.nominal["atmospheric_pressure"]
     messages = sorted(_messages(arrays, atmosphere), key=lambda message: message[0])
     with RecordingWriter(path, parameters=case.nominal, flush_period=60.0) as writer:

@@ -116,7 +116,7 @@ class _Imitation:
 
     changes: Array
     shifts: Array
-    nats: float
+    misfit: float
 
 
 def as_soft(model: Doubted) -> Array:
@@ -140,7 +140,7 @@ def left_by_the_best(model: Doubted, starts: Sequence[int], begin: Array, enough
     except EhaError:  # no such rig can be integrated
         return np.inf
     for _ in range(STEPS):
-        if at.nats < enough:
+        if at.misfit < enough:
             break
         pairs = zip(starts, at.shifts, strict=True)
         try:
@@ -151,7 +151,7 @@ def left_by_the_best(model: Doubted, starts: Sequence[int], begin: Array, enough
         if better is None:
             break
         at = better
-    return at.nats
+    return at.misfit
 
 
 def _imitation(model: Doubted, starts: Sequence[int], changes: Array, shifts: Array) -> _Imitation:
@@ -159,8 +159,8 @@ def _imitation(model: Doubted, starts: Sequence[int], changes: Array, shifts: Ar
         model.recorded(first) - model.simulated(first, changes, shift)
         for first, shift in zip(starts, shifts, strict=True)
     ]
-    nats = 0.5 * float(np.sum(np.square(left)) + np.sum((changes / TRUST) ** 2))
-    return _Imitation(changes, shifts, nats)
+    misfit = 0.5 * float(np.sum(np.square(left)) + np.sum((changes / TRUST) ** 2))
+    return _Imitation(changes, shifts, misfit)
 
 
 def _better(
@@ -173,7 +173,7 @@ def _better(
             tried = _imitation(model, starts, there, at.shifts + share * shifts)
         except EhaError:  # no such rig can be integrated
             continue
-        if tried.nats < LESS * at.nats:
+        if tried.misfit < LESS * at.misfit:
             return tried
     return None
 

@@ -40,7 +40,7 @@ FREE = 1e3
 """Scale of the rival's column, with which its size is as good as free."""
 DECIDABLE = 25.0
 """Nats. A case from which the oracle gains less is undecidable: several hypotheses with free sizes compete, and each
-parameter they spend costs half the logarithm of the number of samples, about 5 nats."""
+parameter they spend costs half the logarithm of the number of samples, about 5."""
 
 NEARLY = 2e-4
 """Share of the mark's energy below which what a linearised imitation leaves an exact one may not: where that takes
@@ -52,7 +52,7 @@ changes of a tenth, a hundredth of the mark's size is left, a ten-thousandth of 
 class Insight:
     """What the oracle sees.
 
-    `gain`: log-likelihood [nats] that the concealed form gains over the nominal equations at their best.
+    `gain`: log-likelihood that the concealed form gains over the nominal equations at their best.
     `residual`: RMS of what they cannot imitate, over the noise. `imitation`: relative changes of the nominal parameters
     that imitate the effect best. `beyond_rival`: the gain over the nominal equations with the rival effect.
     """

@@ -97,7 +97,7 @@ def draw_rig(family: str, generator: np.random.Generator) -> Rig:
 
 
 def draw_nominal(rig: Rig, generator: np.random.Generator, error: float, mistakes: bool) -> dict[str, float]:
-    """What the diagnosis is told: uncertain values off by up to `error`, with `mistakes` those of the label too."""
+    """What the diagnosis is given: uncertain values off by up to `error`, with `mistakes` those of the label too."""
     nominal = {name: value for name, value in rig.values.items() if name != "transition_pressure"}
     for name in UNCERTAIN:
         nominal[name] *= float(1.0 + generator.uniform(-error, error))

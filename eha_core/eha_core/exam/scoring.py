@@ -129,8 +129,8 @@ def _outcome(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[
     Where the recording cannot hold enough to tell (an oracle that knows the form gains too little), not naming anything
     is right, and so is leaving out of several effects those that cannot be seen beside the others. Where it cannot tell
     the truth from a rival, the right answer is to say so: a name is a guess, and wrong even when lucky. An effect that
-    acts for a while may be located without a name, which is to abstain. Nothing missing: "consistent" and "parameters"
-    claim no physics, and either is right.
+    acts over an interval may be located without a name, which is to abstain. Nothing missing: "consistent" and
+    "parameters" claim no physics, and either is right.
     """
     if verdict == "none":
         return "failed"
@@ -161,8 +161,8 @@ def _is_told(case: Case, named: set[str]) -> bool:
 
 
 def _named_and_unknown(case: Case, verdict: str, named: Sequence[str], diagnosis: Mapping[str, Any]) -> str:
-    """One effect of the catalogue and one law outside of it: right where both are told apart, or named where effects of
-    the catalogue express that law; abstained where a site of theirs is told and nothing false is named."""
+    """One effect of the catalogue and one law outside of it: right where both are distinguished, or named where effects
+    of the catalogue express that law; abstained where a site of theirs is located and nothing false is named."""
     if verdict == "missing_physics" and set(named) in accepted(case):
         return "right"
     known = {name for name in case.effect_ids if name not in OUTSIDE}
@@ -180,7 +180,7 @@ def accepted(case: Case) -> list[set[str]]:
 
 def _nothing_unnamed(case: Case, verdict: str, named: Sequence[str]) -> bool:
     """Whether the diagnosis describes all that is concealed, so that its parameters mean what the rig's do: a scale of
-    the position sensor that cannot be told makes every length and speed another."""
+    the position sensor that cannot be identified makes every length and speed another."""
     return not case.effects or verdict == "unknown_physics" or set(named) in accepted(case)
 
 

@@ -110,7 +110,7 @@ def _of_sets(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
         ("rigs exact", 0.80, _count(rigs, lambda mark: mark.exact)),
         ("two recordings with loads of their own exact", 0.80, _count(together, lambda mark: mark.exact)),
         ("decidable effects of rigs found", 0.95, _found(rigs)),
-        ("`complete` told truly", 1.0, _count([mark for mark in marks if mark.truthful is not None], _truthful)),
+        ("`complete` stated correctly", 1.0, _count([mark for mark in marks if mark.truthful is not None], _truthful)),
     ]
 
 

@@ -8,11 +8,11 @@ from itertools import groupby
 from eha_core.health.fault import Fault
 
 MOST_SPANS = 3
-"""Spans of one fault that are told one by one."""
+"""Spans of one fault that are listed one by one."""
 
 
 def in_words(faults: Sequence[Fault]) -> tuple[str, ...]:
-    """One line for each channel and kind of fault; a hole of several channels is told once."""
+    """One line for each channel and kind of fault; a hole of several channels is listed once."""
     lines = []
     for (channels, fault), alike in groupby(_together(faults), lambda entry: (entry[0], entry[1].fault)):
         spans = [entry[1] for entry in alike]
@@ -29,7 +29,7 @@ def in_words(faults: Sequence[Fault]) -> tuple[str, ...]:
 
 def _together(faults: Sequence[Fault]) -> list[tuple[str, Fault]]:
     """Each fault with its channel, or with all channels that have a hole where it has one."""
-    told: list[tuple[str, Fault]] = []
+    grouped: list[tuple[str, Fault]] = []
     holes = [fault for fault in faults if fault.fault == "hole"]
     shared: set[int] = set()
     for fault in faults:
@@ -43,8 +43,8 @@ def _together(faults: Sequence[Fault]) -> list[tuple[str, Fault]]:
                 if other.channel != fault.channel and id(other) not in shared and _same(fault, other)
             ]
             shared |= {id(other) for other in alike}
-        told.append((", ".join(other.channel for other in alike), fault))
-    return told
+        grouped.append((", ".join(other.channel for other in alike), fault))
+    return grouped
 
 
 def _same(fault: Fault, other: Fault) -> bool:

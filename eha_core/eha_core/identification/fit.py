@@ -32,7 +32,7 @@ SETTLED = 0.5
 """Chi^2; an iteration that gains less ends the fit."""
 
 WORTH = 2e-4
-"""Of what is left beside noise: a model that is far off is not worth its last digits."""
+"""Of the excess chi^2: a model that is far off is not worth its last digits."""
 
 HOPE = 4.0
 

@@ -1,8 +1,8 @@
 """Standard deviations that know of what a model leaves over.
 
 The curvature at the optimum is right where the residual is white noise. A law that is right but for its form leaves a
-residual that is coherent for a while and leads parameters astray. So the variance is estimated from the residual, too,
-by adding up each parameter's pull over blocks of time (a sandwich estimator: P. J. Huber, 1967; K.-Y. Liang and
+residual that is coherent over an interval and leads parameters astray. So the variance is estimated from the residual,
+too, by adding up each parameter's pull over blocks of time (a sandwich estimator: P. J. Huber, 1967; K.-Y. Liang and
 S. L. Zeger, Biometrika 73, 1986). Noise with a memory has a third estimate, from the residual's autocorrelation: it
 knows memories longer than a block. The largest of the three counts.
 """

@@ -100,7 +100,7 @@ class Eliminated:
         scale: square roots of N's diagonal.
         factor: banded Cholesky factor of the states' part.
         carried: (states, parameters) the states' part, inverted, times the border.
-        schur: (parameters, parameters) what is left for the parameters.
+        schur: (parameters, parameters) the Schur complement for the parameters.
     """
 
     scale: Array

@@ -169,11 +169,11 @@ def _require_motion(where: str, position: Measured) -> None:
 
 def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:
     """The changes after the start, against the coefficient in force at the start."""
-    told = recording.leakage_changes
-    if not told:
+    changes = recording.leakage_changes
+    if not changes:
         return ()
-    first = next((value for time, value in reversed(told) if time <= 0.0), told[0][1])
-    return tuple((time, value - first) for time, value in told if 0.0 < time < recording.duration and value != first)
+    first = next((value for time, value in reversed(changes) if time <= 0.0), changes[0][1])
+    return tuple((time, value - first) for time, value in changes if 0.0 < time < recording.duration and value != first)
 
 
 def with_sufficient_stroke(observation: Observation, model: NominalModel) -> tuple[Observation, NominalModel]:

@@ -1,7 +1,7 @@
 """A way to the optimum where friction sticks: from short windows to long ones.
 
 A window begins at a state of its own, and over a short one hardly anything can go another way than measured: whether
-the piston sticks is told by the measurement, and the objective is smooth. Over a second a break-away that comes late
+the piston sticks is given by the measurement, and the objective is smooth. Over a second a break-away that comes late
 moves all that follows, and the objective has as many valleys as there are break-aways. Multiple shooting with windows
 that grow is an old remedy (H. G. Bock, Recent advances in parameter identification techniques for O.D.E., 1983).
 """

@@ -59,7 +59,7 @@ def admitted(
         given: a recording, or the path of one.
         topics: a topics file.
         composition: the actuator's parts; None: those that the recording carries, else the paper's.
-        progress: is told how far a long record was read.
+        progress: receives how far a long record was read.
 
     Raises:
         RecordingError: as `read_recording`.

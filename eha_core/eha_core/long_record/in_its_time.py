@@ -1,4 +1,4 @@
-"""A diagnosis of stretches told in the time of the record that they are from."""
+"""A diagnosis of stretches in the time of the record that they are from."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ def _effect(effect: NamedEffect, by: float) -> NamedEffect:
     if effect.active is None:
         return effect
     before, after = effect.active, (effect.active[0] + by, effect.active[1] + by)
-    told = f"from {before[0]:.4g} s to {before[1]:.4g} s"
+    stated = f"from {before[0]:.4g} s to {before[1]:.4g} s"
     return replace(
-        effect, active=after, statement=effect.statement.replace(told, f"from {after[0]:.6g} s to {after[1]:.6g} s")
+        effect, active=after, statement=effect.statement.replace(stated, f"from {after[0]:.6g} s to {after[1]:.6g} s")
     )
 
 

@@ -1,4 +1,4 @@
-"""The way out of a diagnosis of long records: told in the record's time, and judged by the whole of it."""
+"""The way out of a diagnosis of long records: in the record's time, and judged by the whole of it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def judged(
         return diagnosis
     composition = model.composition
     found = {**composition.places(composition.nominal_values()), **diagnosis.fitted_values}
-    told = [_judged(record, model, found, progress) for record in long]
+    judgements = [_judged(record, model, found, progress) for record in long]
     remarks = [remark for record in long if record.blocks for remark in record.blocks.remarks]
     damaged = next(
         (record.blocks.damaged for record in long if record.blocks and record.blocks.damaged), diagnosis.damaged
@@ -38,7 +38,7 @@ def judged(
         diagnosis,
         remarks=tuple(dict.fromkeys((*remarks, *diagnosis.remarks))),
         damaged=damaged,
-        long_records=tuple(told),
+        long_records=tuple(judgements),
     )
 
 

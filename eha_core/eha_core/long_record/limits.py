@@ -18,7 +18,7 @@ of it."""
 
 STRETCHES = 6
 """How many stretches are fitted. Six of an hour of a simulated rig with 150 N of dry friction gave 150.09 N with a 95 %
-interval of 0.12 N; what is left to gain is less than a model's own errors (measured once)."""
+interval of 0.12 N; further gain is less than a model's own errors (measured once)."""
 
 ENDS = 0.1
 """Share of a record at either end from which one stretch is taken, so that what drifts or begins late is seen

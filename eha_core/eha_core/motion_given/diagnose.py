@@ -147,7 +147,7 @@ def _told(values: Mapping[str, Value]) -> dict[str, str]:
 
 
 def _left_over(motions: Sequence[Motion], law: Law) -> Location:
-    """Whether what is left sits near the reversals or in motion."""
+    """Whether the residual is largest near the reversals or in motion."""
     near, all_of_it, shares = 0.0, 0.0, 0.0
     for motion in motions:
         square = (predict(law, motion) - motion.force)[motion.used] ** 2
@@ -155,7 +155,7 @@ def _left_over(motions: Sequence[Motion], law: Law) -> Location:
         near, all_of_it = near + float(square[slow].sum()), all_of_it + float(square.sum())
         shares += float(slow.mean()) / len(motions)
     share = near / all_of_it if all_of_it > 0.0 else 0.0
-    text = f"{100 * share:.0f} % of what is left sits near the reversals, where {100 * shares:.0f} % of the samples are"
+    text = f"{100 * share:.0f} % of the residual is near the reversals, where {100 * shares:.0f} % of the samples are"
     return Location("force", share, text, ())
 
 
@@ -164,11 +164,11 @@ def _summary(
 ) -> str:
     if not effects:
         return f"Motion given: no term explains the force, which varies by {fits.rmse_before:.4g} N"
-    told = "; ".join(effect.statement for effect in effects)
+    statements = "; ".join(effect.statement for effect in effects)
     left = f"{fits.rmse_after:.3g} N RMS is left"
     noise = ", which is noise" if explained.complete else f", {explained.times_noise['force']:.3g} times the noise"
     return (
-        f"Motion given, the force is explained but for {100 * law.share_left:.1f} % of its deviation: {told}."
+        f"Motion given, the force is explained but for {100 * law.share_left:.1f} % of its deviation: {statements}."
         f" {left}{noise}; {explained.left_over[0].where}"
     )
 

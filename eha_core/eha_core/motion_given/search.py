@@ -31,7 +31,7 @@ CERTAIN = 2.0
 """Standard errors over the held-out blocks by which a term must lower their error."""
 
 COLLINEAR = 1e-4
-"""Share of a column beyond what the others explain, below which it cannot be told from them."""
+"""Share of a column beyond what the others explain, below which it cannot be distinguished from them."""
 
 AT_WORK = 1e-6
 """Share of the largest size, in units of its column, from which on a bounded fit has not set a size to zero."""
@@ -40,7 +40,7 @@ CONTAINED = ("viscous_friction",)
 """Terms that others of their kind contain."""
 
 NOISE_REACHED = 1.2
-"""RMS of what is left over the force's noise below which nothing is added; noise is known to a few per cent."""
+"""RMS of the residual over the force's noise below which nothing is added; noise is known to a few per cent."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def worth_of(motions: Sequence[Motion], law: Law) -> dict[str, float]:
     found = {}
     for term in law.terms:
         fewer = _try(regression, [other for other in law.terms if other is not term], law)
-        # a block counts once, however many samples it has: what is left in it is correlated
+        # a block counts once, however many samples it has: its residual is correlated
         found[term.id] = float(len(whole) * np.log(fewer.mean / np.mean(whole)))
     return found
 
@@ -133,7 +133,7 @@ def _try(regression: Regression, terms: Sequence[Term], known: Law | None) -> Tr
 
 
 def _collinear(regression: Regression, terms: Sequence[Term], known: Law) -> bool:
-    """Whether a linear term that is new cannot be told from the set's other columns."""
+    """Whether a linear term that is new cannot be distinguished from the set's other columns."""
     if any(term.shapes for term in terms if term not in known.terms) or len(terms) < 2:
         return False
     shape = _carried(terms, known)

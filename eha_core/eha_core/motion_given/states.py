@@ -17,7 +17,7 @@ def bouc_wen(velocity, step, distance, speed):  # type: ignore[no-untyped-def]
     beta = A, gamma = 0, A = 1 / distance: friction that turns over within the distance after a reversal.
     """
     found = np.empty(len(velocity))
-    # what came before is not known: a rig that is moving has been moving for a while
+    # what came before is not known: a rig that is moving has been moving before
     state = velocity[0] / sqrt(velocity[0] * velocity[0] + speed * speed)
     found[0] = state
     for index in range(1, len(velocity)):

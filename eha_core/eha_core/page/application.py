@@ -130,7 +130,7 @@ def _own(name: str) -> Answer:
 def _told(answer: Answer) -> Answer:
     """What an answer refuses, as one line for the page."""
 
-    async def told(request: Request) -> Response:
+    async def guarded(request: Request) -> Response:
         try:
             return await answer(request)
         except TooLarge as error:
@@ -138,7 +138,7 @@ def _told(answer: Answer) -> Answer:
         except EhaError as error:
             return JSONResponse({"error": str(error)}, 404 if request.method == "GET" else 400)
 
-    return told
+    return guarded
 
 
 async def _json(request: Request) -> dict[str, Any]:

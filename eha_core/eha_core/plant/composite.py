@@ -130,7 +130,7 @@ SEEN = ("position", "velocity", "pressure_a", "pressure_b")
 
 
 def lane_row(site: str, name: str, slot: int, slots: int = 1) -> str:
-    """The row of a block, or what all lanes share, that an effect's argument of that name stands for.
+    """The row of a block, or what all lanes share, that an effect's argument of that name means.
 
     A lane's memory of one effect, `slots` numbers, lies together, as the contribution finds it in a plant alone.
     """

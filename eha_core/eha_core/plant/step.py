@@ -1,6 +1,6 @@
 """The compiled step of the actuator, equations (1) to (10), with a place for each site's effects.
 
-`scheme` holds the pieces of a step; here the hooks stand between them. This file is compiled as it stands for the
+`scheme` holds the pieces of a step; here the hooks stand between them. This file is compiled unchanged for the
 nominal plant, and once more beside generated `hooks` for the whole catalogue; for sources other than the servo valve,
 also beside a `source` of the same functions. `lanes` takes the same step for many parameter sets at once.
 """

@@ -17,7 +17,7 @@ from eha_core.plausibility.relations import LOW, relations
 from eha_core.recording import Recording
 
 CLOSER = 1.0
-"""By so much (as a logarithm: a factor of 2.7 in scale) must a mistake lie closer than another to be told alone: a
+"""By so much (as a logarithm: a factor of 2.7 in scale) must a mistake lie closer than another to be reported alone: a
 valve's gain may be off by 2, and inches for cm is a factor of 2.5."""
 
 
@@ -27,7 +27,7 @@ def check(
     """Say which mistake was made in a recording; None where it is sound, or no single mistake explains it.
 
     A recording is only suspected where a relation that holds for every actuator of the nominal kind, whatever physics
-    is missing, is certainly broken; and a mistake is only told where undoing it mends all that is broken.
+    is missing, is certainly broken; and an error is reported only if correcting it makes every check pass.
 
     Args:
         recording: as it was read.
@@ -40,13 +40,13 @@ def check(
     noisy = noisy_copies(recording, nominal) if not _pressures_are_low(found) else None
     if not any(relation.broken for relation in found.values()):
         return Finding(noisy.mistake, noisy.cure) if noisy else None
-    mended = _mended(found, recording, suspects(recording, nominal), nominal, composition)
-    mended = mended or _mended(found, recording, [noisy] if noisy else [], nominal, composition)
-    mended = mended or _mended(found, recording, unrelated(recording, nominal), nominal, composition)
-    if not mended:
+    cured = _cured(found, recording, suspects(recording, nominal), nominal, composition)
+    cured = cured or _cured(found, recording, [noisy] if noisy else [], nominal, composition)
+    cured = cured or _cured(found, recording, unrelated(recording, nominal), nominal, composition)
+    if not cured:
         return None
-    least = min(distance for distance, _ in mended)
-    likely, *others = [suspect for distance, suspect in mended if distance < least + CLOSER]
+    least = min(distance for distance, _ in cured)
+    likely, *others = [suspect for distance, suspect in cured if distance < least + CLOSER]
     return Finding(likely.mistake, likely.cure, (others[0].mistake, others[0].cure) if others else None)
 
 
@@ -77,17 +77,17 @@ def admit(
     return replace(recording, remarks=(warning, *recording.remarks))
 
 
-def _mended(
+def _cured(
     found: Mapping[str, Relation], recording: Recording, possible: Iterable[Suspect], nominal: Mapping[str, float],
     composition: Composition,
 ) -> list[tuple[float, Suspect]]:
     """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording."""
-    mended = []
+    cured = []
     for suspect in possible:
         without = relations(suspect.without(recording), nominal, composition)
         if without and _mends(found, without):
-            mended.append((sum(relation.distance for relation in without.values()), suspect))
-    return mended
+            cured.append((sum(relation.distance for relation in without.values()), suspect))
+    return cured
 
 
 def _mends(found: Mapping[str, Relation], without: Mapping[str, Relation]) -> bool:

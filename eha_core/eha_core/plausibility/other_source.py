@@ -85,7 +85,7 @@ def _moves(recording: Recording) -> bool:
 def _moves_without(signals: Signals, name: str) -> str:
     """What moves although the valve's signal has no part in it; "" where nothing does.
 
-    Without a recorded flow only a signal that never changes is told: another may be of another run.
+    Without a recorded flow only a signal that never changes is reported: another may be of another run.
     """
     flow = next((channel for channel in ("flow_a", "flow_b") if channel in signals.channels), None)
     if flow is None:

@@ -33,7 +33,7 @@ OPPOSED = -0.2
 DRIVEN = -0.95
 """Correlation of speed and oil's force at a given command, from which on a force from outside drives the piston: it is
 then the pressures that give way. Of 295 recordings of the exam's kind (seed 70219) -0.99 in the one whose oil was
-driven so; +0.95 in two, of which swapped chambers would not be told."""
+driven so; +0.95 in two, of which swapped chambers would not be found."""
 LOW = -0.55
 """Excess of both pressures, over half the supply, from which on the levels are certainly right."""
 

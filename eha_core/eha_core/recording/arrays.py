@@ -17,7 +17,7 @@ from eha_core.recording.raw import RawRecording
 from eha_core.recording.samples import Samples
 
 IN_MEMORY = "in memory"
-"""What stands for the path of a recording that no file holds."""
+"""What takes the place of the path of a recording that no file holds."""
 
 
 def from_arrays(

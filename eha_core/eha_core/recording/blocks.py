@@ -204,20 +204,20 @@ class _Cutter:
             self._emit()
 
     def finish(self) -> None:
-        """Make blocks of what is left."""
+        """Make blocks of the rest."""
         while self.start is not None and self.start + self._next * self._length < self._latest:
             self._emit()
 
     def remarks(self) -> Iterator[str]:
         """What was left out while reading, each kind once."""
-        for told in self._remarks.values():
-            yield told[0] + (f" (and so in {len(told) - 1} more places)" if len(told) > 1 else "")
+        for alike in self._remarks.values():
+            yield alike[0] + (f" (and so in {len(alike) - 1} more places)" if len(alike) > 1 else "")
 
     def _note(self, remarks: Sequence[str]) -> None:
         for remark in remarks:
-            told = self._remarks.setdefault(re.sub(r"\d+", "#", remark), [])
-            if remark not in told or "left out" in remark:
-                told.append(remark)
+            alike = self._remarks.setdefault(re.sub(r"\d+", "#", remark), [])
+            if remark not in alike or "left out" in remark:
+                alike.append(remark)
 
     def _append(self, name: str, series: Samples) -> None:
         before = self._pending.get(name, Samples(np.empty(0, dtype=np.int64), np.empty(0)))

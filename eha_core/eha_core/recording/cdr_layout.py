@@ -13,7 +13,7 @@ from rosbags.typesys.store import Typestore
 ENCAPSULATION = 4
 """Bytes before the fields, from which alignment counts; the second tells the order of bytes."""
 MOST_PARTS = 2**14
-"""Numbers, sequences and texts of a message that are told apart; a robot's whole introspection has 1,000."""
+"""Numbers, sequences and texts of a message that are distinguished; a robot's whole introspection has 1,000."""
 _KINDS = {
     "bool": "u1", "byte": "u1", "octet": "u1", "char": "u1", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2",
     "int32": "i4", "uint32": "u4", "int64": "i8", "uint64": "u8", "float32": "f4", "float64": "f8",

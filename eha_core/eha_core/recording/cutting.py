@@ -14,12 +14,12 @@ HELD = ("voltage_command",)
 """Channels whose last value holds on."""
 
 JUST_AFTER = 1e-9
-"""s; when a change of the leakage that was made before a stretch is told in it: before all else, yet after its start,
+"""s; when a change of the leakage that was made before a stretch is noted in it: before all else, yet after its start,
 so that it counts against the coefficient with which the whole record began."""
 
 
 def named_stretch(path: Path, start: float, end: float) -> Path:
-    """What stands for the path of a stretch [s of its record]."""
+    """What takes the place of the path of a stretch [s of its record]."""
     return Path(f"{path} from {start:.6g} s to {end:.6g} s")
 
 
@@ -57,10 +57,10 @@ def leakage_within(changes: Sequence[tuple[float, float]], start: float, end: fl
         return ()
     initial = next((value for time, value in reversed(changes) if time <= 0.0), changes[0][1])
     in_force = before[-1] if before else initial
-    told = [(0.0, initial)]
+    within = [(0.0, initial)]
     if in_force != initial:
-        told.append((JUST_AFTER, in_force))
-    return (*told, *((time - start, value) for time, value in changes if start < time < end))
+        within.append((JUST_AFTER, in_force))
+    return (*within, *((time - start, value) for time, value in changes if start < time < end))
 
 
 def _moved(channel: Channel, time: FloatArray, values: FloatArray) -> Channel:

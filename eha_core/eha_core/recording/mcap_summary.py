@@ -50,8 +50,10 @@ def mcap_extent(path: Path) -> tuple[int, int] | None:
     """The log times of the first and last message [ns]; None where the file has no summary that tells them."""
     with opened(path) as (stream, size):
         summary = summary_of(stream, size)
-        told = summary.statistics if summary else None
-        return (told.message_start_time, told.message_end_time) if told and told.message_count else None
+        statistics = summary.statistics if summary else None
+        if not statistics or not statistics.message_count:
+            return None
+        return statistics.message_start_time, statistics.message_end_time
 
 
 def mcap_metadata(path: Path) -> dict[str, dict[str, str]]:

@@ -34,7 +34,7 @@ _ONE_SIDED = 1e-3
 class Question:
     """What only somebody who knows the rig can say of a channel, and the possible answers, the likely one first.
 
-    None among them stands for no such channel. `is_open` marks a question after fields of which neither name nor unit
+    None among them means no such channel. `is_open` marks a question after fields of which neither name nor unit
     says anything.
     """
 

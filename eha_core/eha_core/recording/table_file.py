@@ -158,7 +158,7 @@ def _lost(path: Path, table: Table, channel: str, rule: ChannelRule) -> list[str
             continue
         if loss.by_value:
             raise RecordingError(
-                f"{path}: {column!r} for channel {channel}: {loss}; what is left is no fair sample: export it anew, or"
+                f"{path}: {column!r} for channel {channel}: {loss}; the rest is no fair sample: export it anew, or"
                 f" leave the channel out with `{channel}: null` in a topics file"
             )
         said.append(f"{channel} ({column}): {loss}")

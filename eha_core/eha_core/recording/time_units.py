@@ -118,7 +118,7 @@ def _plausible(step: float) -> tuple[str, ...]:
 
 def usual_step(times: Column) -> float:
     """The usual step of times that never go back; zero for others, and where most stand."""
-    # Whole numbers are told apart as they are: ns since 1970 are more than a float holds.
+    # Whole numbers are distinguished as they are: ns since 1970 are more than a float holds.
     with np.errstate(over="ignore"):
         steps = np.diff(times).astype(np.float64)
     return float(np.median(steps)) if len(steps) and np.all(steps >= 0.0) and steps.any() else 0.0

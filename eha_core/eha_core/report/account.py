@@ -61,12 +61,12 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         expression = f": {law.expression}" if law.expression else ""
         yield "Recovered", f"a law over {law.function_of}{expression} (R² {law.r_squared:.3f})"
     changed = "; ".join(_changed(parameter) for parameter in diagnosis.parameters if parameter.changed)
-    yield "Parameters", f"biased, it may be, by what is missing: {changed}" if changed and diagnosis.biased else changed
+    yield "Parameters", f"may be biased by the missing effect: {changed}" if changed and diagnosis.biased else changed
     rivals = [
         f"{' + '.join(alternative.effects)} (evidence {alternative.evidence_gap:.1f} less)"
         for alternative in diagnosis.alternatives
     ]
-    yield "Not told", f"from {', nor from '.join(rivals)}" if rivals else ""
+    yield "Rivals", f"cannot be distinguished from {' or '.join(rivals)}" if rivals else ""
 
 
 def _named(effect: NamedEffect) -> str:

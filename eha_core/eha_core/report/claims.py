@@ -82,7 +82,7 @@ def equations_hold(diagnosis: Diagnosis) -> bool:
 
 
 def told_channel(diagnosis: Diagnosis) -> str:
-    """The channel whose error stands for all: the position, or the first that there is; none if it is not known."""
+    """The channel whose error represents all: the position, or the first that there is; none if it is not known."""
     fits = judged(diagnosis)
     name = _leading_channel(fits)
     return name if name and np.isfinite(fits[name].rmse_after) else ""

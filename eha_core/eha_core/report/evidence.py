@@ -15,7 +15,7 @@ from eha_core.report.wording import effect_title, listed
 SHOWN = 12
 
 IN_FULL = 2
-"""Effects of a hypothesis that are listed; a larger set is told by how it differs from the one that was named."""
+"""Effects of a hypothesis that are listed; a larger set is listed by how it differs from the one that was named."""
 
 STUB = 1.6
 """How long the bar of what is not behind at all is drawn, as a factor on the logarithmic axis."""
@@ -24,7 +24,7 @@ STOPPED_SHORT = 100.0
 """How far behind the model that adds nothing a hypothesis is only where its fit was not taken to its end: what its
 parameters cost is less than that (assumed)."""
 
-COLOURED = "Teal: what was named; ochre: what cannot be told from it."
+COLOURED = "Teal: what was named; ochre: what cannot be distinguished from it."
 UNNAMED = "None of these explains enough of what is missing to be named."
 STOPPED = " What is further behind than the model that adds nothing was left before its fit had come to its end."
 
@@ -75,7 +75,7 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
     decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
     ticks = tuple((exponent + np.log10(STUB), _decade(exponent)) for exponent in decades)
     panel = Panel(
-        (Upright(float(np.log10(TIE * STUB)), "told apart"), rungs),
+        (Upright(float(np.log10(TIE * STUB)), "remarks apart"), rungs),
         "evidence behind the best (log scale)",
         height=50 + 30 * len(ranked),
         x_range=(0.0, 1.45 * (decades[-1] + np.log10(STUB))),
@@ -108,7 +108,7 @@ def _screened(diagnosis: Diagnosis) -> str:
     blind = [effect.id for effect in left if effect.needs and not set(effect.needs) <= seen]
     weak = [effect.id for effect in left if effect.id not in blind]
     weakly = listed(list(map(effect_title, weak)))
-    told = [f"Screened out, as by a score test or a refit they gain too little: {weakly}."]
+    remarks = [f"Screened out, as by a score test or a refit they gain too little: {weakly}."]
     if blind:
-        told.append(f"Not tried, as their channels were not recorded: {listed(list(map(effect_title, blind)))}.")
-    return " ".join(told if weak else told[1:])
+        remarks.append(f"Not tried, as their channels were not recorded: {listed(list(map(effect_title, blind)))}.")
+    return " ".join(remarks if weak else remarks[1:])

@@ -21,7 +21,7 @@ from eha_core.report.wording import (
 )
 
 NEARLY_ALL = 0.9999
-"""A larger share is told as more than this one, as its last digits are those of the noise."""
+"""A larger share is stated as more than this one, as its last digits are those of the noise."""
 
 MOST_VALUES = 2
 """Values of one effect that the first sentence gives; the tables have all."""
@@ -45,11 +45,11 @@ class Missing:
 def missing(effect: NamedEffect) -> Missing:
     """A named effect in words."""
     declared = import_module(f"eha_core.effects.{effect.id}").EFFECT
-    told = told_parameters(effect)
-    switching = [row.name for row in declared.parameters if row.switches and row.name in told]
+    shown = told_parameters(effect)
+    switching = [row.name for row in declared.parameters if row.switches and row.name in shown]
     values = []
     for name in switching[:MOST_VALUES]:
-        fitted = told[name]
+        fitted = shown[name]
         values.append(f"{words(name)} {fitted_in_words(fitted)}")
     cause, colon, _ = effect.statement.partition(":")
     when = span(effect.active) if effect.active else ""
@@ -59,17 +59,17 @@ def missing(effect: NamedEffect) -> Missing:
 def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
     """The parameters that the recording tells from nothing: all but those whose interval holds a neutral zero.
 
-    An edge that may be sharp is no finding. An effect of which no parameter is told keeps them all.
+    An edge that may be sharp is no finding. An effect of which no parameter is identified keeps them all.
     A term of a law of given motion that the catalogue does not have keeps them too.
     """
     declared = next((entry.parameters for entry in effects() if entry.id == effect.id), ())
     neutral = {row.name for row in declared if row.nominal == 0.0}
-    told = {
+    shown = {
         name: fitted
         for name, fitted in effect.parameters.items()
         if name not in neutral or (fitted.value != 0.0 and not abs(fitted.value) <= SURE * fitted.std < float("inf"))
     }
-    return told or effect.parameters
+    return shown or effect.parameters
 
 
 def fitted_in_words(fitted: FittedValue) -> str:
@@ -122,9 +122,9 @@ def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
     """What casts doubt on everything below it: data taken although they cannot be right, or a damaged file."""
     doubts = [remark for remark in diagnosis.remarks if "warning: " in remark]
     # of several recordings, a remark begins with the path of its own
-    told = [sentence(remark) if remark.startswith("warning") else f"{remark}." for remark in doubts]
+    shown = [sentence(remark) if remark.startswith("warning") else f"{remark}." for remark in doubts]
     damaged = f"Warning: the file is damaged, and this rests on what could be read: {diagnosis.damaged}."
-    return (*told, damaged) if diagnosis.damaged else tuple(told)
+    return (*shown, damaged) if diagnosis.damaged else tuple(shown)
 
 
 def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -133,12 +133,12 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
     likely = "; ".join(f"{cause} ({title})" for title, cause in causes)
     rivals = listed([" + ".join(map(effect_title, alternative.effects)) for alternative in diagnosis.alternatives])
     changed = [parameter for parameter in diagnosis.parameters if parameter.changed]
-    told = changed[: MOST_VALUES + 1]
-    values = listed([f"{words(parameter.name)} {_departure(parameter)}" for parameter in told])
+    shown = changed[: MOST_VALUES + 1]
+    values = listed([f"{words(parameter.name)} {_departure(parameter)}" for parameter in shown])
     found = (
         f"Likely cause{'s' if len(causes) > 1 else ''}: {likely}." if likely else "",
         f"This recording does not tell it from {rivals}." if rivals else "",
-        f"Parameters that differ from the nominal model: {values}{' and others' if len(changed) > len(told) else ''}."
+        f"Parameters that differ from the nominal model: {values}{' and others' if len(changed) > len(shown) else ''}."
         if changed and not diagnosis.biased
         else "",
         explanation(diagnosis),
@@ -172,5 +172,5 @@ def explanation(diagnosis: Diagnosis) -> str:
     name, most = max(explained.times_noise.items(), key=lambda item: item[1])
     sites = listed([SITES[location.site].words for location in explained.left_over])
     where = f", most likely {sites}" if sites else ""
-    left = f"what is left is up to {most:.3g} times the noise, in {channel_title(name)}"
+    left = f"the residual is up to {most:.3g} times the noise, in {channel_title(name)}"
     return f"{said}; more is missing{where}: {left}."

@@ -1,4 +1,4 @@
-"""The three answers at the top of the page: how much closer the model comes, what is left, and how sure it is."""
+"""The three answers at the top of the page: how much closer the model comes, the residual, and how sure it is."""
 
 from __future__ import annotations
 
@@ -71,7 +71,8 @@ def _left(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
 
 
 def _sure(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
-    """What the named effects are told from: another explanation of as many effects, or the set without one of them."""
+    """What the named effects are distinguished from: another explanation of as many effects, or the set without
+    one of them."""
     if diagnosis.alternatives:
         rivals = listed([named(alternative.effects) for alternative in diagnosis.alternatives])
         yield KeyFigure("How sure?", "Not the only explanation", f"The recording does not tell it from {rivals}.")

@@ -56,5 +56,5 @@ def _panels(motion: Motion, rows, x, label: str, force, left) -> tuple[Panel, Pa
             (Dots(x, motion.force[rows], "measured", "measured"), Line(x, force[rows], "after", "law", 1.0)),
             label, "force [N]", "Measured force and the law", 320,
         ),
-        Panel((Dots(x, left[rows], "other", "what is left"),), label, "force [N]", "What the law leaves", 160),
+        Panel((Dots(x, left[rows], "other", "residual"),), label, "force [N]", "What the law leaves", 160),
     )  # fmt: skip

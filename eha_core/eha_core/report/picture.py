@@ -14,7 +14,7 @@ COLOURS = {
     "after": "#1d7a8c",
     "other": "#9aa7b2",
 }
-"""By role; told apart without colour vision too, by lightness."""
+"""By role; distinguished without colour vision too, by lightness."""
 
 FEW_DOTS = 500
 

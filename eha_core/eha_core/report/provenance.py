@@ -34,14 +34,14 @@ def with_provenance(
     """The diagnosis with its origin: version, command, nominal model, SHA-256 of each recording, and now."""
     name = Path(sys.argv[0]).name
     typed = shlex.join(["eha" if name == "__main__.py" else name, *sys.argv[1:]])
-    told = {
+    provenance = {
         "version": f"eha_core {__version__}",
         "command": command or typed,
         "nominal": FROM_RECORDING if nominal is None else str(nominal),
         "recording_sha256": ", ".join(_digest(recording.path) for recording in recordings),
         "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
     }
-    return replace(diagnosis, provenance=told)
+    return replace(diagnosis, provenance=provenance)
 
 
 def _digest(path: Path) -> str:

@@ -115,7 +115,8 @@ def _errors(diagnosis: Diagnosis) -> Table:
 
 def _notes(diagnosis: Diagnosis) -> Iterator[str]:
     for alternative in diagnosis.alternatives:
-        yield f"Not told apart from {' + '.join(alternative.effects)} (evidence {alternative.evidence_gap:.1f} less)."
+        rival, behind = " + ".join(alternative.effects), alternative.evidence_gap
+        yield f"Cannot be distinguished from {rival} (evidence {behind:.1f} less)."
     if diagnosis.next_experiment:
         yield f"Next experiment: {sentence(diagnosis.next_experiment.statement)}"
     if diagnosis.damaged:

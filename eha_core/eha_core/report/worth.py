@@ -38,7 +38,7 @@ def ladder_picture(diagnosis: Diagnosis) -> Picture | None:
     caption = (
         "RMS of what each model leaves over the noise, all channels together. All but the nominal model are fitted. The"
         f" axis begins at the noise. Dotted: {LEFT_IN_A_CHANNEL:g} times the noise; an explanation counts as complete"
-        " if every channel is below that and what is left is white."
+        " if every channel is below that and the residual is white."
     )
     title = "What is left, from the nominal model to the noise"
     return Picture("0-ladder", (Group((_bars(rows),)),), title=title, caption=caption)
@@ -80,7 +80,7 @@ def _bars(rows: Sequence[tuple[str, Residual, str]]) -> Panel:
 
 
 def effect_table(diagnosis: Diagnosis) -> Table:
-    """Each effect in its order: its values, its site, and what is left without it."""
+    """Each effect in its order: its values, its site, and the residual without it."""
     rows = []
     for effect in diagnosis.effects:
         row = [capital(effect_title(effect.id)), ", ".join(missing(effect).values), SITES[effect.site].words]

@@ -31,7 +31,7 @@ class Loss:
         unreadable: cells that hold something else than what the column holds.
         first: the first of those, as it stands in the file.
         row: where it stands, counted from 1 among the rows of values.
-        by_value: whether cells are lost where the column is at its largest or smallest, so that what is left is no
+        by_value: whether cells are lost where the column is at its largest or smallest, so that the rest is no
             fair sample of what was measured.
     """
 

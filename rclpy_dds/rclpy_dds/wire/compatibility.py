@@ -23,7 +23,7 @@ _OPPOSED = (
         "Publisher's liveliness is automatic, but subscription's is {}",
     ),
 )  # fmt: skip
-"""Each policy's weakest offer and strongest request, and what is said where they meet, or meet what is left open."""
+"""Each policy's weakest offer and strongest request, and what is said where they meet, or meet what is unset."""
 _PERIODS = (
     ("deadline", "deadline", "deadline is less than publisher deadline"),
     ("liveliness_lease_duration", "liveliness lease duration", "liveliness lease duration is less than publisher"),

@@ -133,7 +133,7 @@ def _delete_at_end(domain: int) -> None:
 def _delete_domains() -> None:
     """Delete the domains while Python's threads still run, and wait for that, but not without limit.
 
-    Cyclone DDS deletes entities in a thread of its own, which may take Python's interpreter lock to let go of a type
+    Cyclone DDS deletes entities in a thread of its own, which may take Python's interpreter lock to release a type
     and last of all tells the other participants. Once Python finalises, a thread that asks for the lock is ended on the
     spot, and who deletes the domain then waits for that thread for ever.
     """

@@ -153,7 +153,7 @@ class Graph:
         return found
 
     def settled(self) -> bool:
-        """Return whether every participant that was discovered has told its endpoints and its nodes.
+        """Return whether every participant that was discovered has announced its endpoints and its nodes.
 
         Fast DDS tells both up to 3 s, its period of heartbeats, after its participant was discovered.
         """

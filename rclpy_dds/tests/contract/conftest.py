@@ -97,7 +97,7 @@ class Program:
 
 @pytest.fixture
 def program() -> Iterator[Callable[..., Program]]:
-    """Give a function that starts programs; ends what is left of them.
+    """Give a function that starts programs; ends the rest of them.
 
     They are asked to end: for as long as a killed one is missed, every other's last messages wait for it.
     """

@@ -41,12 +41,12 @@ def test_the_default_context_may_begin_again() -> None:
 
 
 def test_shutdown_is_told_to_who_asked() -> None:
-    context, told = rclpy.Context(), []
+    context, received = rclpy.Context(), []
     rclpy.init(args=[], context=context)
-    context.on_shutdown(lambda: told.append("told"))
-    assert told == []
+    context.on_shutdown(lambda: received.append("received"))
+    assert received == []
     rclpy.shutdown(context=context)
-    assert told == ["told"]
+    assert received == ["received"]
 
 
 def test_contexts_are_in_domains_of_their_own() -> None:
@@ -108,12 +108,12 @@ def test_what_was_destroyed_cannot_be_used(graph: Graph) -> None:
 
 
 def test_a_future_tells_its_result_its_error_and_its_end() -> None:
-    told: list[str] = []
+    received: list[str] = []
     future = Future()
-    future.add_done_callback(lambda done: told.append(done.result()))
+    future.add_done_callback(lambda done: received.append(done.result()))
     assert not future.done()
     future.set_result("value")
-    assert future.done() and told == ["value"]
+    assert future.done() and received == ["value"]
     failed = Future()
     failed.set_exception(ValueError("why"))
     assert isinstance(failed.exception(), ValueError)

@@ -1,4 +1,4 @@
-"""What a node is told about the graph."""
+"""What a node knows about the graph."""
 
 from __future__ import annotations
 
@@ -50,17 +50,17 @@ def test_topics_and_services_are_told_with_their_types(observed: Graph) -> None:
 
 def test_who_has_which_endpoint_is_told(observed: Graph) -> None:
     observer = observed.nodes[0]
-    told = {
+    questions = {
         "/rig/volts": observer.get_publisher_names_and_types_by_node,
         "/rig/word": observer.get_subscriber_names_and_types_by_node,
         "/rig/switch": observer.get_service_names_and_types_by_node,
         "/rig/other": observer.get_client_names_and_types_by_node,
     }
-    for name, ask in told.items():
+    for name, ask in questions.items():
         assert observed.spin_until(lambda name=name, ask=ask: name in dict(ask("sim", "/rig"))), name
         assert name not in dict(ask("observer", "/"))
-    assert dict(told["/rig/volts"]("sim", "/rig"))["/rig/volts"] == FLOAT
-    assert dict(told["/rig/other"]("sim", "/rig"))["/rig/other"] == SWITCH
+    assert dict(questions["/rig/volts"]("sim", "/rig"))["/rig/volts"] == FLOAT
+    assert dict(questions["/rig/other"]("sim", "/rig"))["/rig/other"] == SWITCH
 
 
 def test_one_message_is_waited_for(graph: Graph) -> None:

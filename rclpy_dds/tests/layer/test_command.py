@@ -25,7 +25,7 @@ def test_a_dump_of_a_group_called_like_a_parameter_is_a_parameters_file(graph: G
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "expected"),
     [
         (["run", "no_package", "x"], "Package 'no_package' not found"),
         (["topic", "pub", "/x", "no_msgs/msg/X", "{}"], "The passed message type is invalid"),
@@ -37,9 +37,9 @@ def test_a_dump_of_a_group_called_like_a_parameter_is_a_parameters_file(graph: G
         (["action", "list"], "does not offer actions"),
     ],
 )
-def test_what_cannot_be_done_is_one_line_and_a_status(arguments: list[str], told: str) -> None:
+def test_what_cannot_be_done_is_one_line_and_a_status(arguments: list[str], expected: str) -> None:
     status, output, errors = _run(None, *arguments)
-    assert status == 1 and told in errors
+    assert status == 1 and expected in errors
     assert "Traceback" not in output + errors
 
 

@@ -160,7 +160,7 @@ def test_cyclone_dds_is_configured_by_its_own_variable(
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "told"),
+    ("name", "value", "expected"),
     [
         ("ROS_DOMAIN_ID", "233", "ROS_DOMAIN_ID='233'"),
         ("ROS_DOMAIN_ID", "one", "ROS_DOMAIN_ID='one'"),
@@ -173,8 +173,8 @@ def test_cyclone_dds_is_configured_by_its_own_variable(
     ],
 )
 def test_what_cannot_be_joined_is_an_error_that_says_why(
-    program: Start, monkeypatch: pytest.MonkeyPatch, name: str, value: str, told: str
+    program: Start, monkeypatch: pytest.MonkeyPatch, name: str, value: str, expected: str
 ) -> None:
     monkeypatch.setenv(name, value)
     source = "import rclpy\ntry:\n    rclpy.init()\nexcept RuntimeError as error:\n    print('refused:', error)"
-    assert told in program(source).wait_for("refused")
+    assert expected in program(source).wait_for("refused")

@@ -87,10 +87,10 @@ def fit_terms() -> tuple[Term, ...]:
 
 
 def test_absent_rigs_are_skipped_in_a_line_each(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    told: list[str] = []
-    assert hold(tmp_path, tmp_path / "out", told.append) == []
-    assert len(told) == 3
-    assert all(line.startswith("skipped: ") for line in told)
+    lines: list[str] = []
+    assert hold(tmp_path, tmp_path / "out", lines.append) == []
+    assert len(lines) == 3
+    assert all(line.startswith("skipped: ") for line in lines)
     assert main(["exam", "--real", str(tmp_path), "--out", str(tmp_path / "out")]) == 0
     assert capsys.readouterr().err.count("skipped: ") == 3
 

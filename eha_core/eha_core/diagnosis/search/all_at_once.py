@@ -58,7 +58,7 @@ def all_at_once(search: Search, nominal: Candidate) -> Candidate:
 
 def found_by_a_fit(applicable: Sequence[Effect]) -> list[Effect]:
     """The effects that derivatives lead to: an instant has to be looked for. The form of dry friction with most
-    parameters, of those without a memory, stands for all."""
+    parameters, of those without a memory, represents all."""
     forms = [effect for effect in applicable if effect.kind == STICKING and not effect.memory]
     richest = max(forms, key=lambda effect: len(effect.parameters), default=None)
     return [
@@ -109,7 +109,7 @@ def _fewest(search: Search, together: Candidate) -> Candidate:
 
 
 def not_needed(result: Fit, effects: Sequence[Effect], needed: float) -> list[Effect]:
-    """Up to half of the effects, one after the other what the rest makes up for best at a cost of less than `needed`.
+    """Up to half of the effects, one by one what the rest compensates for best at a cost of less than `needed`.
 
     The cost is that of the curvature at the fit, which holds near it.
     """

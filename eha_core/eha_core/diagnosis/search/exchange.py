@@ -24,9 +24,9 @@ FOR_ONE_PLACE = 4
 """How many effects compete for a member's place, those that predict most there."""
 
 AHEAD_AFTER_ONE = 2
-"""How many more compete over short windows, those ahead after one iteration: a large effect that another stands for is
-not where a linear prediction has it (an orifice leak was the 9th and the 14th in the place of a bias and of a deadband,
-and first after one iteration; development cases rig-0005 and rig-0009 of seed 84417)."""
+"""How many more compete over short windows, those ahead after one iteration: a large effect that another compensates
+for is not where a linear prediction has it (an orifice leak was the 9th and the 14th in the place of a bias and of a
+deadband, and first after one iteration; two development rigs)."""
 
 ITERATIONS = 15
 """Of a fit of a rival, which gives up where it cannot come close."""

@@ -21,7 +21,7 @@ effects (development cases, seeds 61331 and 84417) the longest made 430. Of the 
 make more than 600, three were lost (three-0016, three-0018, rig-0022) and one, rig-0002, was right after 846."""
 
 Progress = Callable[[str], None]
-"""Is told what is being tried."""
+"""Receives what is being tried."""
 
 Found = dict[Hypothesis, Fit]
 """The best fit so far of each hypothesis."""

@@ -39,8 +39,8 @@ def grow(search: Search, best: Candidate) -> Candidate:
 
 
 def try_for_a_while(search: Search, best: Candidate, score_tests: Sequence[ScoreTest]) -> None:
-    """Fit what may act for a while beside the best set, where windows in a row are predicted to gain as much as the
-    next set must."""
+    """Fit what may act over an interval beside the best set, where windows in a row are predicted to gain as much as
+    the next set must."""
     needed = gain_to_go_on(search.problem.count(), best.times_noise, best.fit.data - best.fit.count)
     begin = guesses_beside(search, best)
     found = time_limited_beside(search.problem, best.hypothesis, best.fit, begin, score_tests, needed, search.progress)

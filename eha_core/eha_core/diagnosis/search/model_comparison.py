@@ -65,7 +65,7 @@ class ModelComparison:
 def compete(
     problem: Problem, calibrated: Fit, candidates: Sequence[Effect], scales: Scales, progress: Progress = lambda _: None
 ) -> ModelComparison:
-    """Screen every candidate; refit those that may act for a while, if any, and the best of the others."""
+    """Screen every candidate; refit those that may act over an interval, if any, and the best of the others."""
     progress("screening the catalogue")
     guesses = [guess for effect in candidates for guess in initial_guesses(effect, scales)]
     screened = screen_in_time(problem, calibrated, guesses)
@@ -84,7 +84,7 @@ def compete(
         result = refit_with(problem, planned, best)
         keep_better(found, NOTHING.with_effects([effect]), result)
         best = min(best, result.objective)
-    # single effects that are far off need not converge, nor those that always act where one for a while leads by far
+    # single effects far off need not converge, nor those that always act where one over an interval leads by far
     if best < FAR_FROM_NOISE * problem.count() or limited:
         for_a_while = min((result.objective for result in limited.values()), default=np.inf)
         near = {hypothesis: result for hypothesis, result in found.items() if comes_near(problem, result, for_a_while)}
@@ -135,7 +135,7 @@ def site_gains(comparison: ModelComparison) -> dict[str, float]:
     gains: dict[str, float] = {}
     nominal = comparison.nominal.fit
     refitted: dict[str, float] = {}
-    for entry in comparison.entries:  # an effect may be among them twice: acting always, and for a while
+    for entry in comparison.entries:  # an effect may be among them twice: acting always, and over an interval
         if len(entry.ids) == 1:
             gain = nominal.objective - entry.fit.objective
             refitted[entry.ids[0]] = max(gain, refitted.get(entry.ids[0], gain))

@@ -1,7 +1,7 @@
 """Over short windows: a set grown where the objective is smooth, and then led to long windows.
 
 Where much is missing, a fit over long windows rests wherever the piston breaks away too early or too late, and the next
-effect makes up for that. Over 0.1 s nothing can go far another way than measured, so what is missing shows as itself.
+effect compensates for that. Over 0.1 s nothing can go far another way than measured, so what is missing shows itself.
 """
 
 from __future__ import annotations

@@ -108,7 +108,7 @@ def _proposal(base: Candidate, at: Fit, score_test: ScoreTest, in_stages: bool =
 def in_another_form(search: Search, base: Candidate) -> Iterator[Proposal]:
     """The set with another form of a member's law, from its own values where they share a parameter.
 
-    A law that acts for a while got its form when its interval was found.
+    A law that acts over an interval got its form when its interval was found.
     """
     for member in (member for member in base.hypothesis.members if not member.limited):
         rest = base.hypothesis.without(member)

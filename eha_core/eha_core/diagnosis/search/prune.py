@@ -105,16 +105,16 @@ def prune(search: Search, best: Candidate) -> Candidate:
         members = best.hypothesis.members
         refitted = search.try_proposals([_without(best, member) for member in members], REFITTED)
         simpler = dict(zip(members, refitted, strict=True))
-        told = {member: wald(best.fit, member.effect) for member in simpler}
-        worth = {member: min(_lost(candidate, best), told[member]) for member, candidate in simpler.items()}
+        predicted = {member: wald(best.fit, member.effect) for member in simpler}
+        worth = {member: min(_lost(candidate, best), predicted[member]) for member, candidate in simpler.items()}
         explained = search.found[NOTHING].objective - best.fit.objective
         asked = {member: asked_of(member, worth, best, explained) for member in simpler}
         for member in simpler:
             if _lost(simpler[member], best) > asked[member]:
-                near = told[member] < LOOKED_AT * asked[member]
+                near = predicted[member] < LOOKED_AT * asked[member]
                 enough = np.inf if near else best.fit.objective + asked[member]
                 simpler[member] = search.go_on(simpler[member], FURTHER, give_up_above=enough)
-            if max(asked[member], told[member]) < _lost(simpler[member], best) < OVER * explained:
+            if max(asked[member], predicted[member]) < _lost(simpler[member], best) < OVER * explained:
                 simpler[member] = refit_gradually(search, best, member)
         lost = {member: _lost(candidate, best) for member, candidate in simpler.items()}
         least = min(lost, key=lambda member: lost[member] / asked[member])
@@ -153,7 +153,7 @@ def asked_of(member: Member, worth: Mapping[Member, float], best: Candidate, exp
     left = max(best.fit.data - best.fit.count, 0.0)
     their_forms = OF_ITS_FORM * min(sum(max(gain, 0.0) for gain in forms), max(explained, 0.0))
     ratio = CONVINCING / (1.0 - CONVINCING)
-    # what makes up for a form leaves some of it over, too, beyond what may pass for noise
+    # what compensates for a form leaves some of it over, too, beyond what may pass for noise
     their_forms = min(their_forms, ratio * (left + NOISE_KNOWN * best.fit.count))
     return max(by_chance(member, worth, best) + their_forms, ratio * max(left - NOISE_KNOWN * best.fit.count, 0.0))
 

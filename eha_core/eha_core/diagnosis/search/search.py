@@ -1,4 +1,4 @@
-"""The search's course: from the best single effects to the set of which every member earns its place."""
+"""The search's course: from the best single effects to the set of which every member is significant."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from eha_core.diagnosis.search.short_windows import forms_of_friction, set_in_ea
 from eha_core.diagnosis.search.simpler_form import from_a_simpler_form
 
 SINGLES = 4
-"""How many of the best single effects are asked whether another acts for a while beside them."""
+"""How many of the best single effects are asked whether another acts over an interval beside them."""
 
 ROUNDS = 8
 """Exchanges at most; each has to make the fit better by more than chance would."""
 
 
 def beside_the_singles(search: Search) -> Candidate:
-    """The best so far when an effect that acts for a while was looked for beside each of the best single effects.
+    """The best so far when an effect that acts over an interval was looked for beside each of the best single effects.
 
     Such an effect bends what is fitted without it, and the best single effect may be one that the rig does not have.
     """
@@ -33,7 +33,7 @@ def beside_the_singles(search: Search) -> Candidate:
     )
     for single in singles[:SINGLES]:
         if not single.hypothesis.limited and any(parameter.resolution > 0.0 for parameter in single.fit.free):
-            # what sets in at an instant explains little beside the right one, and another for a while seems better
+            # what sets in at an instant explains little beside the right one, and another over an interval seems better
             converged = converge(search.problem, {single.hypothesis: single.fit}, search.progress)
             search.keep(single.hypothesis, converged[single.hypothesis])
     best = search.best
@@ -45,7 +45,7 @@ def beside_the_singles(search: Search) -> Candidate:
 
 
 def search_sets(search: Search, nominal: Candidate) -> Candidate:
-    """The set of effects that explains the recording best and of which every member earns its place.
+    """The set of effects that explains the recording best and of which every member is significant.
 
     Begins at the best single effect. Where it ends with more than noise left, it may have begun wrongly, its dry
     friction may have another form, or a member another's place.

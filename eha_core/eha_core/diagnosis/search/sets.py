@@ -56,7 +56,7 @@ def with_sets(
         found |= near
         worse = [hypothesis for hypothesis in singles if best.hypothesis.holds(hypothesis)]
         found = {hypothesis: result for hypothesis, result in found.items() if hypothesis not in worse}
-    elif best.hypothesis != NOTHING:  # a single effect that acts for a while may have been found beside another
+    elif best.hypothesis != NOTHING:  # a single effect that acts over an interval may have been found beside another
         found[best.hypothesis] = best.fit
     if len(best.hypothesis.members) < 2 and best.times_noise > FAR_FROM_NOISE and not best.hypothesis.limited:
         # no set came near the noise either: the single effects are compared, and have to converge for that

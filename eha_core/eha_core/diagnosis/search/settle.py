@@ -29,8 +29,9 @@ def settle(search: Search, best: Candidate) -> Candidate:
 
 
 def _against_its_rivals(search: Search, best: Candidate, held_against: set[Hypothesis]) -> Candidate:
-    """The best set when what has the largest predicted gain in a member's place was fitted to where it can be told, and
-    with one effect more where that is predicted to lead; `held_against` grows by the places that were competed for."""
+    """The best set when what has the largest predicted gain in a member's place was fitted to where it can be
+    distinguished, and with one effect more where that is predicted to lead; `held_against` grows by the places that
+    were competed for."""
     for member in best.hypothesis.members:
         rest = best.hypothesis.without(member)
         if rest in held_against:

@@ -33,7 +33,7 @@ STICKING = "dry friction"
 
 LED = 2
 """Of the forms of dry friction, how many are led on to long windows: those that leave least over the shortest. Assumed;
-the right one and its nearest rival have to be told apart there."""
+the right one and its nearest rival have to be distinguished there."""
 
 
 def forms_of_friction(search: Search, nominal: Candidate) -> Candidate:

@@ -1,4 +1,4 @@
-"""Effects that act for a while: what a model with its effects always on, or never, cannot explain.
+"""Effects that act over an interval: what a model with its effects always on, or never, cannot explain.
 
 Windows in a row in which an effect is predicted to gain far more than over the whole record tell where to look. The
 nominal equations, with the effects that are known to act always, are then fitted to the rest of the record alone, which
@@ -82,8 +82,8 @@ def time_limited_beside(
     least: float,
     progress: Progress = lambda _: None,
 ) -> Found:
-    """The set `base`, of which `fitted` is a fit, with one effect more that acts for a while; none where the predicted
-    gains show no such thing, or the set does not explain the rest of the record far better than the whole.
+    """The set `base`, of which `fitted` is a fit, with one effect more that acts over an interval; none where the
+    predicted gains show no such thing, or the set does not explain the rest of the record far better than the whole.
 
     Beside an effect that is still missing no gain stands out as it does alone; what does is that the rest is explained.
     """
@@ -130,7 +130,7 @@ def _fitted(
     found: Found = {}
     for score_test, beginning in zip(chosen, begun, strict=True):
         effect = score_test.guess.effect
-        progress(f"refitting with {effect.id} for a while")
+        progress(f"refitting with {effect.id} over an interval")
         values = {**beginning.values, **instants.of(effect)}
         own = (*free_effect_parameters(effect, values), *free_instants(instants.of(effect), instants.bounds))
         result = fit(

@@ -51,7 +51,7 @@ def warm_start(problem: Problem, found: Found) -> Found:
 
 def _to_their_ends(problem: Problem, found: Found) -> Found:
     """What comes near the best fitted until it gains nothing, with derivatives at the full step, from the windows'
-    starts as they are and from those measured: a rival that stopped a little short would seem to be told apart."""
+    starts as they are and from those measured: a rival that stopped a little short would seem to be distinguished."""
     exact = replace(problem, slope_step=problem.shooting.step_size)
     best = min(result.objective for result in found.values())
     near = [hypothesis for hypothesis, at in found.items() if best < at.objective < best + CONVERGE_WITHIN]
@@ -69,7 +69,7 @@ def _to_their_ends(problem: Problem, found: Found) -> Found:
 
 
 def _same_interval(hypothesis: Hypothesis, other: Hypothesis, values: Mapping[str, float]) -> dict[str, float]:
-    """The interval in which the other's effect acts, for this one's, where each has one that acts for a while."""
+    """The interval in which the other's effect acts, for this one's, where each has one that acts over an interval."""
     if not (hypothesis.has_one_interval and other.has_one_interval):
         return {}
     names = (either.limited[0].effect.acting_names() for either in (hypothesis, other))

@@ -1,4 +1,4 @@
-"""The methods: calibration alone, PySINDy's sparse regressions, and a black box for what is left."""
+"""The methods: calibration alone, PySINDy's sparse regressions, and a black box for the residual."""
 
 from __future__ import annotations
 

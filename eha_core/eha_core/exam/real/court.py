@@ -15,7 +15,7 @@ RIGS: dict[str, Ask] = {"emps": emps.ask, "mr_damper": mr_damper.ask, "pneumatic
 
 
 def hold(data: Path, out: Path, tell: Callable[[str], None]) -> list[Question]:
-    """Ask every rig whose data are below `data`; what is skipped is told in one line each."""
+    """Ask every rig whose data are below `data`; what is skipped is reported in one line each."""
     questions = []
     for name, ask in RIGS.items():
         if not (data / name).is_dir():

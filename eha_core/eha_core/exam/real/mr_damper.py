@@ -73,9 +73,9 @@ def _parts(laws: dict[str, Law]) -> list[Question]:
 def _growth(laws: dict[str, Law]) -> Question:
     found = [law.values[HYSTERETIC]["force"] for law in laws.values() if HYSTERETIC in law.ids]
     apart = all(b.value - a.value > 1.96 * np.hypot(a.std, b.std) for a, b in zip(found[:-1], found[1:], strict=True))
-    told = ", ".join(f"{force.value:.0f} ± {1.96 * force.std:.0f}" for force in found)
+    forces = ", ".join(f"{force.value:.0f} ± {1.96 * force.std:.0f}" for force in found)
     return Question(
-        RIG, "dry friction over the current [N]", "grows with the current", told, apart and len(found) == len(laws)
+        RIG, "dry friction over the current [N]", "grows with the current", forces, apart and len(found) == len(laws)
     )
 
 

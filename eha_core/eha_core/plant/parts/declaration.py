@@ -43,7 +43,7 @@ class Source(Part):
 
     Attributes:
         inputs: the recorded channels that drive it, in the order in which they are given.
-        optional: a further channel; where it is missing, the first stands for it.
+        optional: a further channel; where it is missing, the first takes its place.
         valve: what moves its spool: "coil" (equations (1) and (2)), "current" ((2) alone), "spool" (the input is the
             spool's position) or "" where there is no spool.
         given: what replaces the chambers' oil: "" (nothing), "pressures" or "force".

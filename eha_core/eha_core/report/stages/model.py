@@ -39,7 +39,7 @@ CELL = 22
 """Pixels of a row of correlations."""
 
 TOLD_TOGETHER = 0.9
-"""Correlation from which two parameters are said to be told only together (a common rule of thumb)."""
+"""Correlation from which two parameters are said to be identified only together (a common rule of thumb)."""
 
 MOST_PAIRS = 4
 
@@ -52,12 +52,12 @@ def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
         picture for picture in (_collapse(diagnosis), _intervals(diagnosis), correlations(diagnosis)) if picture
     )
     named = effects_listed(diagnosis) if len(diagnosis.effects) <= IN_A_SENTENCE else names_listed(diagnosis)
-    headline, told, formula = _recovered(diagnosis.unknown, diagnosis.biased) if diagnosis.unknown else (named, (), "")
+    headline, facts, formula = _recovered(diagnosis.unknown, diagnosis.biased) if diagnosis.unknown else (named, (), "")
     return Stage(
         "model",
         "Model",
         capital(headline),
-        (*told, "Started with fitted.yaml, the simulator has this physics.", *_told_together(diagnosis)),
+        (*facts, "Started with fitted.yaml, the simulator has this physics.", *_told_together(diagnosis)),
         pictures,
         (_table(diagnosis), *step_table(diagnosis)),
         parts=tuple(_part(diagnosis, place, effect, found) for place, effect in enumerate(diagnosis.effects, start=1)),
@@ -68,26 +68,26 @@ def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
 def _without_names(diagnosis: Diagnosis) -> Stage:
     """The recovered law alone, or the model as it stands."""
     if diagnosis.unknown:
-        headline, told, formula = _recovered(diagnosis.unknown, diagnosis.biased)
-        return Stage("model", "Model", headline, told, code=formula)
+        headline, facts, formula = _recovered(diagnosis.unknown, diagnosis.biased)
+        return Stage("model", "Model", headline, facts, code=formula)
     ending = "with the fitted parameters" if diagnosis.verdict == "parameters" else "as it was given"
     return Stage("model", "Model", f"The model stands {ending}", ("No physics was added.",))
 
 
 def _recovered(law: UnknownLaw, biased: bool) -> tuple[str, tuple[str, ...], str]:
     """The headline, the sentences and the formula of a recovered law."""
-    told = (
+    details = (
         f"The law was recovered from the data; it explains {law.r_squared:.1%} of the mismatch.",
         WITHOUT if biased else "",
         "As a formula, it reads:" if law.expression else "No simple formula follows its curve.",
     )
-    return f"A law over {law.function_of} is missing", told, law.expression
+    return f"A law over {law.function_of} is missing", details, law.expression
 
 
 def _part(diagnosis: Diagnosis, place: int, effect: NamedEffect, found: Mapping[str, Law]) -> Part:
     """One effect: what it is, how large, where it acts, what it is worth, and its law."""
-    told = missing(effect)
-    title = f"{place}. {capital(told.title)}: {', '.join(told.values)}"
+    details = missing(effect)
+    title = f"{place}. {capital(details.title)}: {', '.join(details.values)}"
     acts = f"It acts {SITES[effect.site].words}."
     law = found.get(effect.id)
     panel = replace(law_panel(law, LAW_HEIGHT), title="") if law else None
@@ -107,12 +107,12 @@ def correlations(diagnosis: Diagnosis) -> Picture | None:
         " two, and either may be wrong with the other."
     )
     return Picture(
-        "5-model-correlation", (Group((panel,)),), title="Which parameters are told only together", caption=caption
+        "5-model-correlation", (Group((panel,)),), title="What is identified only together", caption=caption
     )
 
 
 def _told_together(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """The pairs of parameters that hardly can be told apart, one of the missing physics among them, the closest
+    """The pairs of parameters that hardly can be distinguished, one of the missing physics among them, the closest
     first."""
     names, matrix = diagnosis.correlation.names, diagnosis.correlation.matrix
     pairs = [
@@ -178,10 +178,10 @@ def _intervals(diagnosis: Diagnosis) -> Picture | None:
 def _table(diagnosis: Diagnosis) -> Table:
     rows = []
     for effect in diagnosis.effects:
-        told = told_parameters(effect)
+        details = told_parameters(effect)
         for name, fitted in effect.parameters.items():
             deviation = with_deviation(fitted.value, fitted.std, fitted.unit)
-            note = "" if name in told else "not told from zero"
+            note = "" if name in details else "not distinguished from zero"
             si = f"{fitted.value:.5g} {fitted.unit.replace('-', '')}".strip()
             rows.append(
                 (f"{effect.id}.{name}", deviation, interval(fitted.value, fitted.std, fitted.unit, SURE), si, note)

@@ -20,7 +20,7 @@ LAGS = 60
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
-    """Before, calibrated and after, against the noise floor; and whether what is left is noise."""
+    """Before, calibrated and after, against the noise floor; and whether the residual is noise."""
     kept = "Parts of the recording were kept from the fit, and the models are judged on them."
     fitted = "The models are judged on the data they were fitted to."
     sentences = (kept if diagnosis.held_out else fitted, improvement(diagnosis))
@@ -161,4 +161,4 @@ def _over_input(diagnosis: Diagnosis) -> tuple[Picture, ...]:
         groups.append(Group((Panel(tuple(marks), f"voltage [{across.unit}]", up.unit, title, 220),)))
     columns = (1,) * min(3, max(1, len(groups)))
     caption = "Measured less modelled over the voltage: a residual that depends on the input is not noise."
-    return (Picture("6-show-input", tuple(groups), columns, "Does what is left depend on the input?", caption),)
+    return (Picture("6-show-input", tuple(groups), columns, "Does the residual depend on the input?", caption),)

@@ -124,7 +124,7 @@ _VALUE_FIELDS = {name: f"{name.lower()}_value" for name in _PYTHON_TYPES}
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """Return the parameter value a text stands for, its type guessed as YAML does.
+    """Return the parameter value that a text means, its type guessed as YAML does.
 
     Unlike PyYAML, `1e-10` is a number here, as it is in parameters files read by ROS 2 itself.
     """
