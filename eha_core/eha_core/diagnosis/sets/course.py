@@ -63,20 +63,30 @@ def find_sets(
     material = Material(effects, columns, laws, _plant(fitted), Trace(), progress, filtered_channels(observations))
     progress("locating in the equations")
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
-    pool = _over_growing_windows(calibration, friction, material)
+    calibration, pool = _over_growing_windows(observations, calibration, friction, material)
     progress("searching sets over long windows")
-    pool.keep(NOTHING, in_noise_of(pool.problem, shooting, fitted))
+    pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
     search_sets(Search(pool, columns, progress))
-    step_size = step_needed(observations, pool.problem.shooting, pool.found[leader(pool)])
-    if step_size != shooting.step_size:
-        progress(f"the best set at a step of {1e3 * step_size:g} ms")
-        calibration = at_a_finer_step(observations, calibration, step_size)
-        pool = carried(pool, calibration.problem, material)
-        pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
+    calibration, pool = at_step_needed(observations, calibration, pool, material)
+    pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
     return finished(pool, calibration, material)
 
 
-def _over_growing_windows(calibration: Calibration, friction: Friction, material: Material) -> Pool:
+def at_step_needed(
+    observations: Sequence[Observation], calibration: Calibration, pool: Pool, material: Material
+) -> tuple[Calibration, Pool]:
+    """The calibration and the best sets over long windows at the step of the simulation which the best set needs."""
+    step_size = step_needed(observations, pool.problem.shooting, pool.found[leader(pool)])
+    if step_size == calibration.shooting.step_size:
+        return calibration, pool
+    material.progress(f"the best set at a step of {1e3 * step_size:g} ms")
+    calibration = at_a_finer_step(observations, calibration, step_size)
+    return calibration, carried(pool, calibration.problem, material)
+
+
+def _over_growing_windows(
+    observations: Sequence[Observation], calibration: Calibration, friction: Friction, material: Material
+) -> tuple[Calibration, Pool]:
     """Sets over short windows, and those over long ones: by way of longer ones, where the way is too far."""
     nominal, long = calibration.nominal.values, calibration.problem
     material.progress("searching sets over short windows")
@@ -88,18 +98,20 @@ def _over_growing_windows(calibration: Calibration, friction: Friction, material
     else:
         short = searched(short, begin, friction, material)
         pool = carried(short, long, material)
+        if at_the_noise(short) and not at_the_noise(pool):  # over long windows the error of the step adds up
+            calibration, pool = at_step_needed(observations, calibration, pool, material)
     if at_the_noise(pool):
-        return pool
+        return calibration, pool
     material.progress("searching sets over longer windows")
     longer, begin = begun(whole(calibration.shortest[1]), nominal, friction, material)
     bridge = replace(longer, found=dict(longer.found))  # what leads to nothing must not stand in the search's way
     carry(short, bridge)
-    pool = carried(bridge, long, material)
+    pool = carried(bridge, calibration.problem, material)
     if at_the_noise(pool):
-        return pool
-    found = carried(searched(longer, begin, friction, material), long, material)
+        return calibration, pool
+    found = carried(searched(longer, begin, friction, material), calibration.problem, material)
     found.adopt(pool)
-    return found
+    return calibration, found
 
 
 def at_the_noise(pool: Pool) -> bool:
