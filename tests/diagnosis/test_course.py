@@ -23,13 +23,18 @@ PLANTED = {
 }
 
 
-@pytest.fixture(scope="module")
-def found():
-    observation = observe(recorded({**PLANTED, "moving_mass": 10.0}, duration=5.0))
+def searched(parameters, duration):
+    """The calibration of a recording of this plant, and what the search finds in it."""
+    observation = observe(recorded(parameters, duration=duration))
     calibration = calibrate([observation], NominalModel(nominal_values()))
     scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
     with side_by_side(2):
         return calibration, *find_sets([observation], calibration, applicable_effects([observation]), scales)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return searched({**PLANTED, "moving_mass": 10.0}, 5.0)
 
 
 @pytest.mark.timeout(600)
@@ -82,11 +87,7 @@ def test_every_fit_is_in_the_trace(found):
 
 
 def test_windows_in_which_nothing_is_missing_are_passed_over():
-    observation = observe(recorded({"moving_mass": 10.0}, duration=4.0))
-    calibration = calibrate([observation], NominalModel(nominal_values()))
-    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
-    with side_by_side(2):
-        _, comparison = find_sets([observation], calibration, applicable_effects([observation]), scales)
+    *_, comparison = searched({"moving_mass": 10.0}, 4.0)
     assert comparison.entries == ()
     steps = [step.step for step in comparison.trace]
     assert steps.count("nominal") == 2 and "longer windows" not in steps
@@ -106,6 +107,31 @@ def test_friction_that_drags_for_a_while_is_found_though_the_whole_balance_shows
     assert best.ids == ("coulomb_friction",) and best.hypothesis.limited
     for name, value in planted.items():
         assert best.fit.values[name] == pytest.approx(value, abs=max(4.0 * best.fit.deviation(name), 0.01 * value))
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize(
+    ("planted", "named"),
+    [
+        ({"command_delay.delay": 6e-3, "moving_mass": 10.0}, "command_delay"),
+        ({"leakage_onset.time": 4.87, "leakage_onset.internal_leakage": 3e-10}, "leakage_onset"),
+    ],
+    ids=["a valve that is slower than anybody believes", "a drift that begins when the leak does"],
+)
+def test_what_can_be_imitated_is_named_and_not_its_imitation(planted, named):
+    *_, comparison = searched(planted, 8.0)
+    best = comparison.entries[0]
+    assert best.ids == (named,) and not best.hypothesis.limited
+    for name in planted.keys() - {"moving_mass"}:
+        assert best.fit.values[name] == pytest.approx(planted[name], abs=4.0 * best.fit.deviation(name))
+
+
+@pytest.mark.timeout(600)
+def test_where_a_value_far_beyond_belief_explains_all_nothing_is_named():
+    damped = 20.0 * nominal_values()["damping_coefficient"]
+    *_, comparison = searched({"damping_coefficient": damped}, 6.0)
+    assert comparison.entries == ()
+    assert comparison.nominal.fit.values["damping_coefficient"] == pytest.approx(damped, rel=0.02)
 
 
 def test_friction_is_released_where_what_is_left_may_be_its_own():

@@ -118,6 +118,16 @@ def test_a_prior_bound_that_costs_stays_away():
     assert rig.pool.found[NOTHING].objective < bound.objective - 100.0
 
 
+def test_a_bound_is_released_in_the_nominal_equations_too():
+    damped = 20.0 * nominal_values()["damping_coefficient"]
+    rig = bench({"damping_coefficient": damped}, duration=3.0)
+    load, bound = rig.set_of("constant_load"), rig.pool.found[NOTHING]
+    rig.fitted({"constant_load.force": 10.0})
+    rig.pool.release(load)
+    for hypothesis in (NOTHING, load):
+        assert rig.pool.found[hypothesis].objective < bound.objective - 100.0
+
+
 def test_where_a_member_sticks_derivatives_are_taken_more_finely(rig, pool):
     assert pool.posed(rig.set_of("constant_load")) is pool.problem
     assert pool.posed(rig.set_of("coulomb_friction")).slope_step < pool.problem.slope_step

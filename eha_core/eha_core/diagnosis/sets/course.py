@@ -134,7 +134,6 @@ def begun(problem: Problem, nominal: Mapping[str, float], friction: Friction, ma
     given = pool.at_rest(NOTHING, values, states)
     calibrated = pool.try_set("nominal", NOTHING, values, states, CARRIED_ON)
     pool.measure_noise(NOTHING)
-    pool.release(NOTHING)
     # nominal values that were fitted without what is missing are bent to it, and all that is seen from there with them
     return pool, pool.found[NOTHING] if calibrated.data < NEAR_NOISE * calibrated.count else given
 

@@ -23,6 +23,7 @@ from eha_core.diagnosis.sets.best_sets import Proposal, best_sets, objective_wit
 from eha_core.diagnosis.sets.columns import Column
 from eha_core.diagnosis.sets.expansion import cost
 from eha_core.diagnosis.sets.instants import shift_instants
+from eha_core.diagnosis.sets.intervals import in_span
 from eha_core.diagnosis.sets.pool import Pool, Progress
 from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
@@ -162,6 +163,8 @@ def rivals(
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
     for hypothesis, values in _other_forms(pool, best, columns):
         _compare(pool, "form", hypothesis, values, at.states, at.objective + within, progress)
+    for hypothesis, values in _in_the_same_interval(pool, best, columns):
+        _compare(pool, "rival", hypothesis, values, at.states, at.objective + within, progress)
     close = [
         hypothesis for hypothesis, result in pool
         if hypothesis != best and result.objective < at.objective + within and hypothesis.members
@@ -219,6 +222,23 @@ def as_large(column: Column, member: Member, result: Fit) -> dict[str, float]:
         own = base_name(name).rsplit(".", 1)[1]
         found[name] = theirs.get(own, share * value if own in sizes else value)
     return found
+
+
+def _in_the_same_interval(
+    pool: Pool, best: Hypothesis, columns: Sequence[Column]
+) -> Iterator[tuple[Hypothesis, dict[str, float]]]:
+    """The set with another effect in place of one that acts in an interval only, in the same interval."""
+    at = pool.found[best]
+    for member in best.limited:
+        span, rest = member.span(at.values), best.without(member)
+        first = {column.effect.id: column for column in reversed(columns) if rest.admits(column.effect)}
+        for column in first.values():
+            if span is None or column.effect.id == member.id or not column.effect.acting_names():
+                continue
+            there = in_span(column, span, 0)
+            hypothesis = rest.with_effects([column.effect], there.limited)
+            if hypothesis not in pool.found:
+                yield hypothesis, {**at.values, **neutral(member.effect), **there.values}
 
 
 def refit_nominal(pool: Pool, calibrated: Fit, others: Sequence[Fit]) -> Fit:

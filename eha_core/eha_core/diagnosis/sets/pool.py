@@ -12,7 +12,7 @@ import numpy as np
 from eha_core.diagnosis.calibrate import corrected_noise
 from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE, chance_gain
 from eha_core.diagnosis.effect_parameters import free_instants, with_effects
-from eha_core.diagnosis.hypothesis import Hypothesis
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.result import TraceStep
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter, not_believed
@@ -151,7 +151,10 @@ class Pool:
         if not names:
             return
         self.released |= names
-        self.try_set("without prior bounds", hypothesis, at.values, at.states, RELEASED, self._in_plant(at), 2)
+        simplest = [NOTHING] if NOTHING in self.found else []
+        for each in dict.fromkeys((hypothesis, *simplest)):  # without a bound no effect may be needed
+            at = self.found[each]
+            self.try_set("without prior bounds", each, at.values, at.states, RELEASED, self._in_plant(at), 2)
 
     def believe(self, hypothesis: Hypothesis) -> None:
         """Bring back each bound that was released, if a set gains no more without it than by chance."""
