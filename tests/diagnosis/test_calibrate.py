@@ -5,7 +5,7 @@ from made import recorded
 
 from eha_core.diagnosis.calibrate import (
     UNNOTICED,
-    at_a_finer_step,
+    at_step,
     calibrate,
     calibrate_finely_enough,
     step_error,
@@ -32,7 +32,7 @@ def test_a_violent_recording_is_calibrated_at_a_shorter_one():
     errors = [step_error([observation], at.shooting, at.fitted, at.shooting.step_size) for at in (coarse, calibration)]
     assert errors[0] > 10.0 * errors[1]
     assert step_needed([observation], coarse.shooting, coarse.fitted) == chosen
-    finer = at_a_finer_step([observation], coarse, chosen)
+    finer = at_step([observation], coarse, chosen)
     assert finer.fitted.data == pytest.approx(calibration.fitted.data, rel=2e-3)
     # the shorter step leaves noise alone; the longer one leaves its own error, whatever the parameters do
     assert calibration.fitted.data < 1.03 * calibration.fitted.count

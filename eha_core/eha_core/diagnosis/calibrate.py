@@ -125,7 +125,7 @@ def step_error(observations: Sequence[Observation], shooting: Shooting, model: F
     return total
 
 
-def at_a_finer_step(observations: Sequence[Observation], calibration: Calibration, step_size: float) -> Calibration:
+def at_step(observations: Sequence[Observation], calibration: Calibration, step_size: float) -> Calibration:
     """A calibration gone on with at another step, in the noise that it has."""
     before, given, fitted = calibration.shooting, calibration.nominal, calibration.fitted
     cut = cut_together(observations, given.values, step_size, per_recording=before.per_recording)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.calibrate import Calibration, at_a_finer_step, filtered_channels, step_needed
+from eha_core.diagnosis.calibrate import Calibration, at_step, filtered_channels, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, NEAR_NOISE, OF_FRICTION, UNFITTED
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
@@ -65,10 +65,8 @@ def find_sets(
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
     calibration, pool = _over_growing_windows(observations, calibration, friction, material)
     progress("searching sets over long windows")
-    pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
-    search_sets(Search(pool, columns, progress))
+    search_sets(Search(_with_nominal(pool, calibration), columns, progress))
     calibration, pool = at_step_needed(observations, calibration, pool, material)
-    pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
     return finished(pool, calibration, material)
 
 
@@ -80,8 +78,14 @@ def at_step_needed(
     if step_size == calibration.shooting.step_size:
         return calibration, pool
     material.progress(f"the best set at a step of {1e3 * step_size:g} ms")
-    calibration = at_a_finer_step(observations, calibration, step_size)
-    return calibration, carried(pool, calibration.problem, material)
+    calibration = at_step(observations, calibration, step_size)
+    return calibration, _with_nominal(carried(pool, calibration.problem, material), calibration)
+
+
+def _with_nominal(pool: Pool, calibration: Calibration) -> Pool:
+    """A pool over long windows that has the calibrated nominal equations, too."""
+    pool.keep(NOTHING, in_noise_of(pool.problem, calibration.shooting, calibration.fitted))
+    return pool
 
 
 def _over_growing_windows(

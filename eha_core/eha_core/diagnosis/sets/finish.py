@@ -161,10 +161,8 @@ def rivals(
     for hypothesis, proposal in sorted(near.items(), key=lambda item: item[1].predicted)[:RIVALS]:
         values, states = model.start(proposal.options)
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
-    for hypothesis, values in _other_forms(pool, best, columns):
-        _compare(pool, "form", hypothesis, values, at.states, at.objective + within, progress)
-    for hypothesis, values in _in_the_same_interval(pool, best, columns):
-        _compare(pool, "rival", hypothesis, values, at.states, at.objective + within, progress)
+    for hypothesis, values in _in_a_members_place(pool, best, columns):
+        _compare(pool, "in its place", hypothesis, values, at.states, at.objective + within, progress)
     close = [
         hypothesis for hypothesis, result in pool
         if hypothesis != best and result.objective < at.objective + within and hypothesis.members
@@ -188,21 +186,25 @@ def _compare(
         pool.try_set(step, hypothesis, glanced.values, glanced.states, COMPARED, give_up_above=within)
 
 
-def _other_forms(
+def _in_a_members_place(
     pool: Pool, best: Hypothesis, columns: Sequence[Column]
 ) -> Iterator[tuple[Hypothesis, dict[str, float]]]:
-    """The set with another form of a member's law, at its values where both have the parameter."""
+    """The set with another effect in a member's place: another form of its law, as large as it is; and of one that acts
+    in an interval only, whatever else may act there."""
     at = pool.found[best]
+    first = {column.effect.id: column for column in reversed(columns)}
     for member in best.members:
-        if not member.effect.kind:
-            continue
-        others = {c.effect.id: c for c in columns if c.effect.kind == member.effect.kind and c.effect.id != member.id}
-        for column in others.values():
-            hypothesis = best.without(member).with_effects([column.effect], member.limited)
-            span = member.span(at.values)
-            acts = dict(zip(column.effect.acting_names(), span, strict=True)) if span else {}
+        rest, span = best.without(member), member.span(at.values)
+        for column in first.values():
+            effect = column.effect
+            is_form = effect.kind != "" and effect.kind == member.effect.kind
+            if effect.id == member.id or not rest.admits(effect) or not (is_form or span and effect.acting_names()):
+                continue
+            there = in_span(column, span) if span else column
+            hypothesis = rest.with_effects([effect], there.limited)
+            values = as_large(there, member, at) if is_form else there.values
             if hypothesis not in pool.found:
-                yield hypothesis, {**at.values, **neutral(member.effect), **as_large(column, member, at), **acts}
+                yield hypothesis, {**at.values, **neutral(member.effect), **values}
 
 
 def as_large(column: Column, member: Member, result: Fit) -> dict[str, float]:
@@ -222,23 +224,6 @@ def as_large(column: Column, member: Member, result: Fit) -> dict[str, float]:
         own = base_name(name).rsplit(".", 1)[1]
         found[name] = theirs.get(own, share * value if own in sizes else value)
     return found
-
-
-def _in_the_same_interval(
-    pool: Pool, best: Hypothesis, columns: Sequence[Column]
-) -> Iterator[tuple[Hypothesis, dict[str, float]]]:
-    """The set with another effect in place of one that acts in an interval only, in the same interval."""
-    at = pool.found[best]
-    for member in best.limited:
-        span, rest = member.span(at.values), best.without(member)
-        first = {column.effect.id: column for column in reversed(columns) if rest.admits(column.effect)}
-        for column in first.values():
-            if span is None or column.effect.id == member.id or not column.effect.acting_names():
-                continue
-            there = in_span(column, span, 0)
-            hypothesis = rest.with_effects([column.effect], there.limited)
-            if hypothesis not in pool.found:
-                yield hypothesis, {**at.values, **neutral(member.effect), **there.values}
 
 
 def refit_nominal(pool: Pool, calibrated: Fit, others: Sequence[Fit]) -> Fit:

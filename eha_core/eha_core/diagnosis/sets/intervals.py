@@ -82,15 +82,15 @@ def in_interval(problem: Problem, column: Column, windows: tuple[int, int]) -> C
     """A column that acts in some windows only."""
     local = problem.shooting.local_edges
     begin, end = float(local[windows[0], 0]), float(local[windows[1] - 1, 1])
-    return in_span(column, (begin, end), len(column.values) + windows[0])
+    there = in_span(column, (begin, end))
+    return there if there.limited else replace(there, alternative=len(column.values) + windows[0])
 
 
-def in_span(column: Column, span: tuple[float, float], alternative: int) -> Column:
-    """A column that acts from when until when [s] only; of an effect that sets in, one that does so at the first of
-    these, as an `alternative` to other instants."""
+def in_span(column: Column, span: tuple[float, float]) -> Column:
+    """A column that acts from when until when [s] only; of an effect that sets in, one that does so at the first."""
     onset = onset_of(column)
     if onset is not None:
-        return replace(column, values={**column.values, onset: span[0]}, alternative=alternative)
+        return replace(column, values={**column.values, onset: span[0]})
     acts = dict(zip(column.effect.acting_names(), span, strict=True))
     return replace(column, values={**column.values, **acts}, limited=True)
 

@@ -144,15 +144,15 @@ class Pool:
     def release(self, hypothesis: Hypothesis) -> None:
         """Fit a set on without the prior bounds that it rests on, if it does, and every other from then on.
 
-        How far a nominal value is believed must not decide which physics is named.
+        How far a nominal value is believed must not decide which physics is named: the nominal equations go on, too,
+        for they may need no effect then.
         """
         at = self.found[hypothesis]
         names = at.held_by_belief() - self.released
         if not names:
             return
         self.released |= names
-        simplest = [NOTHING] if NOTHING in self.found else []
-        for each in dict.fromkeys((hypothesis, *simplest)):  # without a bound no effect may be needed
+        for each in [known for known in self.found if known in (hypothesis, NOTHING)]:
             at = self.found[each]
             self.try_set("without prior bounds", each, at.values, at.states, RELEASED, self._in_plant(at), 2)
 
