@@ -58,10 +58,12 @@ THRESHOLDS = {
     "OF_SIZE": 4,
     "TRIED": 16,
     "TRIED_AT_THE_NOISE": 4,
-    "WITH_THE_PLANT": 3,
+    "AT_FIRST": 3,
+    "FURTHER": 8,
     "FITTED": 6,
     "MOST_TRIED": 12,
     "TO_THE_END": 12,
+    "CONVERGED": 20,
     "RELATED": 3.0,
     "SHARES": (1.0, 0.5, 0.25),
     "CARRIED": 2,
@@ -141,7 +143,7 @@ def test_a_fit_may_begin_at_the_whole_way_and_at_parts_of_it():
 
 
 def test_fits_of_few_iterations_come_first():
-    assert criteria.WITH_THE_PLANT < criteria.TO_THE_END
+    assert criteria.AT_FIRST < criteria.FURTHER < criteria.TO_THE_END < criteria.CONVERGED
     assert criteria.FITTED <= criteria.TRIED and criteria.TRIED_AT_THE_NOISE <= criteria.TRIED
 
 

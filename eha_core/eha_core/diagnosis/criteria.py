@@ -164,14 +164,16 @@ BEAM = 10
 """Sets of each size that are grown and shrunk in the quadratic model."""
 
 OF_SIZE, TRIED, TRIED_AT_THE_NOISE = 4, 16, 4
-"""Proposals of one size, and of all, of which the members are fitted. The true set of a development rig was fifth of
-its size by prediction, and at the noise after two iterations."""
+"""Proposals of one size (and effects in the intervals in which they act), and of all, of which the members are fitted.
+The true set of a development rig was fifth of its size by prediction, and at the noise after two iterations."""
 
-WITH_THE_PLANT, TO_THE_END = 3, 12
-"""Iterations of a proposal, and of a leader that nothing improved on."""
+AT_FIRST, FURTHER, TO_THE_END, CONVERGED = 3, 8, 12, 20
+"""Iterations of a fit that shows whether a set is worth more; of one that goes on from nearly the same set, or over
+other windows; of a leader's; and of what is compared at the end. A fit ends before where an iteration gains too
+little."""
 
 FITTED = 6
-"""Proposals that are fitted, those that begin lowest."""
+"""Proposals that are fitted, those that begin lowest; and sets near the best that are compared with it."""
 
 RELATED = 3.0
 """The search goes on from a set that is worse than the leader by this factor at most."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eha_core.diagnosis.criteria import (
+    AT_FIRST,
     EXPANSIONS_LATER,
     FITTED,
     IDLE,
@@ -21,7 +22,6 @@ from eha_core.diagnosis.criteria import (
     TO_THE_END,
     TRIED,
     TRIED_AT_THE_NOISE,
-    WITH_THE_PLANT,
     chance_gain,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
@@ -108,7 +108,7 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     for start in _begun(pool, model, _worth_a_fit(pool, base, model))[:FITTED]:
         if near is not None and not _contends(start, near, pool.found[near]):
             continue  # what is larger is proposed from there, if it is needed
-        result = pool.try_set(step, start.hypothesis, start.values, start.states, WITH_THE_PLANT)
+        result = pool.try_set(step, start.hypothesis, start.values, start.states, AT_FIRST)
         tried += 1
         if result.data < NEAR_NOISE * result.count:
             near = start.hypothesis

@@ -8,9 +8,13 @@ from statistics import fmean
 import numpy as np
 
 from eha_core.diagnosis.criteria import (
+    AT_FIRST,
     CHANCE,
     COMPARED_WITHIN,
+    CONVERGED,
     CONVINCING,
+    FITTED,
+    FURTHER,
     LOOKED_AT,
     NEAR_NOISE,
     NOISE_KNOWN,
@@ -29,21 +33,6 @@ from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name
-
-CONVERGED = 20
-"""Iterations in which what is compared is fitted to its end."""
-
-WITHOUT = 8
-"""Iterations of a fit without a member."""
-
-GLANCED, COMPARED = 3, 8
-"""Iterations of a rival's own parameters, and then of all that is free."""
-
-HOPEFUL = 1.0
-"""Share of the best set's chi^2 that a rival may be behind after its own parameters were fitted (assumed)."""
-
-RIVALS = 5
-"""Sets near the best that are fitted in order to be compared with it."""
 
 
 def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) -> Fit:
@@ -108,7 +97,7 @@ def _without(pool: Pool, hypothesis: Hypothesis, member: Member, at: Fit, needed
     off = neutral(member.effect)
     values = {name: off.get(base_name(name), value) for name, value in at.values.items()}
     free = tuple(parameter for parameter in at.free if base_name(parameter.name) not in off)
-    simpler = pool.try_set("without a member", rest, values, at.states, WITHOUT, free, 1, at.objective + needed)
+    simpler = pool.try_set("without a member", rest, values, at.states, FURTHER, free, 1, at.objective + needed)
     if simpler.objective - at.objective > needed:
         simpler = pool.go_on("without a member", rest, CONVERGED, 2, give_up_above=at.objective + needed)
     return simpler
@@ -158,7 +147,7 @@ def rivals(
             adds_only = set(best.members) <= set(hypothesis.members)
             if hypothesis != best and not adds_only and proposal.predicted < at.objective + within:
                 near.setdefault(hypothesis, proposal)
-    for hypothesis, proposal in sorted(near.items(), key=lambda item: item[1].predicted)[:RIVALS]:
+    for hypothesis, proposal in sorted(near.items(), key=lambda item: item[1].predicted)[:FITTED]:
         values, states = model.start(proposal.options)
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
     for hypothesis, values in _in_a_members_place(pool, best, columns):
@@ -168,7 +157,7 @@ def rivals(
         if hypothesis != best and result.objective < at.objective + within and hypothesis.members
         and not set(best.members) < set(hypothesis.members)
     ]  # fmt: skip
-    for hypothesis in sorted(close, key=lambda h: pool.found[h].objective)[:RIVALS]:
+    for hypothesis in sorted(close, key=lambda h: pool.found[h].objective)[:FITTED]:
         converge(pool, hypothesis, at.objective + within)
     compared = [best, *close]
     leading = min(compared, key=lambda hypothesis: cost(hypothesis, pool.found[hypothesis]))
@@ -181,9 +170,9 @@ def _compare(
 ) -> None:  # fmt: skip
     """Fit a rival's own parameters, and then all that is free where it may come near."""
     progress(f"comparing with {' + '.join(hypothesis.ids) or 'nothing'}")
-    glanced = pool.glance(step, hypothesis, values, states, GLANCED)
-    if glanced.objective < within + HOPEFUL * glanced.count:
-        pool.try_set(step, hypothesis, glanced.values, glanced.states, COMPARED, give_up_above=within)
+    glanced = pool.glance(step, hypothesis, values, states, AT_FIRST)
+    if glanced.objective < within + glanced.count:
+        pool.try_set(step, hypothesis, glanced.values, glanced.states, FURTHER, give_up_above=within)
 
 
 def _in_a_members_place(

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import OUTSTANDING
+from eha_core.diagnosis.criteria import OF_SIZE, OUTSTANDING
 from eha_core.diagnosis.sets.columns import Column
 from eha_core.identification.fit import Fit
 from eha_core.identification.normal_matrix import Eliminated
@@ -21,9 +21,6 @@ from eha_core.identification.shooting import STATE_SIZE
 MOST_SPANS = 100
 """Where there are more windows, neighbours are taken together to ask since when and until when an effect acts, for the
 answer has a number for each pair. A fit of the instants follows, so nothing hangs on a hundredth of the record."""
-
-TRIED = 4
-"""Effects that are tried with the interval in which they act."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +70,7 @@ def best_intervals(
         known = best.get(column.effect.id)
         if interval is not None and (known is None or interval[1] > known.gain):
             best[column.effect.id] = Interval(place, *interval)
-    leading = sorted(limited.values(), key=lambda interval: -interval.gain)[:TRIED]
+    leading = sorted(limited.values(), key=lambda interval: -interval.gain)[:OF_SIZE]
     stands_out = bool(leading) and leading[0].gain > OUTSTANDING * always
     return [*onsets.values(), *(leading if stands_out else [])]
 

@@ -10,7 +10,7 @@ from math import inf
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise
-from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE, chance_gain
+from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE, TO_THE_END, chance_gain
 from eha_core.diagnosis.effect_parameters import free_instants, with_effects
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.result import TraceStep
@@ -24,9 +24,6 @@ from eha_core.identification.short_windows import with_finer_slopes
 
 REACH = 1.0
 """s; how far a fit may move an instant from where the linear model has it."""
-
-RELEASED = 12
-"""Iterations of a set without the prior bounds that it rested on."""
 
 SAME_NOISE = 0.01
 """Share by which a channel's noise may seem to change before everything is weighed anew."""
@@ -154,7 +151,7 @@ class Pool:
         self.released |= names
         for each in [known for known in self.found if known in (hypothesis, NOTHING)]:
             at = self.found[each]
-            self.try_set("without prior bounds", each, at.values, at.states, RELEASED, self._in_plant(at), 2)
+            self.try_set("without prior bounds", each, at.values, at.states, TO_THE_END, self._in_plant(at), 2)
 
     def believe(self, hypothesis: Hypothesis) -> None:
         """Bring back each bound that was released, if a set gains no more without it than by chance."""
@@ -164,7 +161,7 @@ class Pool:
             free = self._in_plant(at)
             bounds = {one.name: (one.lower, one.upper) for one in free if base_name(one.name) == name}
             values = {**at.values, **{own: min(max(at.values[own], low), up) for own, (low, up) in bounds.items()}}
-            result = fit(self.posed(hypothesis), values, free, at.states, iterations=RELEASED, in_a_row=2)
+            result = fit(self.posed(hypothesis), values, free, at.states, iterations=TO_THE_END, in_a_row=2)
             self.trace.add("within a prior bound", hypothesis, result)
             if result.objective - at.objective > chance_gain(at.count, at.data / at.count):
                 self.released |= {name}
