@@ -6,11 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 from scipy.signal import savgol_filter
 
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.observation import TICK, WITH_OIL, Measured, Observation
 from eha_core.identification.shooting import SETTLING, STATE_SIZE, Sampling, Shooting
+
+SPAN = 0.02
+"""s; through the samples of so long a time channels are smoothed."""
+
+BENT = 2.5
+"""Standard deviations of what white noise would leave of a local cubic, above which the channel bends (assumed)."""
 
 
 def cut(
@@ -150,20 +157,39 @@ def _initial_states(observation: Observation, times: Array, values: Mapping[str,
     states = np.empty((len(starts), STATE_SIZE))
     position = observation.channel("position")
     assert position is not None
-    states[:, 0] = np.interp(starts, position.time, smooth(position, 0))
+    states[:, 0] = np.interp(starts, position.time, follow(position))
     states[:, 1] = np.interp(starts, position.time, smooth(position, 1))
     for column, name in ((2, "pressure_a"), (3, "pressure_b")):
         channel = observation.channel(name)
-        states[:, column] = half if channel is None else np.interp(starts, channel.time, smooth(channel, 0))
+        states[:, column] = half if channel is None else np.interp(starts, channel.time, follow(channel))
     return states
 
 
-def smooth(channel: Measured, derivative: int, span: float = 0.02) -> Array:
+def smooth(channel: Measured, derivative: int, span: float = SPAN) -> Array:
     """A local cubic through the samples within `span` seconds, or its derivative, at each sample."""
     spacing = float(np.median(np.diff(channel.time)))
-    length = max(5, 2 * int(0.5 * span / spacing) + 1)
-    length = min(length, len(channel.values) - 1 + len(channel.values) % 2)
-    return np.asarray(savgol_filter(channel.values, length, 3, deriv=derivative, delta=spacing))
+    return np.asarray(savgol_filter(channel.values, _length(channel, span), 3, deriv=derivative, delta=spacing))
+
+
+def _length(channel: Measured, span: float) -> int:
+    """The samples within `span` seconds: an odd number, five at least, and no more than there are."""
+    spacing = float(np.median(np.diff(channel.time)))
+    return min(max(5, 2 * int(0.5 * span / spacing) + 1), len(channel.values) - 1 + len(channel.values) % 2)
+
+
+def follow(channel: Measured) -> Array:
+    """A channel without most of its noise, at each sample: as `smooth`, but through fewer samples, half as many at a
+    time, where what a cubic leaves of them is more than the noise.
+
+    A sensor that lags starts each window from this: where pressures bend, a cubic through 20 ms may be wrong by several
+    times the noise, which is then seen until the sensor has forgotten it.
+    """
+    followed, longest = channel.values, _length(channel, SPAN)
+    for length in sorted({length for length in (longest, longest // 2 | 1, longest // 4 | 1) if length >= 5}):
+        cubic = savgol_filter(channel.values, length, 3)
+        left = uniform_filter1d((channel.values - cubic) ** 2, length) / (1.0 - 2.25 / length)
+        followed = np.where(left < (1.0 + BENT * np.sqrt(2.0 / length)) * channel.noise**2, cubic, followed)
+    return np.asarray(followed)
 
 
 def held_out(windows: int) -> Sequence[int]:
