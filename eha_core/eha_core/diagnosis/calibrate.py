@@ -193,11 +193,12 @@ def corrected_noise(shooting: Shooting, result: Fit, filtered: Collection[str] =
     """
     found = []
     for name, sampling, residual in zip(shooting.names, shooting.samplings, result.residuals, strict=True):
-        times = np.clip(residual_noise(residual), 0.5, 2.0)
+        own = sampling.own_noise
+        level = np.clip(sampling.noise * residual_noise(residual), 0.5 * own, 2.0 * own)
         if name in filtered:
-            before = float(np.sqrt(np.mean(residual**2) * colour_of(residual).slow))
-            times = np.clip(before, times, BEHIND_A_FILTER * times)
-        found.append(max(sampling.noise * float(times), RESOLVED["Pa" if sampling.column > 1 else "m"]))
+            before = sampling.noise * float(np.sqrt(np.mean(residual**2) * colour_of(residual).slow))
+            level = np.clip(before, level, BEHIND_A_FILTER * level)
+        found.append(max(float(level), RESOLVED["Pa" if sampling.column > 1 else "m"]))
     return found
 
 

@@ -148,7 +148,7 @@ def _place(channel: Measured, per_row: float, edges: Integers, every: int) -> Sa
     late = place - row
     row = np.minimum(row, last - 1) if len(row) else row
     late = np.where(place > row, place - row, late)
-    return Sampling(channel.column, row, late, channel.values[usable], channel.noise, window)
+    return Sampling(channel.column, row, late, channel.values[usable], channel.noise, window, channel.noise)
 
 
 def _initial_states(observation: Observation, times: Array, values: Mapping[str, float]) -> Array:

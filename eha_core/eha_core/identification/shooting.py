@@ -36,7 +36,7 @@ SLOPE_STEP = 5e-4
 @dataclass(frozen=True)
 class Sampling:
     """Where a channel's samples fall on the simulated rows: between `row` and the next, with weight `late` on the
-    next."""
+    next. `noise` is what residuals are weighed with, `own_noise` what the channel shows by itself."""
 
     column: int
     row: Integers
@@ -44,6 +44,7 @@ class Sampling:
     values: Array
     noise: float
     window: Integers
+    own_noise: float
 
 
 @dataclass(frozen=True)
