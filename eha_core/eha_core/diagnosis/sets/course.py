@@ -150,14 +150,15 @@ def begun(problem: Problem, nominal: Mapping[str, float], friction: Friction, ma
 
 def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool = True) -> Pool:
     """Sets over the windows of a pool: the friction of the force balance alone, then held while what is large beside it
-    is found, then free; then laws in no catalogue."""
+    is found, then free; then laws in no catalogue. The noise is enough: what is small beside it is found over long
+    windows, where it costs less to look for."""
     base = NOTHING
     if friction.held is None:
         others = [column for column in material.columns if not (friction.known and column.effect.kind)]
-        _search(Search(pool, others, material.progress, EXPANSIONS), begin)
+        _search(Search(pool, others, material.progress, EXPANSIONS, at_the_noise), begin)
         if friction.known and not at_the_noise(pool):
             # the whole record's balance hides what acts in a part
-            _search(Search(pool, material.columns, material.progress, EXPANSIONS), begin)
+            _search(Search(pool, material.columns, material.progress, EXPANSIONS, at_the_noise), begin)
     else:
         base = NOTHING.with_effects([friction.held.effect])
         pool = _around_friction(pool, begin, friction, material)
@@ -176,7 +177,11 @@ def _around_friction(pool: Pool, begin: Fit, friction: Friction, material: Mater
     if at_the_noise(alone):
         return alone
     columns = [column for column in material.columns if not column.effect.kind]
-    _search(Search(pool, columns, material.progress, EXPANSIONS, lambda pool: is_due_to(friction, pool)), begin)
+
+    def is_enough(pool: Pool) -> bool:
+        return at_the_noise(pool) or is_due_to(friction, pool)
+
+    _search(Search(pool, columns, material.progress, EXPANSIONS, is_enough), begin)
     free, ahead = pool.fresh(), _ahead(pool)
     free.adopt(alone)
     for hypothesis in ahead:
@@ -188,7 +193,7 @@ def _around_friction(pool: Pool, begin: Fit, friction: Friction, material: Mater
     for other in others:
         values = {**at.values, **neutral(held.effect), **other.values}
         free.try_set("form of friction", ahead[0].with_effects([other.effect]), values, at.states, RELEASED)
-    search_sets(Search(free, material.columns, material.progress, EXPANSIONS))
+    search_sets(Search(free, material.columns, material.progress, EXPANSIONS, at_the_noise))
     return free
 
 
@@ -214,7 +219,7 @@ def _search(search: Search, begin: Fit) -> None:
 def _search_laws(pool: Pool, base: Hypothesis, begin: Fit, material: Material) -> None:
     """Search among named effects and laws in no catalogue, from the nominal equations of `begin` on: what names did
     wrongly must not stand in a law's way. What a law drew may have a name."""
-    search = Search(pool, [*material.columns, *material.laws], material.progress)
+    search = Search(pool, [*material.columns, *material.laws], material.progress, content=at_the_noise)
     expand(search, base, "with laws in no catalogue", begin)
     search_sets(search)
     best = leader(pool)
