@@ -7,6 +7,7 @@ from made import bench
 from eha_core.diagnosis.criteria import FITTED, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.sets import expansion
+from eha_core.diagnosis.sets.course import at_the_noise
 from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.sets.pool import Pool, Trace
 from eha_core.identification.fit import exact, fit
@@ -46,6 +47,13 @@ def test_a_search_expands_no_set_twice_and_ends_at_the_noise(rig):
     assert best == rig.set_of("constant_load", "valve_deadband")
     assert search.expanded.keys() == {NOTHING, best}
     assert search.next() is None
+
+
+def test_on_the_way_to_long_windows_nothing_is_expanded_at_the_noise(rig):
+    search = searched(rig)
+    search.content = at_the_noise
+    assert search_sets(search) == rig.set_of("constant_load", "valve_deadband")
+    assert search.expanded.keys() == {NOTHING}
 
 
 def test_a_set_pays_for_its_size_and_far_from_the_noise_a_member_has_to_gain_more(rig):
