@@ -36,6 +36,10 @@ def test_a_fine_encoder_is_quantised_however_many_of_its_levels_were_seen(kind, 
     assert quantisation(values) == pytest.approx(step, rel=1e-2)
 
 
+def test_a_few_levels_without_a_common_step_are_no_grid():
+    assert quantisation(np.array([0.0, 1.0, 1.0, 4.5, 0.0])) == 0.0
+
+
 def test_what_is_on_no_grid_is_not_quantised():
     generator = np.random.default_rng(6)
     assert quantisation(SMOOTH) == 0.0

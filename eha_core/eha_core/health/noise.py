@@ -91,7 +91,7 @@ def quantisation(values: Array) -> float:
     steps = steps[steps > ROUNDING * float(np.max(np.abs(values)))] if len(steps) else steps
     if len(steps) < 2:
         return 0.0
-    least = float(np.quantile(steps, 0.05))  # a few values between the levels are let pass
+    least = float(np.quantile(steps, 0.05, method="lower"))  # a few values between the levels are let pass
     # One step bears the rounding of two values; the sum of many bears hardly more.
     whole = np.round(steps / least)
     usual = (whole > 0.0) & (np.abs(steps / least - whole) < ON_GRID)
