@@ -122,6 +122,8 @@ def test_what_can_be_imitated_is_named_and_not_its_imitation(planted, named):
     *_, comparison = searched(planted, 8.0)
     best = comparison.entries[0]
     assert best.ids == (named,) and not best.hypothesis.limited
+    gained = comparison.nominal.fit.objective - best.fit.objective
+    assert comparison.site_gains == pytest.approx({best.effects[0].site: gained}, rel=1e-3)
     for name in planted.keys() - {"moving_mass"}:
         assert best.fit.values[name] == pytest.approx(planted[name], abs=4.0 * best.fit.deviation(name))
 

@@ -285,7 +285,7 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
         Entry(NOTHING, nominal, 0.0),
         rank(nominal, found),
         residual_variance([nominal, *found.values()]),
-        _gains_by_site(model, best),
+        _gains_by_site(model, best, nominal),
         _left_over(model, best),
         {h: result for h, result in pool if h in {best.without(member) for member in best.members}},
         gains,
@@ -295,11 +295,14 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
     return calibration, comparison
 
 
-def _gains_by_site(model: QuadraticModel, best: Hypothesis) -> dict[str, float]:
-    """What the members of each site explain together with the others; of no set, what a single effect would."""
+def _gains_by_site(model: QuadraticModel, best: Hypothesis, nominal: Fit) -> dict[str, float]:
+    """What the members of each site explain together with the others, those of the only one over the nominal equations
+    as they were fitted; of no set, what a single effect would."""
     if not best.members:
         return _left_over(model, best)
     sites = {member.effect.site for member in best.members}
+    if len(sites) == 1:
+        return dict.fromkeys(sites, nominal.objective - model.at.objective)
     return {
         site: objective_without(model, [member for member in best.members if member.effect.site == site])
         - model.at.objective
