@@ -1,4 +1,4 @@
-"""Channels are followed as closely as their noise allows: windows start there, and sensors that lag with them."""
+"""Channels are followed as closely as their noise allows: sensors that lag start windows there."""
 
 from __future__ import annotations
 

@@ -55,6 +55,8 @@ def cut(
         # the step knows pressures: a force is one chamber's pressure over its area
         hold = [hold[0] / values["piston_area"], np.zeros_like(hold[0])]
     samplings = tuple(_place(channel, per_row, edges, every) for channel in observation.measured)
+    times = np.asarray(edges * step_size)
+    states = _initial_states(observation, times, values)
     return Shooting(
         observation.drive,
         step_size,
@@ -64,7 +66,8 @@ def cut(
         in_force,
         samplings,
         tuple(channel.name for channel in observation.measured),
-        _initial_states(observation, np.asarray(edges * step_size), values),
+        states,
+        _shown(observation, times, states),
         STATE_SIZE if observation.drive in WITH_OIL else 2,
         composition=observation.composition,
         restarts=_restarts(edges, np.concatenate([begins, ends]) * round(TICK / step_size)),
@@ -157,12 +160,22 @@ def _initial_states(observation: Observation, times: Array, values: Mapping[str,
     states = np.empty((len(starts), STATE_SIZE))
     position = observation.channel("position")
     assert position is not None
-    states[:, 0] = np.interp(starts, position.time, follow(position))
+    states[:, 0] = np.interp(starts, position.time, smooth(position, 0))
     states[:, 1] = np.interp(starts, position.time, smooth(position, 1))
     for column, name in ((2, "pressure_a"), (3, "pressure_b")):
         channel = observation.channel(name)
-        states[:, column] = half if channel is None else np.interp(starts, channel.time, follow(channel))
+        states[:, column] = half if channel is None else np.interp(starts, channel.time, smooth(channel, 0))
     return states
+
+
+def _shown(observation: Observation, times: Array, states: Array) -> Array:
+    """What the sensors showed where windows begin; `states` of channels that were not measured."""
+    shown = states.copy()
+    for column, name in ((0, "position"), (2, "pressure_a"), (3, "pressure_b")):
+        channel = observation.channel(name)
+        if channel is not None:
+            shown[:, column] = np.interp(times[:-1], channel.time, follow(channel))
+    return shown
 
 
 def smooth(channel: Measured, derivative: int, span: float = SPAN) -> Array:
