@@ -180,14 +180,16 @@ def _shown(observation: Observation, times: Array, states: Array) -> Array:
 
 def smooth(channel: Measured, derivative: int, span: float = SPAN) -> Array:
     """A local cubic through the samples within `span` seconds, or its derivative, at each sample."""
-    spacing = float(np.median(np.diff(channel.time)))
-    return np.asarray(savgol_filter(channel.values, _length(channel, span), 3, deriv=derivative, delta=spacing))
+    length, spacing = _length(channel, span)
+    return np.asarray(savgol_filter(channel.values, length, 3, deriv=derivative, delta=spacing))
 
 
-def _length(channel: Measured, span: float) -> int:
-    """The samples within `span` seconds: an odd number, five at least, and no more than there are."""
+def _length(channel: Measured, span: float) -> tuple[int, float]:
+    """The samples within `span` seconds, an odd number, five at least, and no more than there are; and the time [s]
+    from one to the next."""
     spacing = float(np.median(np.diff(channel.time)))
-    return min(max(5, 2 * int(0.5 * span / spacing) + 1), len(channel.values) - 1 + len(channel.values) % 2)
+    length = max(5, 2 * int(0.5 * span / spacing) + 1)
+    return min(length, len(channel.values) - 1 + len(channel.values) % 2), spacing
 
 
 def follow(channel: Measured) -> Array:
@@ -197,10 +199,11 @@ def follow(channel: Measured) -> Array:
     A sensor that lags starts each window from this: where pressures bend, a cubic through 20 ms may be wrong by several
     times the noise, which is then seen until the sensor has forgotten it.
     """
-    followed, longest = channel.values, _length(channel, SPAN)
+    followed, (longest, _) = channel.values, _length(channel, SPAN)
     for length in sorted({length for length in (longest, longest // 2 | 1, longest // 4 | 1) if length >= 5}):
         cubic = savgol_filter(channel.values, length, 3)
-        left = uniform_filter1d((channel.values - cubic) ** 2, length) / (1.0 - 2.25 / length)
+        left = uniform_filter1d((channel.values - cubic) ** 2, length)
+        left /= 1.0 - 2.25 / length  # the share of white noise that a cubic through so many samples takes with it
         followed = np.where(left < (1.0 + BENT * np.sqrt(2.0 / length)) * channel.noise**2, cubic, followed)
     return np.asarray(followed)
 

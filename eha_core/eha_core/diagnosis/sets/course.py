@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -150,15 +150,14 @@ def begun(problem: Problem, nominal: Mapping[str, float], friction: Friction, ma
 
 def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool = True) -> Pool:
     """Sets over the windows of a pool: the friction of the force balance alone, then held while what is large beside it
-    is found, then free; then laws in no catalogue. The noise is enough: what is small beside it is found over long
-    windows, where it costs less to look for."""
+    is found, then free; then laws in no catalogue."""
     base = NOTHING
     if friction.held is None:
         others = [column for column in material.columns if not (friction.known and column.effect.kind)]
-        _search(Search(pool, others, material.progress, EXPANSIONS, at_the_noise), begin)
+        _search(_on_the_way(pool, others, material), begin)
         if friction.known and not at_the_noise(pool):
             # the whole record's balance hides what acts in a part
-            _search(Search(pool, material.columns, material.progress, EXPANSIONS, at_the_noise), begin)
+            _search(_on_the_way(pool, material.columns, material), begin)
     else:
         base = NOTHING.with_effects([friction.held.effect])
         pool = _around_friction(pool, begin, friction, material)
@@ -177,11 +176,8 @@ def _around_friction(pool: Pool, begin: Fit, friction: Friction, material: Mater
     if at_the_noise(alone):
         return alone
     columns = [column for column in material.columns if not column.effect.kind]
-
-    def is_enough(pool: Pool) -> bool:
-        return at_the_noise(pool) or is_due_to(friction, pool)
-
-    _search(Search(pool, columns, material.progress, EXPANSIONS, is_enough), begin)
+    search = _on_the_way(pool, columns, material, lambda pool: at_the_noise(pool) or is_due_to(friction, pool))
+    _search(search, begin)
     free, ahead = pool.fresh(), _ahead(pool)
     free.adopt(alone)
     for hypothesis in ahead:
@@ -193,7 +189,7 @@ def _around_friction(pool: Pool, begin: Fit, friction: Friction, material: Mater
     for other in others:
         values = {**at.values, **neutral(held.effect), **other.values}
         free.try_set("form of friction", ahead[0].with_effects([other.effect]), values, at.states, RELEASED)
-    search_sets(Search(free, material.columns, material.progress, EXPANSIONS, at_the_noise))
+    search_sets(_on_the_way(free, material.columns, material))
     return free
 
 
@@ -208,6 +204,14 @@ def is_due_to(friction: Friction, pool: Pool) -> bool:
     present = [option for option in model.options if option.present]
     left = [model.empty - model.gain((*present, option))[0] for option in model.options if not option.present]
     return bool(left) and min(left) - at.count < (1.0 - OF_FRICTION) * (at.objective - at.count)
+
+
+def _on_the_way(
+    pool: Pool, columns: Sequence[Column], material: Material, content: Callable[[Pool], bool] = at_the_noise
+) -> Search:
+    """A search that another follows over long windows: the noise is enough, for what is small beside it costs less to
+    find there."""
+    return Search(pool, columns, material.progress, EXPANSIONS, content)
 
 
 def _search(search: Search, begin: Fit) -> None:
