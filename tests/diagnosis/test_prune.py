@@ -11,7 +11,7 @@ from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.candidates import Proposal, Search
 from eha_core.diagnosis.search.initial_guesses import applicable_effects
-from eha_core.diagnosis.search.prune import FURTHER, prune, refit_gradually, refit_without
+from eha_core.diagnosis.search.prune import AT_MOST, prune, refit_gradually, refit_without
 from eha_core.effects import effects
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
@@ -64,7 +64,7 @@ def test_where_friction_hunts_little_by_little_leads_lower_than_at_once():
     for seed in (4, 5, 6, 8):
         search, best = beside_a_scale(RUBS, seed)
         scale, friction = best.hypothesis.members
-        at_once = search.go_on(refit_without(search, best, scale), FURTHER)
+        at_once = search.go_on(refit_without(search, best, scale), AT_MOST)
         slowly = refit_gradually(search, best, scale)
         assert slowly.hypothesis.members == (friction,)
         assert slowly.fit.values["supply_pressure"] == pytest.approx(nominal_values()["supply_pressure"], rel=0.1)

@@ -14,15 +14,13 @@ from functools import partial
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
+from eha_core.diagnosis.criteria import FURTHER
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import Member, without_effect
 from eha_core.diagnosis.result import AUGMENTED, NOMINAL, RECALIBRATED, Correlation, Residual, Step
 from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.parallel import each
-
-REFITTED = 8
-"""Iterations of a fit without a member."""
 
 
 def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, Residual]]:
@@ -50,7 +48,7 @@ def _without(evidence: Evidence, winner: Entry, member: Member) -> Fit:
     if known is not None:
         return known
     values, free = without_effect(winner.fit, member.effect)
-    return fit(evidence.calibration.problem, values, free, winner.fit.states, iterations=REFITTED)
+    return fit(evidence.calibration.problem, values, free, winner.fit.states, iterations=FURTHER)
 
 
 def _scales(evidence: Evidence) -> list[float]:

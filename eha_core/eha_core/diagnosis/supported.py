@@ -12,7 +12,7 @@ from dataclasses import replace
 from scipy.stats import chi2
 
 from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
-from eha_core.diagnosis.criteria import CERTAINTY, COHERENT, HELD_OUT, LEFT_IN_A_CHANNEL
+from eha_core.diagnosis.criteria import CERTAINTY, COHERENT, CONVERGED, HELD_OUT, LEFT_IN_A_CHANNEL, TO_THE_END
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.explained import is_identified, root_mean_square
 from eha_core.diagnosis.hypothesis import NOTHING, Member, without_effect
@@ -25,8 +25,8 @@ from eha_core.identification.per_recording import base_name
 from eha_core.identification.profile import Ends, profile_interval
 from eha_core.identification.validate import instants_of, judge
 
-MEMBERS_FIRST, AFRESH, WITHOUT = 4, 20, 12
-"""Iterations of the members alone beside nominal values, of the whole model from there, and of a model without one."""
+MEMBERS_FIRST = 4
+"""Iterations of the members alone beside nominal values."""
 
 BETTER = 2.0
 """Chi^2 by which the same model must be better elsewhere; a fit ends where an iteration gains a quarter of that."""
@@ -54,7 +54,7 @@ def _from_nominal_values(evidence: Evidence, decision: Decision) -> Decision:
     problem, best = calibration.problem, winner.fit
     beside = fit(problem, start, own, calibration.nominal.states, iterations=MEMBERS_FIRST)
     afresh = fit(
-        problem, beside.values, best.free, beside.states, iterations=AFRESH, give_up_above=best.objective,
+        problem, beside.values, best.free, beside.states, iterations=CONVERGED, give_up_above=best.objective,
     )  # fmt: skip
     if not best.objective - afresh.objective > BETTER:
         return decision
@@ -74,7 +74,7 @@ def _identified_alone(evidence: Evidence, decision: Decision) -> Decision:
     doubtful = _unidentified(with_residual(problem, winner.fit), winner.hypothesis.members)
     for member in doubtful:
         values, free = without_effect(winner.fit, member.effect)
-        less = fit(problem, values, free, winner.fit.states, iterations=WITHOUT)
+        less = fit(problem, values, free, winner.fit.states, iterations=TO_THE_END)
         lost = less.objective - winner.fit.objective
         if lost < chance(evidence, winner.fit, member.effect):
             winner = Entry(winner.hypothesis.without(member), less, winner.score - lost / variance)

@@ -11,7 +11,7 @@ from scipy.linalg import LinAlgError
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import CONVINCING, LEFT_OVER, UNFITTED, chance_gain, parameter_cost
+from eha_core.diagnosis.criteria import CONVINCING, FURTHER, LEFT_OVER, UNFITTED, chance_gain, parameter_cost
 from eha_core.diagnosis.hypothesis import Hypothesis, without_effect
 from eha_core.diagnosis.sets.columns import LAWS, range_of
 from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
@@ -21,9 +21,6 @@ from eha_core.identification.free_parameters import FreeParameter, coordinates
 from eha_core.identification.observation import WITH_OIL
 from eha_core.identification.problem import Problem, linearise, normal_equations
 from eha_core.identification.shooting import Shooting
-
-REFITTED = 8
-"""Iterations of a fit without a member."""
 
 FULLY_FITTED = 2
 """How many of the curves with the largest predicted gain are fitted in full."""
@@ -130,7 +127,7 @@ def _without_idle(problem: Problem, hypothesis: Hypothesis, result: Fit) -> tupl
         if not member.effect.named:
             continue
         values, free = without_effect(result, member.effect)
-        simpler = fit(problem, values, free, result.states, iterations=REFITTED)
+        simpler = fit(problem, values, free, result.states, iterations=FURTHER)
         left = max(result.data - result.count, 0.0)
         if simpler.objective - result.objective < max(needed, CONVINCING / (1.0 - CONVINCING) * left):
             hypothesis, result = hypothesis.without(member), simpler

@@ -9,6 +9,8 @@ import numpy as np
 from eha_core.diagnosis.criteria import (
     CHANCE,
     CONVINCING,
+    FURTHER,
+    LOOKED_AT,
     NOISE_KNOWN,
     OF_ITS_FORM,
     OF_SAMPLES,
@@ -21,10 +23,7 @@ from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.per_recording import base_name, is_one_of
 
-REFITTED = 8
-"""Iterations of a fit without a member."""
-
-FURTHER = 30
+AT_MOST = 30
 """Iterations for which such a fit goes on at most."""
 
 STEPS_OUT = (0.75, 0.5, 0.25)
@@ -33,10 +32,6 @@ STEPS_OUT = (0.75, 0.5, 0.25)
 ON_THE_WAY = 4
 """... and the iterations at each. The parameters that can make up for it follow it along their valley; taken out at
 once, a scale of both pressures stayed 2,541 chi^2 above the rig without it (development case rig-0013, seed 61331)."""
-
-LOOKED_AT = 4.0
-"""A member is tried to be dropped where the curvature says that it costs no more than this many times what it must be
-worth."""
 
 
 def wald(result: Fit, effect: Effect) -> float:
@@ -53,7 +48,7 @@ def wald(result: Fit, effect: Effect) -> float:
     return float(distance / scale @ correlation @ (distance / scale))
 
 
-def refit_without(search: Search, candidate: Candidate, member: Member, iterations: int = REFITTED) -> Candidate:
+def refit_without(search: Search, candidate: Candidate, member: Member, iterations: int = FURTHER) -> Candidate:
     """The set without one member, fitted from where the whole set stands."""
     return search.try_proposal(_without(candidate, member), iterations)
 
@@ -78,7 +73,7 @@ def refit_gradually(search: Search, candidate: Candidate, member: Member) -> Can
         step = fit(search.problem, {**values, **shapes, **held}, free, states, iterations=ON_THE_WAY)
         values, states = {**values, **{parameter.name: step.values[parameter.name] for parameter in free}}, step.states
     proposal = Proposal(candidate.hypothesis.without(member), values, free, states)
-    return search.try_proposal(proposal, REFITTED)
+    return search.try_proposal(proposal, FURTHER)
 
 
 def look_back(search: Search, candidate: Candidate, needed: float) -> Candidate:
@@ -103,7 +98,7 @@ def prune(search: Search, best: Candidate) -> Candidate:
     """
     while len(best.hypothesis.members) > 1:
         members = best.hypothesis.members
-        refitted = search.try_proposals([_without(best, member) for member in members], REFITTED)
+        refitted = search.try_proposals([_without(best, member) for member in members], FURTHER)
         simpler = dict(zip(members, refitted, strict=True))
         predicted = {member: wald(best.fit, member.effect) for member in simpler}
         worth = {member: min(_lost(candidate, best), predicted[member]) for member, candidate in simpler.items()}
@@ -113,7 +108,7 @@ def prune(search: Search, best: Candidate) -> Candidate:
             if _lost(simpler[member], best) > asked[member]:
                 near = predicted[member] < LOOKED_AT * asked[member]
                 enough = np.inf if near else best.fit.objective + asked[member]
-                simpler[member] = search.go_on(simpler[member], FURTHER, give_up_above=enough)
+                simpler[member] = search.go_on(simpler[member], AT_MOST, give_up_above=enough)
             if max(asked[member], predicted[member]) < _lost(simpler[member], best) < OVER * explained:
                 simpler[member] = refit_gradually(search, best, member)
         lost = {member: _lost(candidate, best) for member, candidate in simpler.items()}
