@@ -76,7 +76,6 @@ def test_no_instant_is_fitted_from_afar_and_one_law_of_dry_friction_stands_for_a
     assert {"bore_wear_leakage", "spool_hysteresis", "position_sensor_lag"} <= chosen
 
 
-@pytest.mark.timeout(300)
 def test_five_effects_are_found_together():
     planted = {
         "constant_load.force": 300.0,

@@ -37,7 +37,6 @@ def found():
     return searched({**PLANTED, "moving_mass": 10.0}, 5.0)
 
 
-@pytest.mark.timeout(600)
 def test_three_effects_are_named_with_their_values_and_nothing_else(found):
     _, _, comparison = found
     best = comparison.entries[0]
@@ -93,7 +92,6 @@ def test_windows_in_which_nothing_is_missing_are_passed_over():
     assert steps.count("nominal") == 2 and "longer windows" not in steps
 
 
-@pytest.mark.timeout(600)
 def test_friction_that_drags_for_a_while_is_found_though_the_whole_balance_shows_none():
     planted = {"coulomb_friction.force": 250.0, "coulomb_friction.acts_from": 2.5, "coulomb_friction.acts_until": 4.0}
     observation = observe(recorded(planted, duration=8.0))
@@ -109,7 +107,6 @@ def test_friction_that_drags_for_a_while_is_found_though_the_whole_balance_shows
         assert best.fit.values[name] == pytest.approx(value, abs=max(4.0 * best.fit.deviation(name), 0.01 * value))
 
 
-@pytest.mark.timeout(600)
 @pytest.mark.parametrize(
     ("planted", "named"),
     [
@@ -128,7 +125,6 @@ def test_what_can_be_imitated_is_named_and_not_its_imitation(planted, named):
         assert best.fit.values[name] == pytest.approx(planted[name], abs=4.0 * best.fit.deviation(name))
 
 
-@pytest.mark.timeout(600)
 def test_where_a_value_far_beyond_belief_explains_all_nothing_is_named():
     damped = 20.0 * nominal_values()["damping_coefficient"]
     *_, comparison = searched({"damping_coefficient": damped}, 6.0)

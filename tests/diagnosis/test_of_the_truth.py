@@ -36,7 +36,6 @@ def of_case(case: Case) -> Diagnosis:
     return diagnose(recording, {**nominal_values(), **case.nominal})
 
 
-@pytest.mark.timeout(400)
 @pytest.mark.parametrize(("effect", "number"), [("bore_wear_leakage", 3), ("pressure_sensor_lag", 2)])
 def test_it_is_named_with_intervals_that_hold_it(effect: str, number: int) -> None:
     case, result = diagnosed(effect, number)
@@ -49,7 +48,6 @@ def test_it_is_named_with_intervals_that_hold_it(effect: str, number: int) -> No
     assert max(fit.rmse_after / fit.noise for fit in result.held_out.values()) < 1.1
 
 
-@pytest.mark.timeout(400)
 def test_parameters_do_not_end_in_a_local_minimum_far_from_their_nominal_values() -> None:
     """Oil four times too soft and a leak 26 times too large left 226 chi^2 more than the optimum beside a delay."""
     case = draw_case("single", 0, 2026)

@@ -156,14 +156,12 @@ def exactly(result, case):
     return result.verdict == "missing_physics" and named == sorted(case.effect_ids)
 
 
-@pytest.mark.timeout(400)
 def test_damping_beside_dry_friction_is_not_taken_for_stribecks_curve():
     """Stribeck's law explains both nearly, with as many parameters: damping then has little left to explain."""
     case, result = diagnosed(20, 11300, ("coulomb_friction", "quadratic_damping", "turbulent_leakage"), 10.0)
     assert exactly(result, case)
 
 
-@pytest.mark.timeout(400)
 def test_three_effects_of_another_plant_are_named_and_nothing_else():
     case, result = diagnosed(3, 9001, ("coulomb_friction", "supply_pressure_droop", "constant_load"), 1.0)
     assert exactly(result, case)

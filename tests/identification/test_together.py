@@ -116,7 +116,6 @@ def test_recordings_driven_by_different_channels_are_refused():
         diagnose_together([recorded({}, duration=3.0), by_pressures], nominal_values())
 
 
-@pytest.mark.timeout(400)
 def test_two_recordings_of_friction_that_acts_for_a_while_name_it_together():
     rig = {"coulomb_friction.force": 250.0, "effects_from": 2.5, "effects_until": 5.25}
     both = [recorded(rig, seed=seed, duration=8.0, rate=250.0) for seed in (5, 6)]
@@ -127,7 +126,6 @@ def test_two_recordings_of_friction_that_acts_for_a_while_name_it_together():
     assert effect.active == pytest.approx((2.5, 5.25), abs=0.01)
 
 
-@pytest.mark.timeout(400)
 def test_a_load_of_its_own_in_each_recording_is_found_and_a_third_is_predicted():
     loads = (300.0, -200.0)
     rig = {"coulomb_friction.force": 120.0}
