@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
-from scipy.signal import savgol_filter
+from scipy.signal import savgol_coeffs, savgol_filter
 
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.observation import TICK, WITH_OIL, Measured, Observation
@@ -16,8 +15,9 @@ from eha_core.identification.shooting import SETTLING, STATE_SIZE, Sampling, Sho
 SPAN = 0.02
 """s; through the samples of so long a time channels are smoothed."""
 
-BENT = 2.5
-"""Standard deviations of what white noise would leave of a local cubic, above which the channel bends (assumed)."""
+BENT = 4.0
+"""Standard deviations by which a cubic through more samples may differ from one through fewer: beyond, the channel
+bends. Noise alone does so once in 16,000 samples."""
 
 
 def cut(
@@ -55,8 +55,6 @@ def cut(
         # the step knows pressures: a force is one chamber's pressure over its area
         hold = [hold[0] / values["piston_area"], np.zeros_like(hold[0])]
     samplings = tuple(_place(channel, per_row, edges, every) for channel in observation.measured)
-    times = np.asarray(edges * step_size)
-    states = _initial_states(observation, times, values)
     return Shooting(
         observation.drive,
         step_size,
@@ -66,8 +64,7 @@ def cut(
         in_force,
         samplings,
         tuple(channel.name for channel in observation.measured),
-        states,
-        _shown(observation, times, states),
+        _initial_states(observation, np.asarray(edges * step_size), values),
         STATE_SIZE if observation.drive in WITH_OIL else 2,
         composition=observation.composition,
         restarts=_restarts(edges, np.concatenate([begins, ends]) * round(TICK / step_size)),
@@ -160,22 +157,12 @@ def _initial_states(observation: Observation, times: Array, values: Mapping[str,
     states = np.empty((len(starts), STATE_SIZE))
     position = observation.channel("position")
     assert position is not None
-    states[:, 0] = np.interp(starts, position.time, smooth(position, 0))
+    states[:, 0] = np.interp(starts, position.time, follow(position))
     states[:, 1] = np.interp(starts, position.time, smooth(position, 1))
     for column, name in ((2, "pressure_a"), (3, "pressure_b")):
         channel = observation.channel(name)
-        states[:, column] = half if channel is None else np.interp(starts, channel.time, smooth(channel, 0))
+        states[:, column] = half if channel is None else np.interp(starts, channel.time, follow(channel))
     return states
-
-
-def _shown(observation: Observation, times: Array, states: Array) -> Array:
-    """What the sensors showed where windows begin; `states` of channels that were not measured."""
-    shown = states.copy()
-    for column, name in ((0, "position"), (2, "pressure_a"), (3, "pressure_b")):
-        channel = observation.channel(name)
-        if channel is not None:
-            shown[:, column] = np.interp(times[:-1], channel.time, follow(channel))
-    return shown
 
 
 def smooth(channel: Measured, derivative: int, span: float = SPAN) -> Array:
@@ -193,19 +180,25 @@ def _length(channel: Measured, span: float) -> tuple[int, float]:
 
 
 def follow(channel: Measured) -> Array:
-    """A channel without most of its noise, at each sample: as `smooth`, but through fewer samples, half as many at a
-    time, where what a cubic leaves of them is more than the noise.
+    """A channel without most of its noise, at each sample: as `smooth`, but through fewer samples where that differs
+    from a cubic through fewer by more than noise makes it (O. V. Lepskii, Theory Probab. Appl. 35, 1990).
 
-    A sensor that lags starts each window from this: where pressures bend, a cubic through 20 ms may be wrong by several
-    times the noise, which is then seen until the sensor has forgotten it.
+    Windows start here, and sensors that lag with them: where pressures bend, a cubic through 20 ms may be wrong by
+    several times the noise, which is then seen until the sensor has forgotten it.
     """
-    followed, (longest, _) = channel.values, _length(channel, SPAN)
-    for length in sorted({length for length in (longest, longest // 2 | 1, longest // 4 | 1) if length >= 5}):
-        cubic = savgol_filter(channel.values, length, 3)
-        left = uniform_filter1d((channel.values - cubic) ** 2, length)
-        left /= 1.0 - 2.25 / length  # the share of white noise that a cubic through so many samples takes with it
-        followed = np.where(left < (1.0 + BENT * np.sqrt(2.0 / length)) * channel.noise**2, cubic, followed)
-    return np.asarray(followed)
+    longest, _ = _length(channel, SPAN)
+    closer, agrees = [(channel.values, 1.0)], np.ones(len(channel.values), dtype=bool)
+    followed = channel.values
+    for length in sorted({length for length in (longest // 4 | 1, longest // 2 | 1, longest) if length >= 5}):
+        cubic = np.asarray(savgol_filter(channel.values, length, 3))
+        # the weight of the middle sample is the share of the noise's variance that a least-squares fit leaves there,
+        # and an estimate from fewer of the same samples differs from it by as much as its own variance is larger
+        share = float(savgol_coeffs(length, 3)[length // 2])
+        for shorter, of_shorter in closer:
+            agrees &= np.abs(cubic - shorter) < BENT * channel.noise * np.sqrt(of_shorter - share)
+        followed = np.where(agrees, cubic, followed)
+        closer.append((cubic, share))
+    return followed
 
 
 def held_out(windows: int) -> Sequence[int]:

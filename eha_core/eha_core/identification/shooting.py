@@ -59,8 +59,6 @@ class Shooting:
         samplings: one a measured channel, sorted by time.
         initial_states: (windows, STATE_SIZE) from the smoothed measurement; pressures at half supply where not
         measured.
-        shown: (windows, STATE_SIZE) what the sensors showed there, as closely as the noise allows: where one that lags
-        starts.
         first_windows: the first window of each recording; there all that runs through begins anew, time too.
         restarts: windows that no link ties to the one before: what drove the plant in that one is not known.
         per_recording: the parameters that have a value in each recording.
@@ -76,7 +74,6 @@ class Shooting:
     samplings: tuple[Sampling, ...]
     names: tuple[str, ...]
     initial_states: Array
-    shown: Array
     free_states: int
     first_windows: tuple[int, ...] = (0,)
     per_recording: tuple[str, ...] = ()
@@ -173,7 +170,7 @@ class Shooting:
         start, end = int(self.edges[windows.start]), int(self.edges[windows.stop])
         here = slice(windows.start, windows.stop)
         edges = self.edges[windows.start : windows.stop + 1] - start
-        return start, self.inputs[:, start:end], Windows(edges, self.leakage[here], self.shown[here])
+        return start, self.inputs[:, start:end], Windows(edges, self.leakage[here], self.initial_states[here])
 
     def simulate_many(self, sets: Sequence[tuple[Mapping[str, float], Array]]) -> tuple[Array, Array]:
         """`simulate` for up to LANES pairs of values and states, in lock-step and to the same digits.

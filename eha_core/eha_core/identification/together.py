@@ -69,7 +69,6 @@ def joined(each: Sequence[Shooting], per_recording: Sequence[str] = ()) -> Shoot
         samplings=tuple(samplings),
         names=tuple(named(name, number) for number, shooting in enumerate(each, 1) for name in shooting.names),
         initial_states=np.concatenate([shooting.initial_states for shooting in each]),
-        shown=np.concatenate([shooting.shown for shooting in each]),
         first_windows=tuple(int(window) for window in windows[:-1]),
         per_recording=tuple(per_recording),
         restarts=tuple(
@@ -98,7 +97,6 @@ def recording_alone(shooting: Shooting, number: int) -> Shooting:
         ),
         names=tuple(name.partition("@")[0] for name in names),
         initial_states=shooting.initial_states[windows.start : windows.stop],
-        shown=shooting.shown[windows.start : windows.stop],
         first_windows=(0,),
         per_recording=(),
         restarts=tuple(window - windows.start for window in shooting.restarts if window in windows),
