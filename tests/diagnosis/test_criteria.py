@@ -71,6 +71,7 @@ THRESHOLDS = {
     "COMPARED_WITHIN": 300.0,
     "LOOKED_AT": 4.0,
     "IDENTIFIED": 2.0,
+    "IMPROBABLE": 2.0,
 }
 
 

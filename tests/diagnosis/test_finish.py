@@ -2,14 +2,26 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from made import LAWS, bench, explanation
 
 from eha_core.diagnosis import criteria
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.finish import as_large, finish, meet, predicted_costs, refit_nominal, required_of, rivals
+from eha_core.diagnosis.sets.finish import (
+    as_large,
+    finish,
+    in_a_members_place,
+    meet,
+    of_simpler_form,
+    predicted_costs,
+    refit_nominal,
+    required_of,
+    rivals,
+    where_improbable,
+)
 from eha_core.diagnosis.sets.pool import Pool, Trace
-from eha_core.identification.free_parameters import free_nominal_parameters
+from eha_core.identification.free_parameters import LATE, free_nominal_parameters
 from eha_core.parameters import nominal_values
 
 PLANTED = {"constant_load.force": 60.0, "valve_deadband.half_width": 2e-5}
@@ -151,6 +163,39 @@ def test_another_form_of_a_law_begins_as_large(rig):
     static = share * stribeck.values["stribeck_friction.static_force"]
     assert back["stribeck_friction.static_force"] == pytest.approx(static)
     assert back["stribeck_friction.stribeck_velocity"] == stribeck.values["stribeck_friction.stribeck_velocity"]
+
+
+@pytest.mark.parametrize(("coulomb_leaves", "again"), [(None, True), (900.0, False), (1100.0, True)])
+def test_another_form_is_tried_from_the_best_unless_it_was_fitted_near_it(rig, coulomb_leaves, again):
+    columns = rig.columns_of("coulomb_friction", "stribeck_friction")
+    best, coulomb = rig.set_of("stribeck_friction"), rig.set_of("coulomb_friction")
+    (stribeck,) = {column.effect.id: column for column in columns if column.effect.id == "stribeck_friction"}.values()
+    found = {best: explanation(dict(stribeck.values))}
+    if coulomb_leaves:
+        found[coulomb] = replace(explanation({}), objective=coulomb_leaves)
+    tried = [hypothesis for hypothesis, _ in in_a_members_place(Pool(None, (), Trace(), found), best, columns, 1000.0)]
+    assert tried == ([coulomb] if again else [])
+
+
+@pytest.mark.parametrize(("left", "asked"), [(10.0, False), (100.0, True)])
+def test_beside_a_form_of_fewer_parameters_one_more_effect_is_looked_for_where_it_explains_less(rig, left, asked):
+    """Damping beside Coulomb friction is not taken for Stribeck's curve."""
+    best, coulomb = (rig.set_of(form, "turbulent_leakage") for form in ("stribeck_friction", "coulomb_friction"))
+    at = fit_that_leaves(1.0)
+    found = {best: at, coulomb: replace(at, objective=at.objective + left), rig.set_of("coulomb_friction"): at}
+    assert of_simpler_form(Pool(None, (), Trace(), found), best) == ([coulomb] if asked else [])
+    assert of_simpler_form(Pool(None, (), Trace(), {coulomb: at, best: replace(at, objective=1e9)}), coulomb) == []
+
+
+def test_what_a_fit_moved_further_than_is_likely_goes_back_with_the_valves_dynamics(rig):
+    at = rig.pool.found[NOTHING]
+    for deviations, back in ((1.9, set()), (2.1, {"moving_mass", *LATE})):
+        moved = np.zeros(len(at.free))
+        (place,) = (k for k, one in enumerate(at.free) if one.name == "moving_mass")
+        moved[place] = deviations * at.free[place].prior_deviation
+        found = where_improbable(replace(at, q=moved))
+        assert set(found) == back & {one.name for one in at.free}
+        assert all(found[one.name] == one.reference for one in at.free if one.name in found)
 
 
 def test_a_nominal_fit_in_a_flat_valley_is_led_out_of_it(rig, pool):

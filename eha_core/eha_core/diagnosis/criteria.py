@@ -196,6 +196,11 @@ LOOKED_AT = 4.0
 gain."""
 
 
+IMPROBABLE = 2.0
+"""Prior standard deviations by which a nominal parameter must have moved for a fit to be suspected of a local minimum.
+Assumed; nominal values that are off by 30 % are off by 1.2 of them at most."""
+
+
 def chance_gain(samples: int, times_noise: float) -> float:
     """Chi^2 that one more effect must gain to be looked at, where the model leaves `times_noise` chi^2 a sample."""
     return (CHANCE + OF_SAMPLES * samples) * max(1.0, times_noise)

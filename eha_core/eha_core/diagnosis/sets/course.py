@@ -23,7 +23,7 @@ from eha_core.diagnosis.sets.columns import Column, columns_of, law_columns
 from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.sets.equations import Friction, friction_columns, friction_of
 from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
-from eha_core.diagnosis.sets.finish import finish, refit_nominal, rivals
+from eha_core.diagnosis.sets.finish import converge, finish, refit_nominal, rivals
 from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of
 from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.effects import Effect
@@ -275,7 +275,9 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
     """The best set fitted to its end, without what is not significant, with its rivals and the nominal model."""
     material.progress("fitting the best set to its end")
     best, gains = finish(pool, leader(pool), material.progress)
-    pool.believe(best)
+    if pool.released:
+        pool.believe(best)
+        converge(pool, best)
     leading, compared, model = rivals(pool, best, material.columns, material.progress)
     if leading != best:
         best, gains = finish(pool, leading, material.progress)

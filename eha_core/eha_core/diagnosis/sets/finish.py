@@ -13,31 +13,38 @@ from eha_core.diagnosis.criteria import (
     COMPARED_WITHIN,
     CONVERGED,
     CONVINCING,
+    FAR_FROM_NOISE,
     FITTED,
     FURTHER,
+    IMPROBABLE,
     LOOKED_AT,
     NEAR_NOISE,
     NOISE_KNOWN,
     OF_ITS_FORM,
     OF_SAMPLES,
     OF_SAMPLES_BESIDE_A_FORM,
+    chance_gain,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
-from eha_core.diagnosis.sets.best_sets import Proposal, best_sets, objective_without
+from eha_core.diagnosis.sets.best_sets import Proposal, best_sets, objective_without, one_more
 from eha_core.diagnosis.sets.columns import Column
 from eha_core.diagnosis.sets.expansion import cost
-from eha_core.diagnosis.sets.instants import shift_instants
+from eha_core.diagnosis.sets.instants import TO_THE_STEP, shift_instants
 from eha_core.diagnosis.sets.intervals import in_span
 from eha_core.diagnosis.sets.pool import Pool, Progress
 from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
+from eha_core.identification.free_parameters import LATE
 from eha_core.identification.numbers import Array
-from eha_core.identification.per_recording import base_name
+from eha_core.identification.per_recording import base_name, is_one_of
 
 
 def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) -> Fit:
-    """Fit a set until nothing is gained, with derivatives at the full step and from other instants too, unless it
-    cannot come low enough."""
+    """Fit a set until nothing is gained, with derivatives at the full step, unless it cannot come low enough.
+
+    From other instants, too, and from the nominal values of what it moved further than is likely: it may have come to a
+    local minimum.
+    """
     at = pool.found[hypothesis]
     result = fit(
         exact(pool.problem),
@@ -49,9 +56,23 @@ def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) 
         give_up_above=give_up_above,
     )
     pool.trace.add("converge", hypothesis, result)
-    pool.keep(hypothesis, result)
-    shift_instants(pool, "converge", hypothesis, CONVERGED)
+    at = pool.keep(hypothesis, result)
+    nominal = where_improbable(at)
+    if nominal and at.objective < give_up_above:
+        values = {**at.values, **nominal}
+        again = fit(exact(pool.problem), values, at.free, at.states, iterations=CONVERGED, in_a_row=2)
+        pool.trace.add("from nominal values", hypothesis, again)
+        pool.keep(hypothesis, again)
+    shift_instants(pool, "converge", hypothesis, CONVERGED, TO_THE_STEP)
     return pool.found[hypothesis]
+
+
+def where_improbable(at: Fit) -> dict[str, float]:
+    """The nominal values of what a fit moved further than is likely, and then of the valve's dynamics, too: their
+    parameters make up for one another along a bent valley."""
+    plant = [(one, moved) for one, moved in zip(at.free, at.q, strict=True) if "." not in one.name]
+    found = {one.name: one.reference for one, moved in plant if abs(moved) > IMPROBABLE * one.prior_deviation}
+    return found | {one.name: one.reference for one, _ in plant if found and is_one_of(one.name, LATE)}
 
 
 def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypothesis, dict[Member, float]]:
@@ -78,7 +99,9 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
             refused.add(member)
             gains[member] = lost / needed[member]
         else:
-            hypothesis, at = rest, converge(pool, rest) if rest.members else simpler
+            # far from the noise no optimum is worth its last digits
+            near = rest.members and simpler.data < FAR_FROM_NOISE * simpler.count
+            hypothesis, at = rest, converge(pool, rest) if near else simpler
             refused, gains = set(), {}
     return hypothesis, {member: gains[member] for member in hypothesis.members}
 
@@ -136,22 +159,30 @@ def rivals(
     """The best set, once what comes near it was fitted to its end too; all of those; and the model about the best."""
     at = pool.found[best]
     left = at.data > NEAR_NOISE * at.count
-    addable = [c for c in columns if c.effect.id not in best.ids and c.effect.kind not in best.kinds]
-    addable = [c for c in addable if left or not c.variable]
-    model = quadratic_model(pool.posed(best), at, best, pool.plant, addable)
+    columns = [column for column in columns if left or not column.variable]
+    model = _about(pool, best, columns)
     within = COMPARED_WITHIN * max(1.0, at.data / at.count)
     near: dict[Hypothesis, Proposal] = {}
     for size, level in best_sets(model, best.size + 1).items():
         for proposal in level if abs(size - best.size) <= 1 else ():
-            hypothesis = Hypothesis(tuple(sorted(option.member for option in proposal.options)))
+            hypothesis = _set_of(proposal)
             adds_only = set(best.members) <= set(hypothesis.members)
             if hypothesis != best and not adds_only and proposal.predicted < at.objective + within:
                 near.setdefault(hypothesis, proposal)
     for hypothesis, proposal in sorted(near.items(), key=lambda item: item[1].predicted)[:FITTED]:
         values, states = model.start(proposal.options)
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
-    for hypothesis, values in _in_a_members_place(pool, best, columns):
+    for hypothesis, values in in_a_members_place(pool, best, columns, at.objective + within):
         _compare(pool, "in its place", hypothesis, values, at.states, at.objective + within, progress)
+    for base in of_simpler_form(pool, best):
+        beside = _about(pool, base, columns)
+        more: dict[Hypothesis, Proposal] = {}
+        for proposal in sorted(one_more(beside), key=lambda proposal: proposal.predicted)[:FITTED]:
+            if proposal.predicted < at.objective + within:
+                more.setdefault(_set_of(proposal), proposal)
+        for hypothesis, proposal in more.items():
+            values, states = beside.start(proposal.options)
+            _compare(pool, "simpler form", hypothesis, values, states, at.objective + within, progress)
     close = [
         hypothesis for hypothesis, result in pool
         if hypothesis != best and result.objective < at.objective + within and hypothesis.members
@@ -162,6 +193,33 @@ def rivals(
     compared = [best, *close]
     leading = min(compared, key=lambda hypothesis: cost(hypothesis, pool.found[hypothesis]))
     return leading, compared, model
+
+
+def _about(pool: Pool, hypothesis: Hypothesis, columns: Sequence[Column]) -> QuadraticModel:
+    """The quadratic model about a set, with all that can be added to it."""
+    addable = [c for c in columns if c.effect.id not in hypothesis.ids and c.effect.kind not in hypothesis.kinds]
+    return quadratic_model(pool.posed(hypothesis), pool.found[hypothesis], hypothesis, pool.plant, addable)
+
+
+def _set_of(proposal: Proposal) -> Hypothesis:
+    return Hypothesis(tuple(sorted(option.member for option in proposal.options)))
+
+
+def of_simpler_form(pool: Pool, best: Hypothesis) -> list[Hypothesis]:
+    """The sets that were fitted with a form of fewer parameters of a member's law, and explain less: what the other
+    parameters take up may be one more effect beside it."""
+    at, found = pool.found[best], []
+    enough = at.objective + chance_gain(at.count, at.data / at.count)
+    for member in best.members:
+        rest = set(best.without(member).members)
+        for hypothesis, result in pool:
+            others = set(hypothesis.members) - rest
+            if len(hypothesis.members) != len(best.members) or len(others) != 1 or result.objective < enough:
+                continue
+            effect = others.pop().effect
+            if effect.kind and effect.kind == member.effect.kind:
+                found += [hypothesis] if len(effect.parameters) < len(member.effect.parameters) else []
+    return found
 
 
 def _compare(
@@ -175,11 +233,11 @@ def _compare(
         pool.try_set(step, hypothesis, glanced.values, glanced.states, FURTHER, give_up_above=within)
 
 
-def _in_a_members_place(
-    pool: Pool, best: Hypothesis, columns: Sequence[Column]
+def in_a_members_place(
+    pool: Pool, best: Hypothesis, columns: Sequence[Column], within: float
 ) -> Iterator[tuple[Hypothesis, dict[str, float]]]:
     """The set with another effect in a member's place: another form of its law, as large as it is; and of one that acts
-    in an interval only, whatever else may act there."""
+    in an interval only, whatever else may act there; unless it was fitted to within so much of the best."""
     at = pool.found[best]
     first = {column.effect.id: column for column in reversed(columns)}
     for member in best.members:
@@ -192,7 +250,7 @@ def _in_a_members_place(
             there = in_span(column, span) if span else column
             hypothesis = rest.with_effects([effect], there.limited)
             values = as_large(there, member, at) if is_form else there.values
-            if hypothesis not in pool.found:
+            if hypothesis not in pool.found or pool.found[hypothesis].objective > within:
                 yield hypothesis, {**at.values, **neutral(member.effect), **values}
 
 

@@ -16,13 +16,18 @@ from eha_core.identification.per_recording import base_name
 from eha_core.plant.lane_rows import LANES
 
 FINER = 0.2
-"""Share of REACH within which an instant is tried once more: the first places were a tenth of it apart (assumed)."""
+"""Share of how far an instant was tried within which it is tried once more: the places were an eleventh of that
+apart (assumed)."""
+
+COARSE, TO_THE_STEP = 2, 4
+"""How often instants are tried: while a search goes on, to 18 ms, and at its end to 0.7 ms. Where
+friction begins to act between two samples the objective has a valley at each break-away."""
 
 
-def shift_instants(pool: Pool, step: str, hypothesis: Hypothesis, iterations: int) -> None:
+def shift_instants(pool: Pool, step: str, hypothesis: Hypothesis, iterations: int, times: int = COARSE) -> None:
     """Fit a set on from other instants where one of those leaves less once all else has adapted to it."""
     instants = [parameter.name for parameter in pool.found[hypothesis].free if parameter.resolution]
-    for reach, name in product((REACH, FINER * REACH), instants):
+    for reach, name in product([REACH * FINER**k for k in range(times)], instants):
         at = pool.found[hypothesis]
         member = next(one for one in hypothesis.members if base_name(name) in _names_of(one))
         model = _elsewhere(pool, hypothesis, at, member, name, reach)
