@@ -1,7 +1,7 @@
 """Development cases: recordings whose answers are known, on which a change of the search is measured case by case.
 
     python -m tools.development make --table tools/opened_cases.json --out DIR [--cases 200] [--jobs 2]
-    python -m tools.development answer --out DIR --search whole-sets --name new [--part 0/2]
+    python -m tools.development answer --out DIR --name new [--part 0/2]
     python -m tools.development pair --out DIR --table tools/opened_cases.json --name new
 
 A table of marks of an opened exam says which cases there are, what the oracle saw in them, and how they were answered
@@ -23,7 +23,7 @@ from types import FrameType
 from typing import Any
 
 from eha_core.api import known_model
-from eha_core.diagnosis.pipeline import SEARCHES, diagnose_together
+from eha_core.diagnosis.pipeline import diagnose_together
 from eha_core.exam import cases
 from eha_core.exam.case import Case
 from eha_core.exam.drawing import LOAD, draw_case
@@ -71,8 +71,8 @@ def make_development_case(name: str, seed: int, known: Mapping[str, Any], folder
     return name
 
 
-def answer(case: Case, recordings: Path, search: str) -> dict[str, Any]:
-    """How one search answers a case: its mark, CPU seconds, the sets that it states, and its steps."""
+def answer(case: Case, recordings: Path) -> dict[str, Any]:
+    """How the diagnosis answers a case: its mark, CPU seconds, the sets that it states, and its steps."""
     first = recordings / recording_name(case)
     count = 1 + len(case.loads)
     paths = [first.with_name(further_name(first.name, number)) for number in range(1, count + 1)]
@@ -83,7 +83,7 @@ def answer(case: Case, recordings: Path, search: str) -> dict[str, Any]:
     try:
         records = [read_recording(path) for path in paths]
         model = known_model(nominal if nominal.is_file() else None, records[0])
-        found = document(diagnose_together(records, model, jobs=1, search=search))
+        found = document(diagnose_together(records, model, jobs=1))
     except TooLate:
         message = f"took more than {LIMIT:g} s of CPU time"
     except Exception:  # a search that fails on a case has not answered it, and the next case is asked
@@ -120,7 +120,7 @@ def in_turn(names: Sequence[str]) -> list[str]:
 
 
 def paired(before: Mapping[str, Mapping[str, Any]], after: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
-    """The table of two searches' answers to the same cases, tier by tier, and each case that only one has right."""
+    """The table of two states' answers to the same cases, tier by tier, and each case that only one has right."""
     both = sorted(before.keys() & after.keys())
     yield f"| tier | cases | right before | right after | median CPU s after | longest |\n{'|---' * 6}|"
     for tier in ("all", *dict.fromkeys(name.rpartition("-")[0] for name in both)):
@@ -149,7 +149,6 @@ def main() -> None:
     parser.add_argument("--table", type=Path)
     parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--search", choices=SEARCHES, default=SEARCHES[0])
     parser.add_argument("--name", default="new")
     parser.add_argument("--part", default="0/1")
     given = parser.parse_args()
@@ -165,7 +164,7 @@ def main() -> None:
         for name in in_turn([path.stem for path in (given.out / "sealed").glob("*.json")])[part::parts]:
             if not (folder / f"{name}.json").is_file():
                 case = read_answer((given.out / "sealed" / f"{name}.json").read_text(encoding="utf-8"))
-                row = answer(case, given.out / "recordings", given.search)
+                row = answer(case, given.out / "recordings")
                 (folder / f"{name}.json").write_text(json.dumps(row), encoding="utf-8")
                 print(f"{name}: {row['outcome']} in {row['cpu_s']:.1f} s, {' + '.join(row['named'])}", flush=True)
     if given.what == "pair":

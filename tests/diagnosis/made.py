@@ -18,7 +18,6 @@ from eha_core.identification.fit import Ending, Fit
 from eha_core.identification.free_parameters import FreeParameter, free_nominal_parameters
 from eha_core.identification.observation import Observation, observe
 from eha_core.identification.problem import whole
-from eha_core.identification.short_windows import SHORT
 from eha_core.identification.together import cut_together
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant
@@ -98,7 +97,7 @@ class Bench:
 
 
 def bench(
-    parameters: Mapping[str, float], nominal: Mapping[str, float] | None = None, length: float = SHORT[0], **how: object
+    parameters: Mapping[str, float], nominal: Mapping[str, float] | None = None, length: float = 0.1, **how: object
 ) -> Bench:
     """A recording of this plant, made as `recorded` does, in windows of this length [s]."""
     given = {**nominal_values(), **(nominal or {})}

@@ -14,11 +14,6 @@ from eha_core.diagnosis.sets.pool import Pool, Trace
 THRESHOLDS = {
     "FAR_FROM_NOISE": 5.0,
     "NEAR_NOISE": 1.03,
-    "MOST_EFFECTS": 8,
-    "WORTH_ADDING": 0.1,
-    "HARDLY": 0.1,
-    "OVER": 0.05,
-    "UNTOUCHED": 0.05,
     "OF_EXCESS": 0.01,
     "OF_FRICTION": 0.25,
     "CHANCE": 25.0,
@@ -146,8 +141,3 @@ def test_a_fit_may_begin_at_the_whole_way_and_at_parts_of_it():
 def test_fits_of_few_iterations_come_first():
     assert criteria.AT_FIRST < criteria.FURTHER < criteria.TO_THE_END < criteria.CONVERGED
     assert criteria.FITTED <= criteria.TRIED and criteria.TRIED_AT_THE_NOISE <= criteria.TRIED
-
-
-def test_a_search_goes_on_for_more_than_chance_and_a_tenth_of_what_is_left():
-    assert criteria.gain_to_go_on(40_000, 1.0, -5.0) == criteria.chance_gain(40_000, 1.0)
-    assert criteria.gain_to_go_on(40_000, 1.0, 1e6) == pytest.approx(1e5)

@@ -9,7 +9,7 @@ import pytest
 from made import LAWS, explanation
 
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
-from eha_core.diagnosis.fitted_values import named_effects
+from eha_core.diagnosis.fitted_values import named_effects, wald
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.parameters import nominal_values
@@ -64,6 +64,19 @@ def test_of_two_values_that_are_told_each_is():
     assert "only the" not in named(values).statement
     far = 1e6**2 * np.array([[1.0, 0.5], [0.5, 1.0]])
     assert "only the" not in named(values, far).statement
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.6])
+def test_what_an_effect_is_worth_is_how_many_deviations_its_sizes_are_from_nothing(correlation):
+    sizes, spread = np.array([3e5, -1e5]), np.array([2e4, 5e4])
+    free = free_effect_parameters(LAWS["pressure_sensor_bias"], nominal_values())
+    scales = np.array([parameter.scale for parameter in free])
+    block = np.outer(spread, spread) * np.array([[1.0, correlation], [correlation, 1.0]])
+    values = dict(zip(_biases(), sizes, strict=True))
+    final = replace(explanation(values, free), covariance=block / np.outer(scales, scales))
+    first, second = sizes / spread  # 15 and -2
+    expected = (first**2 + second**2 - 2.0 * correlation * first * second) / (1.0 - correlation**2)
+    assert wald(final, LAWS["pressure_sensor_bias"]) == pytest.approx(expected)
 
 
 def _biases():

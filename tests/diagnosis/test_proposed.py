@@ -25,7 +25,7 @@ def test_what_is_planted_is_proposed_and_measured(effect):
     calibration = calibrate([observation], NominalModel(nominal), 2e-4)
     scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
     columns = [column for one in applicable_effects([observation]) for column in columns_of(one, scales)]
-    pool = Pool(whole(calibration.shortest[1]), calibration.fitted.free, Trace())
+    pool = Pool(whole(calibration.shorter[1]), calibration.fitted.free, Trace())
     begun = pool.try_set("nominal", NOTHING, nominal, None, 8)
     model = quadratic_model(pool.problem, begun, NOTHING, pool.plant, columns, in_time=True)
     proposed = [one for one in best_sets(model, 1)[1] if one.options[0].member.id == effect.id]

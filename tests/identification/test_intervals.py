@@ -7,8 +7,9 @@ from made import recorded
 from scipy.signal import lfilter
 
 from eha_core.diagnosis.calibrate import calibrate
-from eha_core.identification.intervals import at_its_end, with_residual
+from eha_core.identification.intervals import with_residual
 from eha_core.identification.observation import observe
+from eha_core.identification.problem import linearise, normal_equations
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
@@ -18,8 +19,11 @@ OTHER = {"valve_gain": 2.2e-5, "damping_coefficient": 1800.0, "moving_mass": 10.
 def deviations(recording) -> tuple[np.ndarray, np.ndarray]:
     """How far each of OTHER was found off, over its standard deviation from the curvature and from the residual too."""
     calibration = calibrate([observe(recording)], NominalModel(nominal_values()), 2e-4)
-    curved = at_its_end(calibration.problem, calibration.fitted)
-    wider = with_residual(calibration.problem, calibration.fitted)
+    fitted = calibration.fitted
+    linear = linearise(calibration.problem, fitted.values, fitted.free, fitted.q, fitted.states)
+    normal, _ = normal_equations(calibration.problem, fitted.free, fitted.q, fitted.states, linear)
+    curved = replace(fitted, covariance=normal.covariance())
+    wider = with_residual(calibration.problem, fitted)
     off = np.array([wider.values[name] - value for name, value in OTHER.items()])
     return tuple(off / [one.deviation(name) for name in OTHER] for one in (curved, wider))
 

@@ -1,4 +1,4 @@
-"""From short windows to long ones, on a rig that sticks, made by the exam's own truth with another form of the law."""
+"""Short windows, on a rig that sticks, made by the exam's own truth with another form of the law."""
 
 from pathlib import Path
 
@@ -11,9 +11,9 @@ from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effects
 from eha_core.exam.drawing import draw_case
 from eha_core.exam.measuring import measure, simulate_case
-from eha_core.identification.fit import Ending, fit, fit_in_stages
+from eha_core.identification.fit import Ending, fit
 from eha_core.identification.observation import observe
-from eha_core.identification.short_windows import HELD, SHORT, VERY_SHORT, from_short_windows, held
+from eha_core.identification.short_windows import HELD, SHORT, held
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
@@ -33,38 +33,19 @@ def rig() -> tuple[Calibration, dict[str, float]]:
     return calibrate([observe(recording)], NominalModel(nominal), 2e-4), nominal
 
 
-@pytest.mark.parametrize("sizes", [(200.0, 400.0), (800.0, 1200.0)])
-def test_short_windows_lead_nearer_than_long_ones_from_afar(rig, sizes):
-    """From a Stribeck velocity as large as the speeds, as the search begins: a narrow one may stay where it is.
-
-    How far off the long windows end is a matter of rounding: 490,000 to 890,000 beside 140,000 here.
-    """
-    calibration, nominal = rig
-    names = ("force", "static_force", "stribeck_velocity")
-    values = {**nominal, **{f"{LAW.id}.{name}": at for name, at in zip(names, (*sizes, 3e-2), strict=True)}}
-    free = with_effects(calibration.fitted.free, [LAW], values)
-    long = fit_in_stages(calibration.problem, values, free, iterations=30)
-    found = from_short_windows(calibration.problem, calibration.shorter, values, free)
-    assert found.data < 0.5 * long.data
-    assert found.values[f"{LAW.id}.force"] == pytest.approx(800.0, rel=0.1)
-    assert found.values[f"{LAW.id}.static_force"] == pytest.approx(1210.0, rel=0.05)
-
-
 def test_the_recordings_are_the_same_in_windows_of_the_lengths_stated(rig):
     calibration, _ = rig
-    assert (SHORT, VERY_SHORT) == ((0.1, 0.25), (0.03, 0.2))
+    assert SHORT == (0.03, 0.2)
     rate = calibration.problem.count() / (calibration.shooting.edges[-1] * calibration.shooting.step_size)
-    least = [0.0, 0.0, SAMPLES_A_WINDOW / rate, SAMPLES_A_WINDOW / rate]
-    short = (*calibration.shorter, *calibration.shortest)
-    for shooting, length, longer in zip(short, (*SHORT, *VERY_SHORT), least, strict=True):
+    for shooting, length in zip(calibration.shorter, SHORT, strict=True):
         spans = np.diff(shooting.edges) * shooting.step_size
-        assert np.median(spans) == pytest.approx(max(length, longer), rel=0.21)
+        assert np.median(spans) == pytest.approx(max(length, SAMPLES_A_WINDOW / rate), rel=0.21)
         assert sum(len(one.values) for one in shooting.samplings) >= 0.99 * calibration.problem.count()
 
 
 def test_a_window_holds_several_samples_for_each_state_at_its_start():
     alone = observe(recorded({}, duration=4.0, rate=200.0, channels=("voltage_command", "position")))
-    shortest = calibrate([alone], NominalModel(nominal_values()), 2e-4).shortest[0]
+    shortest = calibrate([alone], NominalModel(nominal_values()), 2e-4).shorter[0]
     (position,) = shortest.samplings
     assert np.median(np.bincount(position.window)) >= 0.9 * SAMPLES_A_WINDOW
 

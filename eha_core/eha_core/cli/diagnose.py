@@ -38,10 +38,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add = parser.add_argument
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help="a bag or a table: .mcap, .csv, .mat ...")
-    add(
-        "--search", choices=("stepwise", "whole-sets"), default="stepwise",
-        help="how effects are found: single ones and then sets (the default), or whole sets at once, which is new",
-    )  # fmt: skip
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
     add(
@@ -120,7 +116,7 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
     from eha_core.report.provenance import with_provenance
 
     progress.long = any(record.blocks for record in records)
-    diagnosis = diagnose_together(recordings, model, progress, arguments.jobs, tests, arguments.search)
+    diagnosis = diagnose_together(recordings, model, progress, arguments.jobs, tests)
     diagnosis = judged(diagnosis, records, model, progress)
     diagnosis = with_provenance(diagnosis, records, arguments.nominal)
     _present(arguments, diagnosis, progress)

@@ -3,7 +3,7 @@ physics."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from eha_core.identification.observation import RESOLVED, SHORTEST, Observation,
 from eha_core.identification.per_recording import base_name, named
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
-from eha_core.identification.short_windows import SHORT, VERY_SHORT
+from eha_core.identification.short_windows import SHORT
 from eha_core.identification.together import cut_together, fit_alone, recording_alone
 from eha_core.nominal import NominalModel
 
@@ -48,14 +48,13 @@ corner is a 50th of the sampling rate. Of what a wrong model leaves there may be
 @dataclass(frozen=True)
 class Calibration:
     """The windows, the nominal model as given (only starts fitted), and the nominal equations at their best; `shorter`
-    windows of the same recordings, as `short_windows.SHORT` has them, and `shortest`, as VERY_SHORT has them."""
+    windows of the same recordings, as `short_windows.SHORT` has them."""
 
     shooting: Shooting
     problem: Problem
     nominal: Fit
     fitted: Fit
     shorter: tuple[Shooting, ...] = ()
-    shortest: tuple[Shooting, ...] = ()
 
 
 def calibrate(
@@ -84,20 +83,9 @@ def calibrate(
     fitted = fit(problem, first.values, free, first.states, iterations=8)
     at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
     rate = min(sum(len(channel.values) for channel in seen.measured) / seen.duration for seen in observations)
-    shorter, shortest = (
-        tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in lengths)
-        for lengths in (SHORT, [max(length, SAMPLES_A_WINDOW / rate) for length in VERY_SHORT])
-    )
-    return Calibration(shooting, problem, at_nominal_values, fitted, shorter, shortest)
-
-
-def calibrate_finely_enough(observations: Sequence[Observation], model: NominalModel) -> Calibration:
-    """Calibrate at the longest of STEPS that is short enough for the model that the first of them leads to."""
-    calibration = calibrate(observations, model, STEPS[0])
-    step_size = step_needed(observations, calibration.shooting, calibration.fitted)
-    if step_size == STEPS[0]:
-        return calibration
-    return calibrate(observations, model, step_size, calibration.fitted)
+    lengths = [max(length, SAMPLES_A_WINDOW / rate) for length in SHORT]
+    shorter = tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in lengths)
+    return Calibration(shooting, problem, at_nominal_values, fitted, shorter)
 
 
 def step_needed(observations: Sequence[Observation], shooting: Shooting, model: Fit) -> float:
@@ -137,12 +125,10 @@ def at_step(observations: Sequence[Observation], calibration: Calibration, step_
 
 
 def calibrate_but_for_the_ends(
-    observations: Sequence[Observation],
-    model: NominalModel,
-    calibrated: Callable[[Sequence[Observation], NominalModel], Calibration] = calibrate_finely_enough,
+    observations: Sequence[Observation], model: NominalModel
 ) -> tuple[tuple[Observation, ...], Calibration]:
     """Calibrate, and once more without a recording's last window where only that departs from the model."""
-    calibration = calibrated(observations, model)
+    calibration = calibrate(observations, model)
     rest = tuple(
         _but_for_its_end(observation, calibration, number) for number, observation in enumerate(observations, 1)
     )

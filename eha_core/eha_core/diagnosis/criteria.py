@@ -17,9 +17,6 @@ NEAR_NOISE = 1.03
 """Chi^2 a sample below which a set is at the noise: no member is put up for exchange, no leader tried from another
 start, and what is proposed must be significant. Tuned on development cases (seed 9001)."""
 
-MOST_EFFECTS = 8
-"""Members that a set may have: more than a rig of every kind of wear has at once (assumed)."""
-
 MOST_TRIED = 12
 """Members of a set while the search goes on: what is wrongly in it keeps what is missing from being seen only until it
 may stand beside it (assumed)."""
@@ -53,24 +50,6 @@ NEXT_TO_NOTHING = 0.15
 """Share of its typical size below which a shape, such as the rounding of an edge, is no parameter that a law makes use
 of: no recording tells it from none (assumed; weak effects of the exam have as much of their typical size)."""
 
-
-WORTH_ADDING = 0.1
-"""Share of the excess chi^2 that an effect must explain to be added, or an exchange: the first of several does, and it
-ends a search that only bends what is there (assumed)."""
-
-HARDLY = 0.1
-"""Once a hypothesis explains all but noise, or but OVER of what there was, one whose predicted gain is less than
-this share of what that gained is not tried."""
-
-OVER = 0.05
-"""Share of the excess chi^2 that a model may leave when it explains nearly all: without the prior bounds
-that it rests on, too. A value twenty times what was believed led there; in 22 development cases of the exam (seed
-70219) whose single effects rest on bounds and leave more than FAR_FROM_NOISE, none came below 0.76."""
-
-UNTOUCHED = 0.05
-"""Share of what a set leaves a sample of the whole record, beside noise, that it may leave of the rest where an effect
-acts over an interval together with it. Assumed; 0.25 let sets through that only had other parameters there (three
-rigs)."""
 
 LEFT_IN_A_CHANNEL = 1.2
 """RMS of a channel's residual, over its noise, from which an explanation is not complete. Estimates of the noise
@@ -204,11 +183,6 @@ Assumed; nominal values that are off by 30 % are off by 1.2 of them at most."""
 def chance_gain(samples: int, times_noise: float) -> float:
     """Chi^2 that one more effect must gain to be looked at, where the model leaves `times_noise` chi^2 a sample."""
     return (CHANCE + OF_SAMPLES * samples) * max(1.0, times_noise)
-
-
-def gain_to_go_on(samples: int, times_noise: float, left: float) -> float:
-    """Chi^2 that a search's next set must gain where the set before it leaves `left` beside the noise."""
-    return max(chance_gain(samples, times_noise), WORTH_ADDING * max(0.0, left))
 
 
 def parameter_cost(count: int, left_over: float) -> float:

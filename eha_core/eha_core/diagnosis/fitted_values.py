@@ -11,9 +11,9 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import has_changed, identifiable
 from eha_core.diagnosis.criteria import IDENTIFIED
+from eha_core.diagnosis.hypothesis import neutral
 from eha_core.diagnosis.posterior import probability
 from eha_core.diagnosis.result import FittedParameter, FittedValue, NamedEffect, ProbableSet
-from eha_core.diagnosis.search.prune import wald
 from eha_core.diagnosis.sets.comparison import Entry
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
@@ -86,6 +86,20 @@ def named_effects(
         )  # fmt: skip
         found.append(row)
     return tuple(found)
+
+
+def wald(result: Fit, effect: Effect) -> float:
+    """What dropping an effect would cost in chi^2, as the curvature at the fit has it."""
+    off = neutral(effect)
+    switches = {f"{effect.id}.{row.name}" for row in effect.parameters if row.switches}
+    names = [parameter.name for parameter in result.free if is_one_of(parameter.name, switches)]
+    if not names:
+        return 0.0
+    distance = np.array([result.values[name] - off[base_name(name)] for name in names])
+    block = result.covariance_of(names)
+    scale = np.sqrt(np.maximum(np.diag(block), 1e-300))  # names differ by their unit
+    correlation = np.linalg.pinv(block / np.outer(scale, scale), hermitian=True)
+    return float(distance / scale @ correlation @ (distance / scale))
 
 
 def _statement(effect: Effect, values: Mapping[str, FittedValue]) -> str:

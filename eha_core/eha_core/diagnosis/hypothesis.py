@@ -77,11 +77,6 @@ class Hypothesis:
         return tuple(member for member in self.members if member.limited)
 
     @property
-    def has_one_interval(self) -> bool:
-        """Whether one of its effects acts in an interval only: then that of another hypothesis can be tried for it."""
-        return len(self.limited) == 1
-
-    @property
     def kinds(self) -> frozenset[str]:
         """The kinds of law that it holds a form of."""
         return frozenset(effect.kind for effect in self.effects if effect.kind)

@@ -76,11 +76,6 @@ class Fit:
     ending: Ending
     iterations: int
 
-    @property
-    def converged(self) -> bool:
-        """Whether more iterations would not have helped."""
-        return self.ending in (Ending.CONVERGED, Ending.NO_DESCENT)
-
     def held_by_belief(self) -> frozenset[str]:
         """The plant's own parameters that rest on a bound which is no limit of the catalogue's, but of belief."""
         rows = catalogue()

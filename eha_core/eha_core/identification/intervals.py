@@ -44,12 +44,8 @@ def with_residual(problem: Problem, result: Fit) -> Fit:
     return replace(result, covariance=result.covariance * np.outer(wider, wider[:count]))
 
 
-def at_its_end(problem: Problem, result: Fit) -> Fit:
-    """The fit with the covariance from the curvature where it ended; its own is that of the point before."""
-    return _where_it_ended(problem, result, linearise(problem, result.values, result.free, result.q, result.states))
-
-
 def _where_it_ended(problem: Problem, result: Fit, linear: Linearised) -> Fit:
+    """The fit with the covariance from the curvature where it ended; its own is that of the point before."""
     normal, _ = normal_equations(problem, result.free, result.q, result.states, linear)
     return replace(result, covariance=normal.covariance())
 

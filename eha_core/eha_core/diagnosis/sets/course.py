@@ -100,7 +100,7 @@ def _over_growing_windows(
     """Sets over short windows, and those over long ones: by way of longer ones, where the way is too far."""
     nominal, long = calibration.nominal.values, calibration.problem
     material.progress("searching sets over short windows")
-    short, begin = begun(whole(calibration.shortest[0]), nominal, friction, material)
+    short, begin = begun(whole(calibration.shorter[0]), nominal, friction, material)
     if at_the_noise(short):  # so short windows show nothing of what is missing, if anything is
         material.progress("searching sets over long windows")
         pool, begin = begun(long, nominal, friction, material)
@@ -113,7 +113,7 @@ def _over_growing_windows(
     if at_the_noise(pool):
         return calibration, pool
     material.progress("searching sets over longer windows")
-    longer, begin = begun(whole(calibration.shortest[1]), nominal, friction, material)
+    longer, begin = begun(whole(calibration.shorter[1]), nominal, friction, material)
     bridge = replace(longer, found=dict(longer.found))  # what leads to nothing must not stand in the search's way
     carry(short, bridge)
     pool = carried(bridge, calibration.problem, material)
