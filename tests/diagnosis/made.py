@@ -11,8 +11,8 @@ import numpy as np
 from eha_core.diagnosis.calibrate import STEPS
 from eha_core.diagnosis.characteristic_scales import Scales, characteristic_scales
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.sets.columns import Column, applicable_effects, columns_of
-from eha_core.diagnosis.sets.pool import Pool, Trace
+from eha_core.diagnosis.search.columns import Column, applicable_effects, columns_of
+from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.effects import effects
 from eha_core.identification.fit import Ending, Fit
 from eha_core.identification.free_parameters import FreeParameter, free_nominal_parameters

@@ -9,9 +9,9 @@ from made import LAWS, explanation
 from scipy.optimize import lsq_linear
 
 from eha_core.diagnosis.hypothesis import NOTHING, Member
-from eha_core.diagnosis.sets.best_sets import best_sets, objective_without, one_more
-from eha_core.diagnosis.sets.columns import Column
-from eha_core.diagnosis.sets.quadratic import Option, QuadraticModel
+from eha_core.diagnosis.search.best_sets import best_sets, objective_without, one_more
+from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.quadratic import Option, QuadraticModel
 
 EMPTY = 5000.0
 NAMED = sorted(effect.id for effect in LAWS.values() if effect.named and not effect.kind)

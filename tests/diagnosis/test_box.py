@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from eha_core.diagnosis.sets.box import within_bounds
+from eha_core.diagnosis.search.box import within_bounds
 
 
 def problem(seed, size, alike):

@@ -8,8 +8,8 @@ from made import LAWS, recorded
 
 from eha_core.diagnosis.characteristic_scales import QUANTITIES, Scales
 from eha_core.diagnosis.effect_parameters import MOST_ABOVE
-from eha_core.diagnosis.sets import columns
-from eha_core.diagnosis.sets.columns import SITES_OF_DRIVE, applicable_effects, columns_of
+from eha_core.diagnosis.search import columns
+from eha_core.diagnosis.search.columns import SITES_OF_DRIVE, applicable_effects, columns_of
 from eha_core.identification.observation import observe
 
 SIZES = (0.02, 10.0, 0.1, 3000.0, 2e-4, 2e6, 1e11, 1e-10)

@@ -17,7 +17,7 @@ from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.discrimination import RATE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import ChannelFit, Correlation, Explained, Location, UnknownLaw
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects

@@ -7,9 +7,9 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.columns import applicable_effects
-from eha_core.diagnosis.sets.course import find_sets, is_due_to
-from eha_core.diagnosis.sets.equations import Friction, FrictionStart, friction_of
+from eha_core.diagnosis.search.columns import applicable_effects
+from eha_core.diagnosis.search.course import find_sets, is_due_to
+from eha_core.diagnosis.search.equations import Friction, FrictionStart, friction_of
 from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe
 from eha_core.identification.parallel import side_by_side

@@ -8,8 +8,8 @@ from made import LAWS, explanation
 
 from eha_core.diagnosis import criteria
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.expansion import Search, leader, required
-from eha_core.diagnosis.sets.pool import Pool, Trace
+from eha_core.diagnosis.search.expansion import Search, leader, required
+from eha_core.diagnosis.search.pool import Pool, Trace
 
 THRESHOLDS = {
     "FAR_FROM_NOISE": 5.0,

@@ -5,9 +5,9 @@ import pytest
 from made import bench
 
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets import intervals
-from eha_core.diagnosis.sets.best_sets import best_sets
-from eha_core.diagnosis.sets.quadratic import quadratic_model
+from eha_core.diagnosis.search import intervals
+from eha_core.diagnosis.search.best_sets import best_sets
+from eha_core.diagnosis.search.quadratic import quadratic_model
 
 WINDOW = 0.25
 

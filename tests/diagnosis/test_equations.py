@@ -4,7 +4,7 @@ import pytest
 from made import LAWS, recorded
 
 from eha_core.diagnosis.characteristic_scales import QUANTITIES, Scales
-from eha_core.diagnosis.sets.equations import ABOVE, KIND, KNOWN, friction_columns, friction_of
+from eha_core.diagnosis.search.equations import ABOVE, KIND, KNOWN, friction_columns, friction_of
 from eha_core.identification.observation import observe
 from eha_core.parameters import nominal_values
 

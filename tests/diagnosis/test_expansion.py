@@ -6,10 +6,10 @@ from made import bench
 
 from eha_core.diagnosis.criteria import FITTED, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets import expansion
-from eha_core.diagnosis.sets.course import at_the_noise
-from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
-from eha_core.diagnosis.sets.pool import Pool, Trace
+from eha_core.diagnosis.search import expansion
+from eha_core.diagnosis.search.course import at_the_noise
+from eha_core.diagnosis.search.expansion import Search, cost, expand, leader, required, search_sets
+from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.identification.fit import exact, fit
 from eha_core.identification.problem import objectives_at
 

@@ -8,7 +8,7 @@ from made import LAWS, bench, explanation
 
 from eha_core.diagnosis import criteria
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.finish import (
+from eha_core.diagnosis.search.finish import (
     as_large,
     finish,
     in_a_members_place,
@@ -20,7 +20,7 @@ from eha_core.diagnosis.sets.finish import (
     rivals,
     where_improbable,
 )
-from eha_core.diagnosis.sets.pool import Pool, Trace
+from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.identification.free_parameters import LATE, free_nominal_parameters
 from eha_core.parameters import nominal_values
 

@@ -11,7 +11,7 @@ from made import LAWS, explanation
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.fitted_values import named_effects, wald
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.comparison import Entry
+from eha_core.diagnosis.search.comparison import Entry
 from eha_core.parameters import nominal_values
 from eha_core.plant import PAPER
 

@@ -3,7 +3,7 @@
 import pytest
 from made import bench
 
-from eha_core.diagnosis.sets.instants import shift_instants
+from eha_core.diagnosis.search.instants import shift_instants
 
 
 def test_an_instant_that_derivatives_do_not_reach_is_found_by_trying_others():

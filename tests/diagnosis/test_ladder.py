@@ -12,7 +12,7 @@ from eha_core.diagnosis.conclude import polish
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.ladder import correlation, ladder
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison
 from eha_core.effects import effects
 from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe

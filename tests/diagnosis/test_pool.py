@@ -8,7 +8,7 @@ from made import LAWS, bench
 
 from eha_core.diagnosis.criteria import FAR_FROM_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.pool import REACH, Pool, Trace
+from eha_core.diagnosis.search.pool import REACH, Pool, Trace
 from eha_core.identification.fit import fit
 from eha_core.parameters import nominal_values
 

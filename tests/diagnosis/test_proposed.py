@@ -7,11 +7,11 @@ from planted import NOT_IDENTIFIABLE, planted, require_measured
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.best_sets import best_sets
-from eha_core.diagnosis.sets.columns import applicable_effects, columns_of
-from eha_core.diagnosis.sets.course import states_over
-from eha_core.diagnosis.sets.pool import Pool, Trace
-from eha_core.diagnosis.sets.quadratic import quadratic_model
+from eha_core.diagnosis.search.best_sets import best_sets
+from eha_core.diagnosis.search.columns import applicable_effects, columns_of
+from eha_core.diagnosis.search.course import states_over
+from eha_core.diagnosis.search.pool import Pool, Trace
+from eha_core.diagnosis.search.quadratic import quadratic_model
 from eha_core.identification.fit import fit
 from eha_core.identification.problem import whole
 from eha_core.nominal import NominalModel

@@ -5,8 +5,8 @@ import pytest
 from made import LAWS, bench
 
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.best_sets import objective_without
-from eha_core.diagnosis.sets.quadratic import quadratic_model
+from eha_core.diagnosis.search.best_sets import objective_without
+from eha_core.diagnosis.search.quadratic import quadratic_model
 from eha_core.identification.fit import exact, fit
 from eha_core.identification.problem import objective_of
 

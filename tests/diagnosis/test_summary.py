@@ -9,7 +9,7 @@ from made import explanation
 
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import CommonScale, Explained, NamedEffect
-from eha_core.diagnosis.sets.comparison import Entry
+from eha_core.diagnosis.search.comparison import Entry
 from eha_core.diagnosis.summary import kind_alone, summary
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects

@@ -16,7 +16,7 @@ from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.explained import root_mean_square
 from eha_core.diagnosis.fitted_values import named_effects
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison
 from eha_core.diagnosis.supported import one_sided, supported
 from eha_core.diagnosis.verdict import Decision
 from eha_core.identification.fit import fit

@@ -9,7 +9,7 @@ from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, residual_variance
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison, rank, residual_variance
 from eha_core.diagnosis.unknown import recover
 from eha_core.effects import effects
 from eha_core.identification.fit import fit

@@ -11,7 +11,7 @@ from made import explanation
 
 from eha_core.diagnosis import criteria, verdict
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import effects
 

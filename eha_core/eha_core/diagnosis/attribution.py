@@ -11,7 +11,7 @@ from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.locate import whereabouts
 from eha_core.diagnosis.result import Location
-from eha_core.diagnosis.sets.comparison import ModelComparison
+from eha_core.diagnosis.search.comparison import ModelComparison
 from eha_core.identification.fit import Fit
 
 

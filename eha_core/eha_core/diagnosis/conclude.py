@@ -33,7 +33,7 @@ from eha_core.diagnosis.result import (
     ProbableSet,
     UnknownLaw,
 )
-from eha_core.diagnosis.sets.comparison import Entry
+from eha_core.diagnosis.search.comparison import Entry
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.supported import one_sided, supported
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness

@@ -10,7 +10,7 @@ import numpy as np
 from eha_core.diagnosis.calibrate import Calibration
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.result import Location
-from eha_core.diagnosis.sets.comparison import ModelComparison
+from eha_core.diagnosis.search.comparison import ModelComparison
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.diagnosis.verdict import Decision
 from eha_core.identification.fit import Fit

@@ -14,7 +14,7 @@ from eha_core.diagnosis.criteria import IDENTIFIED
 from eha_core.diagnosis.hypothesis import neutral
 from eha_core.diagnosis.posterior import probability
 from eha_core.diagnosis.result import FittedParameter, FittedValue, NamedEffect, ProbableSet
-from eha_core.diagnosis.sets.comparison import Entry
+from eha_core.diagnosis.search.comparison import Entry
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.per_recording import base_name, is_one_of

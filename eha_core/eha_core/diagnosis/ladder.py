@@ -18,7 +18,7 @@ from eha_core.diagnosis.criteria import FURTHER
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import Member, without_effect
 from eha_core.diagnosis.result import AUGMENTED, NOMINAL, RECALIBRATED, Correlation, Residual, Step
-from eha_core.diagnosis.sets.comparison import Entry
+from eha_core.diagnosis.search.comparison import Entry
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.parallel import each
 

@@ -12,9 +12,9 @@ from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.evidence import Evidence, telling_most
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.diagnosis.sets.columns import applicable_effects
-from eha_core.diagnosis.sets.course import find_sets
-from eha_core.diagnosis.sets.pool import Progress
+from eha_core.diagnosis.search.columns import applicable_effects
+from eha_core.diagnosis.search.course import find_sets
+from eha_core.diagnosis.search.pool import Progress
 from eha_core.diagnosis.unknown import recover
 from eha_core.diagnosis.verdict import decide
 from eha_core.identification.observation import Observation, observe, with_sufficient_stroke

@@ -11,7 +11,7 @@ from math import exp, log
 
 from eha_core.diagnosis.criteria import COLLECTION, ODDS_OF_GAIN, TIE
 from eha_core.diagnosis.result import ProbableSet
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, bounded
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison, bounded
 
 TEMPERATURE = TIE / (2.0 * log(COLLECTION / (1.0 - COLLECTION)))
 """Of the scores' Boltzmann factors: of two sets whose scores are TIE apart the better one holds COLLECTION."""

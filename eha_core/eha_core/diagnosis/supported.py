@@ -16,7 +16,7 @@ from eha_core.diagnosis.criteria import CERTAINTY, COHERENT, CONVERGED, HELD_OUT
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.explained import is_identified, root_mean_square
 from eha_core.diagnosis.hypothesis import NOTHING, Member, without_effect
-from eha_core.diagnosis.sets.comparison import Entry
+from eha_core.diagnosis.search.comparison import Entry
 from eha_core.diagnosis.verdict import Decision, coherence, without_physics
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit

@@ -13,8 +13,8 @@ from eha_core.curve import KNOTS
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CONVINCING, FURTHER, LEFT_OVER, UNFITTED, chance_gain, parameter_cost
 from eha_core.diagnosis.hypothesis import Hypothesis, without_effect
-from eha_core.diagnosis.sets.columns import LAWS, range_of
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison
+from eha_core.diagnosis.search.columns import LAWS, range_of
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.free_parameters import FreeParameter, coordinates

@@ -26,7 +26,7 @@ from eha_core.diagnosis.criteria import (
     WHATEVER_FORM,
     parameter_cost,
 )
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, bounded
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison, bounded
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import Effect
 from eha_core.health.noise import NORMAL_MEDIAN

@@ -18,14 +18,14 @@ from eha_core.diagnosis.criteria import (
     UNFITTED,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
-from eha_core.diagnosis.sets.best_sets import objective_without, one_more
-from eha_core.diagnosis.sets.columns import Column, columns_of, law_columns
-from eha_core.diagnosis.sets.comparison import Entry, ModelComparison, rank, residual_variance
-from eha_core.diagnosis.sets.equations import Friction, friction_columns, friction_of
-from eha_core.diagnosis.sets.expansion import Search, cost, expand, leader, required, search_sets
-from eha_core.diagnosis.sets.finish import converge, finish, refit_nominal, rivals
-from eha_core.diagnosis.sets.pool import Pool, Progress, Trace, in_noise_of
-from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.best_sets import objective_without, one_more
+from eha_core.diagnosis.search.columns import Column, columns_of, law_columns
+from eha_core.diagnosis.search.comparison import Entry, ModelComparison, rank, residual_variance
+from eha_core.diagnosis.search.equations import Friction, friction_columns, friction_of
+from eha_core.diagnosis.search.expansion import Search, cost, expand, leader, required, search_sets
+from eha_core.diagnosis.search.finish import converge, finish, refit_nominal, rivals
+from eha_core.diagnosis.search.pool import Pool, Progress, Trace, in_noise_of
+from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter

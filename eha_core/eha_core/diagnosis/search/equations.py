@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.hypothesis import neutral
-from eha_core.diagnosis.sets.columns import Column, columns_of
+from eha_core.diagnosis.search.columns import Column, columns_of
 from eha_core.effects import Effect
 from eha_core.identification.observation import Observation
 from eha_core.weak_form.dry_friction import CLEAR, DryFriction, dry_friction

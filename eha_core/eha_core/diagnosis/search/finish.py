@@ -26,13 +26,13 @@ from eha_core.diagnosis.criteria import (
     chance_gain,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
-from eha_core.diagnosis.sets.best_sets import Proposal, best_sets, objective_without, one_more
-from eha_core.diagnosis.sets.columns import Column
-from eha_core.diagnosis.sets.expansion import cost
-from eha_core.diagnosis.sets.instants import TO_THE_STEP, shift_instants
-from eha_core.diagnosis.sets.intervals import in_span
-from eha_core.diagnosis.sets.pool import Pool, Progress
-from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.best_sets import Proposal, best_sets, objective_without, one_more
+from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.expansion import cost
+from eha_core.diagnosis.search.instants import TO_THE_STEP, shift_instants
+from eha_core.diagnosis.search.intervals import in_span
+from eha_core.diagnosis.search.pool import Pool, Progress
+from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
 from eha_core.identification.free_parameters import LATE
 from eha_core.identification.numbers import Array

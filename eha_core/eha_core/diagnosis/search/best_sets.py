@@ -10,8 +10,8 @@ import numpy as np
 from eha_core.compiled import compiled
 from eha_core.diagnosis.criteria import BEAM
 from eha_core.diagnosis.hypothesis import Member
-from eha_core.diagnosis.sets.box import within_bounds
-from eha_core.diagnosis.sets.quadratic import Option, QuadraticModel
+from eha_core.diagnosis.search.box import within_bounds
+from eha_core.diagnosis.search.quadratic import Option, QuadraticModel
 from eha_core.identification.numbers import Array, Flags, Integers
 
 

@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
-from eha_core.diagnosis.sets.columns import Column
-from eha_core.diagnosis.sets.pool import REACH, Pool
-from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.pool import REACH, Pool
+from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit
 from eha_core.identification.per_recording import base_name
 from eha_core.plant.lane_rows import LANES

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eha_core.diagnosis.criteria import OF_SIZE, OUTSTANDING
-from eha_core.diagnosis.sets.columns import Column
+from eha_core.diagnosis.search.columns import Column
 from eha_core.identification.fit import Fit
 from eha_core.identification.normal_matrix import Eliminated
 from eha_core.identification.numbers import Array, Integers

@@ -14,9 +14,9 @@ import numpy as np
 from scipy.linalg import cho_solve_banded
 
 from eha_core.diagnosis.hypothesis import Hypothesis, Member, neutral
-from eha_core.diagnosis.sets.box import within_bounds
-from eha_core.diagnosis.sets.columns import Column
-from eha_core.diagnosis.sets.intervals import best_intervals, in_interval, restricted
+from eha_core.diagnosis.search.box import within_bounds
+from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.intervals import best_intervals, in_interval, restricted
 from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import FreeParameter, coordinates
 from eha_core.identification.numbers import Array, Integers

@@ -25,11 +25,11 @@ from eha_core.diagnosis.criteria import (
     chance_gain,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
-from eha_core.diagnosis.sets.best_sets import Proposal, best_sets
-from eha_core.diagnosis.sets.columns import Column
-from eha_core.diagnosis.sets.instants import shift_instants
-from eha_core.diagnosis.sets.pool import Pool, Progress
-from eha_core.diagnosis.sets.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.best_sets import Proposal, best_sets
+from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.instants import shift_instants
+from eha_core.diagnosis.search.pool import Pool, Progress
+from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import objectives_at
