@@ -64,7 +64,7 @@ def test_a_set_pays_for_its_size_and_far_from_the_noise_a_member_has_to_gain_mor
 
 
 def test_near_the_noise_only_what_is_predicted_to_come_nearer_is_fitted_besides(rig, monkeypatch):
-    monkeypatch.setattr(expansion, "NEAR_NOISE", 1e9)  # then whatever is fitted first is near enough
+    monkeypatch.setattr(expansion, "is_at_noise", lambda _: True)  # then whatever is fitted first is near enough
     search = searched(rig)
     expand(search, NOTHING, "first")
     fitted = [step.effects for step in search.pool.trace.steps if step.step == "first"]

@@ -9,6 +9,7 @@ from itertools import permutations
 
 import numpy as np
 
+from eha_core.diagnosis.calibrate import STEPS
 from eha_core.diagnosis.hypothesis import NOMINAL_NAMES
 from eha_core.identification.fit import SETTLED, Fit
 from eha_core.identification.free_parameters import FreeParameter, coordinates, values_at
@@ -16,7 +17,7 @@ from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import is_one_of
 from eha_core.plant import COLUMNS, Plant
 
-STEP = 2e-4
+STEP = STEPS[0]
 ROWS_EVERY = 5
 RATE = 1.0 / (STEP * ROWS_EVERY)
 """1/s; of the samples that are compared."""

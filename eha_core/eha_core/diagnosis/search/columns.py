@@ -26,7 +26,7 @@ LAWS = {
 HATS = 9
 """Columns that draw a law coarsely: of every third of a curve's knots."""
 
-LAW_SIZE = 0.1
+OF_SCALE = 0.1
 """Height of such a column, in units of the usual force, opening or leakage (assumed)."""
 
 SIZES = {1.0: 100.0, 0.1: 3.0}
@@ -171,7 +171,7 @@ def law_columns(effects: Sequence[Effect], scales: Scales) -> tuple[Column, ...]
     """Laws that are in no catalogue: for each variable that a curve can be over, HATS columns that together draw it."""
     found = []
     for effect in effects:
-        size = LAW_SIZE * _size_of(effect, scales)
+        size = OF_SCALE * _size_of(effect, scales)
         for place, variable in enumerate(LAWS.get(effect.id, ())):
             covered = range_of(variable, scales)
             if covered is None:

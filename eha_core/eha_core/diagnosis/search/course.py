@@ -9,14 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration, at_step, filtered_channels, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import (
-    CARRIED,
-    EXPANSIONS,
-    FURTHER,
-    NEAR_NOISE,
-    OF_FRICTION,
-    UNFITTED,
-)
+from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, FURTHER, OF_FRICTION, UNFITTED
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.search.best_sets import objective_without, one_more
 from eha_core.diagnosis.search.columns import Column, columns_of, law_columns
@@ -24,7 +17,7 @@ from eha_core.diagnosis.search.comparison import Entry, ModelComparison, rank, r
 from eha_core.diagnosis.search.equations import Friction, friction_columns, friction_of
 from eha_core.diagnosis.search.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.search.finish import converge, finish, refit_nominal, rivals
-from eha_core.diagnosis.search.pool import Pool, Progress, Trace, in_noise_of
+from eha_core.diagnosis.search.pool import Pool, Progress, Trace, in_noise_of, is_at_noise
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, with_noise
@@ -38,6 +31,7 @@ from eha_core.identification.short_windows import held
 OF_STATES, ALONE, RELEASED = 6, 16, 4
 """Iterations of windows' starts alone, and of friction that is free alone and together with others. With 8, 20 and 3,
 the numbers of other fits, a piston that sticks took another way to its law, three times as long."""
+
 
 @dataclass(frozen=True)
 class Material:
@@ -126,8 +120,7 @@ def _over_growing_windows(
 
 def at_the_noise(pool: Pool) -> bool:
     """Whether the best set leaves no more than noise."""
-    at = pool.found[leader(pool)]
-    return at.data < NEAR_NOISE * at.count
+    return is_at_noise(pool.found[leader(pool)])
 
 
 def _plant(fitted: Fit) -> tuple[FreeParameter, ...]:
@@ -145,7 +138,7 @@ def begun(problem: Problem, nominal: Mapping[str, float], friction: Friction, ma
     calibrated = pool.try_set("nominal", NOTHING, values, states, FURTHER)
     pool.measure_noise(NOTHING)
     # nominal values that were fitted without what is missing are bent to it, and all that is seen from there with them
-    return pool, pool.found[NOTHING] if calibrated.data < NEAR_NOISE * calibrated.count else given
+    return pool, pool.found[NOTHING] if is_at_noise(calibrated) else given
 
 
 def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool = True) -> Pool:

@@ -14,7 +14,6 @@ from eha_core.diagnosis.criteria import (
     IDLE,
     IMPROVES,
     MOST_TRIED,
-    NEAR_NOISE,
     OF_EXCESS,
     OF_SIZE,
     RELATED,
@@ -28,7 +27,7 @@ from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.search.best_sets import Proposal, best_sets
 from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.instants import shift_instants
-from eha_core.diagnosis.search.pool import Pool, Progress
+from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
@@ -71,7 +70,7 @@ class Search:
         result = self.pool.found[lead]
         if result.objective < self.expanded[lead] - required(result):
             return lead
-        if result.data < NEAR_NOISE * result.count:
+        if is_at_noise(result):
             return None
         within = RELATED * cost(lead, result)
         rest = [h for h, at in self.pool if h not in self.expanded and cost(h, at) < within]
@@ -110,10 +109,10 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
             continue  # what is larger is proposed from there, if it is needed
         result = pool.try_set(step, start.hypothesis, start.values, start.states, AT_FIRST)
         tried += 1
-        if result.data < NEAR_NOISE * result.count:
+        if is_at_noise(result):
             near = start.hypothesis
     now = leader(pool)
-    if pool.found[now].data > NEAR_NOISE * at.count and (now != lead or base == lead):
+    if not is_at_noise(pool.found[now]) and (now != lead or base == lead):
         # what a fit that stopped short leaves would be taken for more effects
         pool.go_on(step, now, TO_THE_END, 2)
         shift_instants(pool, step, now, TO_THE_END)
@@ -135,7 +134,7 @@ def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tu
     """The proposals of a quadratic model: at the noise what is significant, else the best few of each size that
     explains noticeably more than a smaller one."""
     at = model.at
-    needed, at_noise = required(at), at.data < NEAR_NOISE * at.count
+    needed, at_noise = required(at), is_at_noise(at)
     chosen: dict[Hypothesis, tuple[int, float, Proposal]] = {}
     least = np.inf
     for size, level in best_sets(model, MOST_TRIED).items():

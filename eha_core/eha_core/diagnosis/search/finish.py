@@ -18,7 +18,6 @@ from eha_core.diagnosis.criteria import (
     FURTHER,
     IMPROBABLE,
     LOOKED_AT,
-    NEAR_NOISE,
     NOISE_KNOWN,
     OF_ITS_FORM,
     OF_SAMPLES,
@@ -31,7 +30,7 @@ from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.expansion import cost
 from eha_core.diagnosis.search.instants import TO_THE_STEP, shift_instants
 from eha_core.diagnosis.search.intervals import in_span
-from eha_core.diagnosis.search.pool import Pool, Progress
+from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
 from eha_core.identification.free_parameters import LATE
@@ -45,26 +44,25 @@ def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) 
     From other instants, too, and from the nominal values of what it moved further than is likely: it may have come to a
     local minimum.
     """
-    at = pool.found[hypothesis]
-    result = fit(
-        exact(pool.problem),
-        at.values,
-        at.free,
-        at.states,
-        iterations=CONVERGED,
-        in_a_row=2,
-        give_up_above=give_up_above,
-    )
-    pool.trace.add("converge", hypothesis, result)
-    at = pool.keep(hypothesis, result)
+    at = _to_its_end(pool, "converge", hypothesis, {}, give_up_above)
     nominal = where_improbable(at)
     if nominal and at.objective < give_up_above:
-        values = {**at.values, **nominal}
-        again = fit(exact(pool.problem), values, at.free, at.states, iterations=CONVERGED, in_a_row=2)
-        pool.trace.add("from nominal values", hypothesis, again)
-        pool.keep(hypothesis, again)
+        _to_its_end(pool, "from nominal values", hypothesis, nominal, np.inf)
     shift_instants(pool, "converge", hypothesis, CONVERGED, TO_THE_STEP)
     return pool.found[hypothesis]
+
+
+def _to_its_end(
+    pool: Pool, step: str, hypothesis: Hypothesis, other: Mapping[str, float], give_up_above: float
+) -> Fit:
+    """The best fit of a set, once it was fitted from where it stands but for `other` values."""
+    at = pool.found[hypothesis]
+    result = fit(
+        exact(pool.problem), {**at.values, **other}, at.free, at.states,
+        iterations=CONVERGED, in_a_row=2, give_up_above=give_up_above,
+    )  # fmt: skip
+    pool.trace.add(step, hypothesis, result)
+    return pool.keep(hypothesis, result)
 
 
 def where_improbable(at: Fit) -> dict[str, float]:
@@ -158,8 +156,7 @@ def rivals(
 ) -> tuple[Hypothesis, list[Hypothesis], QuadraticModel]:
     """The best set, once what comes near it was fitted to its end too; all of those; and the model about the best."""
     at = pool.found[best]
-    left = at.data > NEAR_NOISE * at.count
-    columns = [column for column in columns if left or not column.variable]
+    columns = [column for column in columns if not (is_at_noise(at) and column.variable)]
     model = _about(pool, best, columns)
     within = COMPARED_WITHIN * max(1.0, at.data / at.count)
     near: dict[Hypothesis, Proposal] = {}

@@ -10,7 +10,7 @@ from math import inf
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise
-from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE, TO_THE_END, chance_gain
+from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE, NEAR_NOISE, TO_THE_END, chance_gain
 from eha_core.diagnosis.effect_parameters import free_instants, with_effects
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.result import TraceStep
@@ -195,6 +195,11 @@ class Pool:
 
     def __iter__(self) -> Iterator[tuple[Hypothesis, Fit]]:
         return iter(self.found.items())
+
+
+def is_at_noise(result: Fit) -> bool:
+    """Whether a fit leaves no more than noise."""
+    return result.data < NEAR_NOISE * result.count
 
 
 def without_bounds(
