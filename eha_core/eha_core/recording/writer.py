@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -16,6 +15,7 @@ from mcap.writer import CompressionType, Writer
 from eha_core.errors import RecordingError
 from eha_core.recording.crash_safe_file import CrashSafeFile
 from eha_core.recording.message_types import definition_of, encode
+from eha_core.recording.own_thread import OwnThread
 
 PARAMETERS_RECORD = "eha_parameters"
 _FOREVER = "{sec: 9223372036, nsec: 854775807}"
@@ -84,9 +84,9 @@ class RecordingWriter:
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
         self._waiting: deque[_Message] = deque()
-        self._thread = ThreadPoolExecutor(1, "recording")
+        self._thread = OwnThread("recording")
         self._writer: Any = Writer(cast("IO[Any]", self._file), compression=CompressionType.ZSTD)
-        self._uninterrupted(lambda: self._writer.start(profile="ros2"))
+        self._thread.do(lambda: self._writer.start(profile="ros2"))
         self._is_open = True
         if self._parameters:
             self.add_parameters(self._parameters)
@@ -99,11 +99,7 @@ class RecordingWriter:
 
     def add_record(self, name: str, content: Mapping[str, str]) -> None:
         """Keep a metadata record in the file."""
-        self._uninterrupted(lambda: self._writer.add_metadata(name, dict(content)))
-
-    def _uninterrupted(self, action: Callable[[], None]) -> None:
-        """Have the writing thread do something to its end, and wait for it."""
-        self._thread.submit(action).result()
+        self._thread.do(lambda: self._writer.add_metadata(name, dict(content)))
 
     def write(self, topic: str, type_name: str, data: bytes, stamp: int, quality: OfferedQuality | None = None) -> None:
         """Add a message that is serialised already.
@@ -159,7 +155,7 @@ class RecordingWriter:
         if not self._is_open:
             return
         try:
-            self._uninterrupted(self._put_and_flush)
+            self._thread.do(self._put_and_flush)
         except OSError as error:
             self.abandon()
             raise RecordingError(f"{self.path}: recording stopped ({error.strerror})") from error
@@ -178,11 +174,11 @@ class RecordingWriter:
             return
         self._is_open = False
         try:
-            self._uninterrupted(self._finish)
+            self._thread.do(self._finish)
         except OSError as error:
             raise RecordingError(f"{self.path}: the end could not be written ({error.strerror})") from error
         finally:
-            self._thread.shutdown(wait=False)
+            self._thread.end()
 
     def _finish(self) -> None:
         self._put()
@@ -193,8 +189,8 @@ class RecordingWriter:
         """Close the file as it was flushed last, without a summary."""
         if self._is_open:
             self._is_open = False
-            self._uninterrupted(self._file.discard)
-            self._thread.shutdown(wait=False)
+            self._thread.do(self._file.discard)
+            self._thread.end()
 
     def __enter__(self) -> RecordingWriter:
         return self
