@@ -3,6 +3,7 @@
     python -m tools.development make --table tools/opened_cases.json --out DIR [--cases 200] [--jobs 2]
     python -m tools.development answer --out DIR --name new [--part 0/2]
     python -m tools.development pair --out DIR --table tools/opened_cases.json --name new
+    python -m tools.development steps --out DIR --name new
 
 A table of marks of an opened exam says which cases there are, what the oracle saw in them, and how they were answered
 then; so a recording is made without asking the oracle again, which takes most of the time. Cases are kept in a folder
@@ -96,7 +97,7 @@ def answer(case: Case, recordings: Path) -> dict[str, Any]:
         "cpu_s": seconds,
         "message": message,
         "sets": (found or {}).get("sets", []),
-        "fits": len((found or {}).get("trace", [])),
+        "trace": (found or {}).get("trace", []),
         "probability": {effect["id"]: effect["probability"] for effect in (found or {}).get("effects", [])},
     }
 
@@ -135,6 +136,28 @@ def paired(before: Mapping[str, Mapping[str, Any]], after: Mapping[str, Mapping[
             yield f"{name}: {outcomes[0]} before, {outcomes[1]} after ({' + '.join(after[name]['concealed'])}: {named})"
 
 
+def brought(answers: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+    """The table of what each step of the search brings: the cases in which it fitted, how many sets, the CPU time since
+    the fit before, and the right answers whose set it was the first to fit."""
+    steps: dict[str, list[float]] = {}
+    for row in answers.values():
+        before, seen, waiting = 0.0, set[str](), row["outcome"] == "right"
+        for fitted in row["trace"]:
+            step = fitted["step"].rstrip("0123456789 ")
+            counts = steps.setdefault(step, [0, 0, 0.0, 0])
+            counts[0] += step not in seen
+            counts[1] += 1
+            counts[2] += fitted["cpu_s"] - before
+            if waiting and sorted(fitted["set"]) == sorted(row["named"]):
+                counts[3] += 1
+                waiting = False
+            before = fitted["cpu_s"]
+            seen.add(step)
+    yield f"| step | cases | fits | CPU s | right sets |\n{'|---' * 5}|"
+    for step, (cases_of, fits, seconds, first) in sorted(steps.items(), key=lambda item: -item[1][3]):
+        yield f"| {step} | {cases_of} | {fits} | {seconds:.0f} | {first} |"
+
+
 def _marks(table: Path, cases_at_most: int) -> tuple[int, dict[str, Any]]:
     read = json.loads(table.read_text(encoding="utf-8"))
     marks = read["tools"]["eha diagnose"]["marks"][:cases_at_most]
@@ -142,9 +165,9 @@ def _marks(table: Path, cases_at_most: int) -> tuple[int, dict[str, Any]]:
 
 
 def main() -> None:
-    """Make, answer, or pair."""
+    """Make, answer, pair, or say what each step brought."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("make", "answer", "pair"))
+    parser.add_argument("what", choices=("make", "answer", "pair", "steps"))
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--table", type=Path)
     parser.add_argument("--cases", type=int, default=200)
@@ -167,9 +190,10 @@ def main() -> None:
                 row = answer(case, given.out / "recordings")
                 (folder / f"{name}.json").write_text(json.dumps(row), encoding="utf-8")
                 print(f"{name}: {row['outcome']} in {row['cpu_s']:.1f} s, {' + '.join(row['named'])}", flush=True)
-    if given.what == "pair":
+    if given.what in ("pair", "steps"):
         answers = {path.stem: json.loads(path.read_text()) for path in (given.out / "answers" / given.name).glob("*")}
-        for line in paired(_marks(given.table, 10**6)[1], answers):
+        table = paired(_marks(given.table, 10**6)[1], answers) if given.what == "pair" else brought(answers)
+        for line in table:
             print(line)
 
 

@@ -6,7 +6,7 @@ from eha_core.exam.drawing import draw_case
 from eha_core.exam.files import read_answer, recording_name
 from eha_core.exam.measuring import measure, simulate_case
 from eha_core.recording import read_recording
-from tools.development import answer, in_turn, make_development_case, paired
+from tools.development import answer, brought, in_turn, make_development_case, paired
 
 
 def test_a_case_is_the_exams_own_and_nothing_is_missing_in_it(tmp_path):
@@ -19,7 +19,7 @@ def test_a_case_is_the_exams_own_and_nothing_is_missing_in_it(tmp_path):
     assert np.allclose(read.values, values)
     row = answer(case, tmp_path / "recordings")
     assert (row["outcome"], row["named"], row["message"]) == ("right", (), "")
-    assert row["cpu_s"] > 0.0 and row["fits"] > 0
+    assert row["cpu_s"] > 0.0 and row["trace"]
 
 
 def test_every_tier_comes_early():
@@ -38,3 +38,16 @@ def test_answers_are_paired_case_by_case():
     lines = list(paired(before, after))
     assert "| all | 2 | 1 | 2 | 6.0 | 6 |" in lines
     assert lines[-1] == "rig-0001: wrong before, right after (a: consistent)"
+
+
+def test_a_right_answer_counts_for_the_step_that_fitted_its_set_first():
+    fits = [
+        ("nominal", [], 1.0),
+        ("expansion 1", ["a"], 3.0),
+        ("expansion 2", ["b", "a"], 4.0),
+        ("rival", ["a", "b"], 9.0),
+    ]
+    trace = [{"step": step, "set": chosen, "cpu_s": at} for step, chosen, at in fits]
+    right = {"outcome": "right", "named": ["a", "b"], "trace": trace}
+    lines = list(brought({"pair-0000": right, "pair-0001": {**right, "outcome": "wrong"}}))
+    assert lines[1:] == ["| expansion | 2 | 4 | 6 | 1 |", "| nominal | 2 | 2 | 2 | 0 |", "| rival | 2 | 2 | 10 | 0 |"]
