@@ -69,6 +69,7 @@ def test_the_damped_system_is_solved_as_a_dense_one(windows, parameters, damping
     system = matrix.eliminate(damping)
     assert relative(system.solve(right), solved(raised, right), full) < 1e-9
     assert relative(system.solve(right[:, 1]), solved(raised, right[:, 1]), full) < 1e-9
+    np.testing.assert_allclose(system.energy(right), right.T @ solved(raised, right), rtol=1e-9)
 
 
 def test_parameters_that_are_held_stay_and_the_rest_adapts():

@@ -11,8 +11,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve, cho_solve_banded, cholesky_banded
+from scipy.linalg import (
+    LinAlgError,
+    cho_factor,
+    cho_solve,
+    cho_solve_banded,
+    cholesky,
+    cholesky_banded,
+    solve_triangular,
+)
 
+from eha_core.compiled import compiled
 from eha_core.identification.numbers import Array, Flags
 
 RIDGE = 1e-12
@@ -131,12 +140,35 @@ class Eliminated:
         solved: Array = np.concatenate([found, states - self.carried @ found]) / scale
         return solved
 
+    def energy(self, right: Array) -> Array:
+        """right' N^-1 right of several right-hand sides (size, count): (count, count).
+
+        Raises:
+            LinAlgError: the Schur complement is not positive definite.
+        """
+        count = len(self.schur)
+        scaled = right / self.scale[:, None]
+        reduced = scaled[:count] - self.carried.T @ scaled[count:]
+        reduced = solve_triangular(cholesky(self.schur, lower=True), reduced, lower=True)
+        _substitute(self.factor, scaled[count:])
+        found: Array = reduced.T @ reduced + scaled[count:].T @ scaled[count:]
+        return found
+
     def columns_of_parameters(self) -> Array:
         """The inverse's columns of the parameters."""
         count = len(self.schur)
         inner = np.linalg.pinv(self.schur, rcond=SINGULAR, hermitian=True)
         columns: Array = np.concatenate([inner, -self.carried @ inner]) / np.outer(self.scale, self.scale[:count])
         return columns
+
+
+@compiled
+def _substitute(factor: Array, right: Array) -> None:
+    """Solve L x = right in place for a banded L; all right-hand sides a row at a time, which LAPACK does one by one."""
+    for row in range(len(right)):
+        for other in range(max(0, row - len(factor) + 1), row):
+            right[row] -= factor[row - other, other] * right[other]
+        right[row] /= factor[0, row]
 
 
 def _bands(matrix: NormalMatrix, scale: Array, damping: float) -> Array:

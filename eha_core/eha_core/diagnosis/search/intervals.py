@@ -60,10 +60,10 @@ def best_intervals(
         if not column.effect.acting_names():
             continue
         overlap = found.overlap(place)
-        along, imitated = found.along[:, place] - towards @ overlap, overlap.T @ system.solve(overlap)
+        along = found.along[:, place] - towards @ overlap
         sets_in = onset_of(column) is not None
         whole, interval = _best_interval(
-            column, spans, found.energy[:, place], along, imitated, recordings, to_the_end=sets_in
+            column, spans, found.energy[:, place], along, system.energy(overlap), recordings, to_the_end=sets_in
         )
         best = onsets if sets_in else limited
         always = always if sets_in else max(always, whole)
