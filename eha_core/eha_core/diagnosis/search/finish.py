@@ -27,7 +27,7 @@ from eha_core.diagnosis.criteria import (
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
 from eha_core.diagnosis.search.best_sets import Proposal, best_sets, objective_without, one_more
 from eha_core.diagnosis.search.columns import Column
-from eha_core.diagnosis.search.expansion import cost
+from eha_core.diagnosis.search.comparison import rank
 from eha_core.diagnosis.search.instants import TO_THE_STEP, shift_instants
 from eha_core.diagnosis.search.intervals import in_span
 from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
@@ -188,8 +188,8 @@ def rivals(
     for hypothesis in sorted(close, key=lambda h: pool.found[h].objective)[:FITTED]:
         converge(pool, hypothesis, at.objective + within)
     compared = [best, *close]
-    leading = min(compared, key=lambda hypothesis: cost(hypothesis, pool.found[hypothesis]))
-    return leading, compared, model
+    leading = rank(pool.found[NOTHING], {hypothesis: pool.found[hypothesis] for hypothesis in compared})[0]
+    return leading.hypothesis, compared, model
 
 
 def _about(pool: Pool, hypothesis: Hypothesis, columns: Sequence[Column]) -> QuadraticModel:
@@ -253,7 +253,8 @@ def in_a_members_place(
 
 def as_large(column: Column, member: Member, result: Fit) -> dict[str, float]:
     """One form of a law with another's values where both have the parameter, and its other sizes in proportion to the
-    first size that both have: the mean of the other form's where it has more sizes."""
+    first size that both have: the mean of the other form's where it has more sizes. A size that lies above another
+    begins at that one, for there the form is the simpler one, which a fit can leave."""
     sizes = [row.name for row in column.effect.parameters if row.switches]
     theirs = {row.name: result.values[f"{member.id}.{row.name}"] for row in member.effect.parameters}
     of_theirs = [row.name for row in member.effect.parameters if row.switches]
@@ -267,7 +268,8 @@ def as_large(column: Column, member: Member, result: Fit) -> dict[str, float]:
     for name, value in column.values.items():
         own = base_name(name).rsplit(".", 1)[1]
         found[name] = theirs.get(own, share * value if own in sizes else value)
-    return found
+    above = {row.name: row.above for row in column.effect.parameters if row.above and row.name not in theirs}
+    return found | {f"{column.effect.id}.{own}": found[f"{column.effect.id}.{other}"] for own, other in above.items()}
 
 
 def refit_nominal(pool: Pool, calibrated: Fit, others: Sequence[Fit]) -> Fit:

@@ -154,17 +154,26 @@ class Pool:
             self.try_set("without prior bounds", each, at.values, at.states, TO_THE_END, self._in_plant(at), 2)
 
     def believe(self, hypothesis: Hypothesis) -> None:
-        """Bring back each bound that was released, if a set gains no more without it than by chance."""
-        for name in sorted(self.released):
+        """Bring back the bounds that were released, if a set gains no more without them than by chance: those within
+        which it is together, then one by one."""
+        values, bounds_of = self.found[hypothesis].values, {one.name: (one.lower, one.upper) for one in self.believed}
+        past = {
+            base_name(name) for name, value in values.items()
+            if (bounds := bounds_of.get(base_name(name))) and not bounds[0] <= value <= bounds[1]
+        }  # fmt: skip
+        one_by_one = (frozenset({name}) for name in sorted(self.released))
+        for names in dict.fromkeys([self.released - past, *one_by_one]):
+            if not names <= self.released:
+                continue
             at = self.found[hypothesis]
-            self.released -= {name}
+            self.released -= names
             free = self._in_plant(at)
-            bounds = {one.name: (one.lower, one.upper) for one in free if base_name(one.name) == name}
+            bounds = {one.name: (one.lower, one.upper) for one in free if base_name(one.name) in names}
             values = {**at.values, **{own: min(max(at.values[own], low), up) for own, (low, up) in bounds.items()}}
             result = fit(self.posed(hypothesis), values, free, at.states, iterations=TO_THE_END, in_a_row=2)
             self.trace.add("within a prior bound", hypothesis, result)
             if result.objective - at.objective > chance_gain(at.count, at.data / at.count):
-                self.released |= {name}
+                self.released |= names
             else:
                 self.found[hypothesis] = result
 
