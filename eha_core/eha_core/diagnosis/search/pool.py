@@ -156,26 +156,31 @@ class Pool:
     def believe(self, hypothesis: Hypothesis) -> None:
         """Bring back the bounds that were released, if a set gains no more without them than by chance: those within
         which it is together, then one by one."""
-        values, bounds_of = self.found[hypothesis].values, {one.name: (one.lower, one.upper) for one in self.believed}
-        past = {
-            base_name(name) for name, value in values.items()
-            if (bounds := bounds_of.get(base_name(name))) and not bounds[0] <= value <= bounds[1]
-        }  # fmt: skip
+        at = self.found[hypothesis]
+        past = {base_name(name) for name, value in self._within(self.released, at).items() if value != at.values[name]}
         one_by_one = (frozenset({name}) for name in sorted(self.released))
         for names in dict.fromkeys([self.released - past, *one_by_one]):
             if not names <= self.released:
                 continue
             at = self.found[hypothesis]
             self.released -= names
-            free = self._in_plant(at)
-            bounds = {one.name: (one.lower, one.upper) for one in free if base_name(one.name) in names}
-            values = {**at.values, **{own: min(max(at.values[own], low), up) for own, (low, up) in bounds.items()}}
-            result = fit(self.posed(hypothesis), values, free, at.states, iterations=TO_THE_END, in_a_row=2)
+            values = {**at.values, **self._within(names, at)}
+            result = fit(
+                self.posed(hypothesis), values, self._in_plant(at), at.states, iterations=TO_THE_END, in_a_row=2
+            )
             self.trace.add("within a prior bound", hypothesis, result)
             if result.objective - at.objective > chance_gain(at.count, at.data / at.count):
                 self.released |= names
             else:
                 self.found[hypothesis] = result
+
+    def _within(self, names: Collection[str], at: Fit) -> dict[str, float]:
+        """The values of nominal parameters of these names, moved within what is believed of them."""
+        believed = {one.name: one for one in self.believed if one.name in names}
+        return {
+            name: min(max(value, one.lower), one.upper)
+            for name, value in at.values.items() if (one := believed.get(base_name(name)))
+        }  # fmt: skip
 
     def _in_plant(self, at: Fit) -> tuple[FreeParameter, ...]:
         """What a fit moves, the nominal parameters as they are now."""
