@@ -10,6 +10,7 @@ from eha_core.diagnosis import criteria
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.finish import (
     as_large,
+    converge,
     finish,
     in_a_members_place,
     meet,
@@ -184,6 +185,18 @@ def test_another_form_is_tried_from_the_best_unless_it_was_fitted_near_it(rig, c
         found[coulomb] = replace(explanation({}), objective=coulomb_leaves)
     tried = [hypothesis for hypothesis, _ in in_a_members_place(Pool(None, (), Trace(), found), best, columns, 1000.0)]
     assert tried == ([coulomb] if again else [])
+
+
+def test_what_was_fitted_to_its_end_is_not_fitted_again(rig, pool):
+    rig = replace(rig, pool=pool)
+    rig.fitted(PLANTED)
+    both = rig.set_of("constant_load", "valve_deadband")
+    first = converge(pool, both)
+    fits = len(pool.trace.steps)
+    assert fits and converge(pool, both) is first and len(pool.trace.steps) == fits
+    pool.found[both] = replace(first, objective=first.objective + 1.0)
+    converge(pool, both)
+    assert len(pool.trace.steps) > fits
 
 
 @pytest.mark.parametrize(("left", "asked"), [(10.0, False), (100.0, True)])

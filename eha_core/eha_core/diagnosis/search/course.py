@@ -108,7 +108,8 @@ def _over_growing_windows(
         return calibration, pool
     material.progress("searching sets over longer windows")
     longer, begin = begun(whole(calibration.shorter[1]), nominal, friction, material)
-    bridge = replace(longer, found=dict(longer.found))  # what leads to nothing must not stand in the search's way
+    bridge = longer.fresh()  # what leads to nothing must not stand in the search's way
+    bridge.adopt(longer)
     carry(short, bridge)
     pool = carried(bridge, calibration.problem, material)
     if at_the_noise(pool):

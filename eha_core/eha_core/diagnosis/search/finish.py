@@ -39,17 +39,19 @@ from eha_core.identification.per_recording import base_name, is_one_of
 
 
 def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) -> Fit:
-    """Fit a set until nothing is gained, with derivatives at the full step, unless it cannot come low enough.
+    """Fit a set until nothing is gained, with derivatives at the full step, unless it was or cannot come low enough.
 
-    From other instants, too, and from the nominal values of what it moved further than is likely: it may have come to a
-    local minimum.
+    From the nominal values of what it moved further than is likely, too: it may have come to a local minimum.
     """
+    at = pool.found[hypothesis]
+    if pool.settled.get(hypothesis) == at.objective:
+        return at
     at = _to_its_end(pool, "converge", hypothesis, {}, give_up_above)
     nominal = where_improbable(at)
     if nominal and at.objective < give_up_above:
-        _to_its_end(pool, "from nominal values", hypothesis, nominal, np.inf)
-    shift_instants(pool, "converge", hypothesis, CONVERGED, TO_THE_STEP)
-    return pool.found[hypothesis]
+        at = _to_its_end(pool, "from nominal values", hypothesis, nominal, at.objective)
+    pool.settled[hypothesis] = at.objective
+    return at
 
 
 def _to_its_end(
@@ -76,7 +78,9 @@ def where_improbable(at: Fit) -> dict[str, float]:
 def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypothesis, dict[Member, float]]:
     """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of them;
     and what each that stays gains over what is required."""
-    at = converge(pool, hypothesis)
+    converge(pool, hypothesis)
+    shift_instants(pool, "other instants", hypothesis, CONVERGED, TO_THE_STEP)
+    at = pool.found[hypothesis]
     refused: set[Member] = set()
     gains: dict[Member, float] = {}
     while hypothesis.members:
@@ -223,7 +227,9 @@ def _compare(
     pool: Pool, step: str, hypothesis: Hypothesis, values: Mapping[str, float], states: Array, within: float,
     progress: Progress,
 ) -> None:  # fmt: skip
-    """Fit a rival's own parameters, and then all that is free where it may come near."""
+    """Fit a rival's own parameters, and then all that is free where it may come near; once."""
+    if hypothesis in pool.glanced:
+        return
     progress(f"comparing with {' + '.join(hypothesis.ids) or 'nothing'}")
     glanced = pool.glance(step, hypothesis, values, states, AT_FIRST)
     if glanced.objective < within + glanced.count:

@@ -36,7 +36,7 @@ def shift_instants(pool: Pool, step: str, hypothesis: Hypothesis, iterations: in
         left = [model.empty - model.gain(place)[0] for place in places]
         if left and min(left) < at.objective:
             values, states = model.start(places[int(np.argmin(left))])
-            pool.try_set(step, hypothesis, values, states, iterations)
+            pool.try_set(step, hypothesis, values, states, iterations, give_up_above=at.objective)
 
 
 def _names_of(member: Member) -> tuple[str, ...]:

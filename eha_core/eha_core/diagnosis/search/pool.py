@@ -58,7 +58,8 @@ class Pool:
 
     `believed`: the nominal parameters that are free, within the bounds of what is believed of them but for those
     `released`; `trace` is shared by the pools of all lengths; `filtered` are channels behind a filter, see
-    `corrected_noise`.
+    `corrected_noise`; `settled` are the objectives of sets that were fitted to their end; of those `glanced` at,
+    members were fitted alone.
     """
 
     problem: Problem
@@ -67,6 +68,8 @@ class Pool:
     found: dict[Hypothesis, Fit] = field(default_factory=dict)
     filtered: frozenset[str] = frozenset()
     released: frozenset[str] = frozenset()
+    settled: dict[Hypothesis, float] = field(default_factory=dict)
+    glanced: set[Hypothesis] = field(default_factory=set)
 
     @property
     def plant(self) -> tuple[FreeParameter, ...]:
@@ -101,6 +104,7 @@ class Pool:
         self, step: str, hypothesis: Hypothesis, values: Mapping[str, float], states: Array, iterations: int
     ) -> Fit:
         """A fit of the members' own parameters alone; it is not kept."""
+        self.glanced.add(hypothesis)
         plant = {parameter.name for parameter in self.plant}
         free = tuple(parameter for parameter in self.free(hypothesis, values) if parameter.name not in plant)
         result = fit(self.problem, values, free, states, iterations=iterations)
@@ -113,7 +117,7 @@ class Pool:
 
     def fresh(self) -> Pool:
         """A pool of the same windows, noise and bounds that has no fits yet."""
-        return replace(self, found={})
+        return replace(self, found={}, settled={}, glanced=set())
 
     def adopt(self, other: Pool) -> None:
         """Keep the fits of another pool of the same windows, in the noise of this one."""
