@@ -79,7 +79,7 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
     """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of them;
     and what each that stays gains over what is required."""
     converge(pool, hypothesis)
-    shift_instants(pool, "other instants", hypothesis, CONVERGED, TO_THE_STEP)
+    shift_instants(pool, hypothesis, CONVERGED, TO_THE_STEP)
     at = pool.found[hypothesis]
     refused: set[Member] = set()
     gains: dict[Member, float] = {}

@@ -24,7 +24,7 @@ COARSE, TO_THE_STEP = 2, 4
 friction begins to act between two samples the objective has a valley at each break-away."""
 
 
-def shift_instants(pool: Pool, step: str, hypothesis: Hypothesis, iterations: int, times: int = COARSE) -> None:
+def shift_instants(pool: Pool, hypothesis: Hypothesis, iterations: int, times: int = COARSE) -> None:
     """Fit a set on from other instants where one of those leaves less once all else has adapted to it."""
     instants = [parameter.name for parameter in pool.found[hypothesis].free if parameter.resolution]
     for reach, name in product([REACH * FINER**k for k in range(times)], instants):
@@ -36,7 +36,7 @@ def shift_instants(pool: Pool, step: str, hypothesis: Hypothesis, iterations: in
         left = [model.empty - model.gain(place)[0] for place in places]
         if left and min(left) < at.objective:
             values, states = model.start(places[int(np.argmin(left))])
-            pool.try_set(step, hypothesis, values, states, iterations, give_up_above=at.objective)
+            pool.try_set("other instants", hypothesis, values, states, iterations, give_up_above=at.objective)
 
 
 def _names_of(member: Member) -> tuple[str, ...]:
