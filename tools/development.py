@@ -98,7 +98,6 @@ def answer(case: Case, recordings: Path) -> dict[str, Any]:
         "message": message,
         "sets": (found or {}).get("sets", []),
         "trace": (found or {}).get("trace", []),
-        "probability": {effect["id"]: effect["probability"] for effect in (found or {}).get("effects", [])},
     }
 
 

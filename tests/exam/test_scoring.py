@@ -11,8 +11,9 @@ import pytest
 from eha_core.exam.case import Case
 from eha_core.exam.drawing import draw_case
 from eha_core.exam.outside import curve_agreement
-from eha_core.exam.scoring import Answer, mark, wilson
-from eha_core.exam.summary import confusion
+from eha_core.exam.reliability import reliability
+from eha_core.exam.scoring import Answer, Proportion, mark, wilson
+from eha_core.exam.summary import confusion, summarise
 from eha_core.exam.tiers import MEANINGS, SHARES, plan
 
 
@@ -196,3 +197,31 @@ def test_what_was_named_in_place_of_what_is_counted() -> None:
     wrong = mark(single(), answer("missing_physics", "stribeck_friction"))
     right = mark(single(), answer("missing_physics", "coulomb_friction"))
     assert confusion([wrong, wrong, right]) == [("coulomb_friction", "stribeck_friction", 2)]
+
+
+def test_stated_probabilities_are_held_against_what_is_concealed() -> None:
+    given = answer("missing_physics", "coulomb_friction", "end_stop")
+    given.diagnosis["effects"][0]["probability"], given.diagnosis["effects"][1]["probability"] = 1.0, 0.6
+    marked = mark(single(), given)
+    assert marked.probabilities == ((1.0, True), (0.6, False))
+    likely, sure = reliability([marked] * 30)
+    assert (likely.low, likely.high, likely.observed) == (0.5, 0.8, Proportion(0, 30))
+    assert likely.stated == pytest.approx(0.6) and sure.observed == Proportion(30, 30)
+    judged = {target.statement: target.judged for target in summarise("", [marked] * 100).targets}
+    assert judged["names stated at 50 to 80 % that are true"] == "no"
+    assert judged["names stated at 99 to 100 % that are true"] == "yes"
+    assert not any("that are true" in target.statement for target in summarise("", [marked] * 19).targets)
+
+
+@pytest.mark.parametrize(
+    ("case", "sets", "collection"),
+    [
+        (single(), [["end_stop"], ["coulomb_friction"]], (2, True)),
+        (single(), [["end_stop"]], (1, False)),
+        (single(), [], None),
+        (replace(single(), effects=()), [["end_stop"]], (1, False)),
+    ],
+)
+def test_the_stated_collection_of_sets_holds_the_truth_or_not(case: Case, sets: list[Any], collection: Any) -> None:
+    given = answer("missing_physics", "end_stop", sets=[{"effects": names, "probability": 0.5} for names in sets])
+    assert mark(case, given).collection == collection

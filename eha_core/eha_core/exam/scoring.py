@@ -44,7 +44,9 @@ class Mark:
     `held_out_ratio`: held-out error after over noise, worst channel. `curve_r_squared`: agreement of a recovered law.
     `resolved`: whether the test that an ambiguous verdict prescribed led to the truth. `seen`: of what is concealed,
     the effects that the recording can show beside the others. `false`: what is named and not concealed, under no name.
-    `complete`: what the diagnosis says of itself.
+    `complete`: what the diagnosis says of itself. `probabilities`: of each name, the one stated and whether the effect is
+    concealed. `collection`: how many sets are stated to hold 95 % of the probability, and whether one is the truth (None
+    where none is stated, or the law is in no catalogue).
     """
 
     name: str
@@ -67,6 +69,8 @@ class Mark:
     seen: tuple[str, ...] = ()
     false: tuple[str, ...] = ()
     complete: bool | None = None
+    probabilities: tuple[tuple[float, bool], ...] = ()
+    collection: tuple[int, bool] | None = None
 
     @property
     def exact(self) -> bool:
@@ -89,6 +93,7 @@ def mark(case: Case, answer: Answer, second: Answer | None = None) -> Mark:
     named = tuple(str(effect["id"]) for effect in diagnosis.get("effects") or ())
     outcome = _outcome(case, verdict, named, diagnosis)
     held = outcome == "right" and _nothing_unnamed(case, verdict, named)
+    false = tuple(name for name in named if not any(name in names for names in accepted(case)))
     plain = not any("law" in values or "rounding" in values or "underlap" in values for _, values in case.effects)
     return Mark(
         name=case.name,
@@ -109,8 +114,14 @@ def mark(case: Case, answer: Answer, second: Answer | None = None) -> Mark:
         decidable=case.decidable,
         resolved=_resolved(case, second) if verdict == "ambiguous" else None,
         seen=case.seen,
-        false=tuple(name for name in named if not any(name in names for names in accepted(case))),
+        false=false,
         complete=(diagnosis.get("explained") or {}).get("complete"),
+        probabilities=tuple(
+            (float(effect["probability"]), effect["id"] not in false)
+            for effect in diagnosis.get("effects") or ()
+            if effect.get("probability") is not None
+        ),
+        collection=_collection(case, diagnosis),
     )
 
 
@@ -188,6 +199,13 @@ def _in_stated_set(case: Case, diagnosis: Mapping[str, Any]) -> bool:
     stated = [{str(effect["id"]) for effect in diagnosis.get("effects") or ()}]
     stated += [set(option["effects"]) for option in diagnosis.get("alternatives") or ()]
     return any(_is_told(case, names) for names in stated)
+
+
+def _collection(case: Case, diagnosis: Mapping[str, Any]) -> tuple[int, bool] | None:
+    sets = [set(one["effects"]) for one in diagnosis.get("sets") or ()]
+    if not sets or case.verdict == "unknown_physics":
+        return None
+    return len(sets), any(_is_told(case, names) for names in sets)
 
 
 def _site_right(case: Case, diagnosis: Mapping[str, Any]) -> bool | None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from statistics import median
 
+from eha_core.exam.reliability import APART, FEWEST, Bin, reliability
 from eha_core.exam.scoring import Mark, Proportion
 from eha_core.exam.tiers import MEANINGS, SETS
 
@@ -51,7 +52,7 @@ class Summary:
     """The score of one tool.
 
     `confusion`: what was named in place of what, and how often; `rightly`: how often each effect was named that was
-    there. `by_noise`: the cases that are right, by tier and noise.
+    there. `by_noise`: the cases that are right, by tier and noise. `reliability`: stated against observed probability.
     """
 
     tool: str
@@ -61,6 +62,7 @@ class Summary:
     confusion: tuple[tuple[str, str, int], ...] = ()
     rightly: tuple[tuple[str, int], ...] = ()
     by_noise: tuple[tuple[str, float, Proportion], ...] = ()
+    reliability: tuple[Bin, ...] = ()
 
 
 def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
@@ -83,6 +85,7 @@ def summarise(tool: str, marks: Sequence[Mark]) -> Summary:
         tuple(confusion(marks)),
         tuple(_rightly(marks)),
         tuple(_by_noise(marks)),
+        tuple(reliability(marks)),
     )
 
 
@@ -116,6 +119,10 @@ def _of_sets(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
 
 def _truthful(mark: Mark) -> bool:
     return bool(mark.truthful)
+
+
+def _holds_the_truth(mark: Mark) -> bool:
+    return mark.collection is not None and mark.collection[1]
 
 
 def _found(marks: Sequence[Mark]) -> Proportion:
@@ -163,6 +170,7 @@ def _shares(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
     """The aims that ask for a share of at least so much: statement, share asked, share reached."""
     single = [mark for mark in marks if mark.tier == "single" and mark.decidable]
     ambiguous = [mark for mark in marks if mark.in_stated_set is not None]
+    stated = [mark for mark in marks if mark.collection is not None]
     twins = [mark for mark in marks if mark.tier == "twins" and mark.decidable]
     outside = [mark for mark in marks if mark.tier == "outside" and mark.decidable]
     curves = [mark for mark in outside if mark.curve_r_squared is not None]
@@ -190,6 +198,7 @@ def _shares(marks: Sequence[Mark]) -> list[tuple[str, float, Proportion]]:
             0.90,
             _count([mark for mark in ambiguous if mark.in_stated_set], lambda mark: bool(mark.resolved)),
         ),
+        ("truth in the 95 % collection of sets", 0.95, _count(stated, _holds_the_truth)),
         ("twins said to be ambiguous", 0.99, _count(twins, right)),
         ("right site outside the catalogue", 0.95, _count(outside, lambda mark: bool(mark.site_right))),
         (
@@ -218,12 +227,22 @@ def _targets(marks: Sequence[Mark]) -> list[Target]:
         _at_most("false discoveries with nothing missing", 0.01, _count(null, lambda mark: mark.discovery)),
         _covering("effects' parameters", held),
         _covering("nominal parameters", nominal),
+        *(_as_stated(one) for one in reliability(marks) if one.observed.trials >= FEWEST),
     ]
+    sizes = [mark.collection[0] for mark in marks if mark.collection is not None]
+    if sizes:
+        targets.append(_target("sets in the 95 % collection, median", "2", f"{median(sizes):g}", median(sizes) <= 2))
     if marks:
         seconds = [mark.seconds for mark in marks]
         for what, limit, reached in (("median", 10.0, median(seconds)), ("longest", 60.0, max(seconds))):
             targets.append(_target(f"seconds a recording, {what}", f"{limit:g}", f"{reached:.1f}", reached <= limit))
     return targets
+
+
+def _as_stated(one: Bin) -> Target:
+    statement = f"names stated at {100 * one.low:g} to {100 * one.high:g} % that are true"
+    aim = f"within {100 * APART:.0f} points of {100 * one.stated:.1f} %"
+    return _within(statement, aim, one.observed, max(one.stated - APART, 0.0), min(one.stated + APART, 1.0))
 
 
 def _target(statement: str, aim: str, reached: str, met: bool | None) -> Target:

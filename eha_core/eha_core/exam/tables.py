@@ -41,6 +41,8 @@ def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown
         lines += _markdown_table(("target", "aim", "reached", "met"), rows)
         lines += ["", f"## {summary.tool}: what was named in place of what", ""]
         lines += _markdown_table(("concealed", "named", "times"), _confusion(summary))
+        lines += ["", f"## {summary.tool}: how probable names were said to be, and how often they were true", ""]
+        lines += _markdown_table(("stated, %", "mean stated, %", "true"), _reliability(summary))
         if summary.lost:
             lines += ["", f"## {summary.tool}: wrong or failed cases", ""]
             lines += _markdown_table(("case", "noise", "concealed", "verdict", "named"), _lost(summary))
@@ -83,6 +85,13 @@ def outcome_rows(summaries: Sequence[Summary]) -> list[list[str]]:
 
 def _confusion(summary: Summary) -> list[list[str]]:
     return [[concealed, named, str(times)] for concealed, named, times in summary.confusion]
+
+
+def _reliability(summary: Summary) -> list[list[str]]:
+    return [
+        [f"{100 * one.low:g} to {100 * one.high:g}", f"{100 * one.stated:.1f}", str(one.observed)]
+        for one in summary.reliability
+    ]
 
 
 def _lost(summary: Summary) -> list[list[str]]:
