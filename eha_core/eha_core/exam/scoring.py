@@ -44,9 +44,9 @@ class Mark:
     `held_out_ratio`: held-out error after over noise, worst channel. `curve_r_squared`: agreement of a recovered law.
     `resolved`: whether the test that an ambiguous verdict prescribed led to the truth. `seen`: of what is concealed,
     the effects that the recording can show beside the others. `false`: what is named and not concealed, under no name.
-    `complete`: what the diagnosis says of itself. `probabilities`: of each name, the one stated and whether the effect is
-    concealed. `collection`: how many sets are stated to hold 95 % of the probability, and whether one is the truth (None
-    where none is stated, or the law is in no catalogue).
+    `complete`: what the diagnosis says of itself. `probabilities`: of each name, the one stated and whether the effect
+    is concealed. `collection`: how many sets are stated to hold 95 % of the probability, and whether one is the truth
+    (None where none is stated, or the law is in no catalogue).
     """
 
     name: str
