@@ -159,6 +159,12 @@ def test_a_form_that_contains_the_best_one_comes_as_near_and_does_not_lead():
     stribeck = rig.set_of("stribeck_friction")
     assert leading == best and stribeck in compared
     assert rig.pool.found[stribeck].objective == pytest.approx(rig.pool.found[best].objective, abs=criteria.TIE)
+    # what did not come near is not tried again
+    hopeless, fits = set(rig.pool.hopeless), len(rig.pool.trace.steps)
+    assert rig.set_of("load_friction") in hopeless and stribeck not in hopeless
+    rivals(rig.pool, best, rig.columns, lambda _: None)
+    again = {tuple(step.effects) for step in rig.pool.trace.steps[fits:]}
+    assert not again & {hypothesis.ids for hypothesis in hopeless}
 
 
 def test_another_form_of_a_law_begins_as_large(rig):

@@ -227,13 +227,15 @@ def _compare(
     pool: Pool, step: str, hypothesis: Hypothesis, values: Mapping[str, float], states: Array, within: float,
     progress: Progress,
 ) -> None:  # fmt: skip
-    """Fit a rival's own parameters, and then all that is free where it may come near; once."""
-    if hypothesis in pool.glanced:
+    """Fit a rival's own parameters, and then all that is free where it may come near."""
+    if hypothesis in pool.hopeless:
         return
     progress(f"comparing with {' + '.join(hypothesis.ids) or 'nothing'}")
     glanced = pool.glance(step, hypothesis, values, states, AT_FIRST)
     if glanced.objective < within + glanced.count:
         pool.try_set(step, hypothesis, glanced.values, glanced.states, FURTHER, give_up_above=within)
+    else:
+        pool.hopeless.add(hypothesis)
 
 
 def in_a_members_place(

@@ -58,8 +58,8 @@ class Pool:
 
     `believed`: the nominal parameters that are free, within the bounds of what is believed of them but for those
     `released`; `trace` is shared by the pools of all lengths; `filtered` are channels behind a filter, see
-    `corrected_noise`; `settled` are the objectives of sets that were fitted to their end; of those `glanced` at,
-    members were fitted alone.
+    `corrected_noise`; `settled` are the objectives of sets that were fitted to their end, `hopeless` those that were
+    compared with a best set and did not come near it.
     """
 
     problem: Problem
@@ -69,7 +69,7 @@ class Pool:
     filtered: frozenset[str] = frozenset()
     released: frozenset[str] = frozenset()
     settled: dict[Hypothesis, float] = field(default_factory=dict)
-    glanced: set[Hypothesis] = field(default_factory=set)
+    hopeless: set[Hypothesis] = field(default_factory=set)
 
     @property
     def plant(self) -> tuple[FreeParameter, ...]:
@@ -104,7 +104,6 @@ class Pool:
         self, step: str, hypothesis: Hypothesis, values: Mapping[str, float], states: Array, iterations: int
     ) -> Fit:
         """A fit of the members' own parameters alone; it is not kept."""
-        self.glanced.add(hypothesis)
         plant = {parameter.name for parameter in self.plant}
         free = tuple(parameter for parameter in self.free(hypothesis, values) if parameter.name not in plant)
         result = fit(self.problem, values, free, states, iterations=iterations)
@@ -117,7 +116,7 @@ class Pool:
 
     def fresh(self) -> Pool:
         """A pool of the same windows, noise and bounds that has no fits yet."""
-        return replace(self, found={}, settled={}, glanced=set())
+        return replace(self, found={}, settled={}, hopeless=set())
 
     def adopt(self, other: Pool) -> None:
         """Keep the fits of another pool of the same windows, in the noise of this one."""
