@@ -124,6 +124,15 @@ def test_what_explains_nothing_beside_the_others_is_dropped_and_they_stay(rig, p
         assert any(line.startswith(f"without {name}: ") for line in said)
 
 
+def test_the_member_that_is_needed_least_is_tried_whatever_the_curvature_says(rig, pool, monkeypatch):
+    monkeypatch.setattr("eha_core.diagnosis.search.finish.LOOKED_AT", 0.0)
+    rig = replace(rig, pool=pool)
+    rig.fitted({**PLANTED, "hardening_spring.coefficient": 1e6, "command_delay.delay": 2e-4})
+    whole = rig.set_of("constant_load", "valve_deadband", "hardening_spring", "command_delay")
+    best, _ = finish(pool, whole, lambda _: None)
+    assert best == rig.set_of("constant_load", "valve_deadband")
+
+
 def test_the_costs_of_members_are_those_of_refits(rig, pool):
     rig = replace(rig, pool=pool)
     both = rig.set_of("constant_load", "valve_deadband", "hardening_spring")

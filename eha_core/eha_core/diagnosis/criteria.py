@@ -172,7 +172,7 @@ COMPARED_WITHIN = 300.0
 
 LOOKED_AT = 4.0
 """A member is tried to be dropped where the curvature says that it costs no more than this many times what it must
-gain."""
+gain; and the one that is needed least, whatever it says."""
 
 
 IMPROBABLE = 2.0

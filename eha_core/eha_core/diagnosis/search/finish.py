@@ -90,7 +90,9 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
             member: ratio for member, ratio in gains.items() if member in refused
         }
         order = sorted(costs.keys() - refused, key=lambda member: costs[member] / needed[member])
-        if not order or costs[order[0]] > LOOKED_AT * needed[order[0]]:
+        # the curvature is not believed of the member that is needed least
+        believed = refused or len(costs) == 1
+        if not order or believed and costs[order[0]] > LOOKED_AT * needed[order[0]]:
             break
         member = order[0]
         rest = hypothesis.without(member)
