@@ -11,6 +11,7 @@ from eha_core.diagnosis.criteria import (
     AT_FIRST,
     CHANCE,
     COMPARED_WITHIN,
+    CONTENDING,
     CONVERGED,
     CONVINCING,
     FAR_FROM_NOISE,
@@ -27,7 +28,7 @@ from eha_core.diagnosis.criteria import (
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
 from eha_core.diagnosis.search.best_sets import Proposal, best_sets, objective_without, one_more
 from eha_core.diagnosis.search.columns import Column
-from eha_core.diagnosis.search.comparison import rank
+from eha_core.diagnosis.search.comparison import Entry, rank
 from eha_core.diagnosis.search.instants import TO_THE_STEP, shift_instants
 from eha_core.diagnosis.search.intervals import in_span
 from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
@@ -194,8 +195,15 @@ def rivals(
     for hypothesis in sorted(close, key=lambda h: pool.found[h].objective)[:FITTED]:
         converge(pool, hypothesis, at.objective + within)
     compared = [best, *close]
-    leading = rank(pool.found[NOTHING], {hypothesis: pool.found[hypothesis] for hypothesis in compared})[0]
-    return leading.hypothesis, compared, model
+    ranked = _ranked(pool, compared)
+    for entry in ranked:
+        if entry.hypothesis != best and entry.score > ranked[0].score - CONTENDING:
+            shift_instants(pool, entry.hypothesis, CONVERGED, TO_THE_STEP)  # as the best set was
+    return _ranked(pool, compared)[0].hypothesis, compared, model
+
+
+def _ranked(pool: Pool, compared: Sequence[Hypothesis]) -> tuple[Entry, ...]:
+    return rank(pool.found[NOTHING], {hypothesis: pool.found[hypothesis] for hypothesis in compared})
 
 
 def _about(pool: Pool, hypothesis: Hypothesis, columns: Sequence[Column]) -> QuadraticModel:
