@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
+import weakref
 from types import FrameType
 from typing import Any
 
@@ -64,3 +65,19 @@ def test_it_ends_after_what_it_was_given() -> None:
     thread.end()
     names[0].join(10.0)
     assert not names[0].is_alive()
+
+
+def test_it_keeps_its_owner_not_alive_and_ends_with_it() -> None:
+    class Owner:
+        def __init__(self) -> None:
+            self.thread, self.served_by = OwnThread("owned"), threading.current_thread()
+            self.thread.do(self.serve)
+
+        def serve(self) -> None:
+            self.served_by = threading.current_thread()
+
+    owner = Owner()
+    served_by, gone = owner.served_by, weakref.ref(owner)
+    del owner
+    served_by.join(10.0)
+    assert gone() is None and not served_by.is_alive()

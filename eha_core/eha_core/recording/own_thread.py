@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import weakref
 from collections.abc import Callable
 from queue import SimpleQueue
 from typing import TypeAlias
@@ -12,7 +13,7 @@ _Actions: TypeAlias = "SimpleQueue[tuple[Callable[[], None], _Outcome] | None]"
 
 
 class OwnThread:
-    """Does actions one after another, each to its end.
+    """Does actions one after another, each to its end; it ends with its owner.
 
     Python raises KeyboardInterrupt in the main thread, between any two of its steps. A `SimpleQueue` hands over in one
     step of C, so nothing is left half done; an executor or a condition takes its locks in Python, and an interrupt
@@ -25,6 +26,7 @@ class OwnThread:
     def __init__(self, name: str) -> None:
         self._actions: _Actions = SimpleQueue()
         threading.Thread(target=_serve, args=(self._actions,), name=name, daemon=True).start()
+        weakref.finalize(self, self._actions.put, None)
 
     def do(self, action: Callable[[], None]) -> None:
         """Have an action done, also when the wait for its end is interrupted; raises what it raised."""
@@ -47,3 +49,4 @@ def _serve(actions: _Actions) -> None:
             outcome.put(error)
         else:
             outcome.put(None)
+        del given, action, outcome  # while it waits it keeps nobody's file open
