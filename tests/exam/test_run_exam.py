@@ -131,6 +131,12 @@ def test_a_tool_is_held_to_one_core() -> None:
     assert run_tool([sys.executable, "-c", source, "{answer}"]).diagnosis == "1"
 
 
+def test_a_tool_is_charged_for_the_processor_and_not_for_waiting() -> None:
+    waits = "import time; time.sleep(3.0)"
+    works = "import time\nwhile time.process_time() < 1.0: pass"
+    assert run_tool([sys.executable, "-c", waits]).seconds < 1.0 < run_tool([sys.executable, "-c", works]).seconds
+
+
 @pytest.mark.parametrize("sent", ["SIGTERM", "SIGINT", "SIGHUP"])
 def test_a_tool_that_was_stopped_from_outside_has_not_answered(sent: str) -> None:
     source = f"import os, signal; signal.signal(signal.{sent}, signal.SIG_DFL); os.kill(os.getpid(), signal.{sent})"

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import shlex
 import signal
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import count, takewhile
@@ -198,15 +198,24 @@ def diagnose_recording(recordings: Sequence[str], answers: str, command: str) ->
 
 
 def run_tool(command: Sequence[str]) -> Answer:
-    """Run a tool in an empty folder; the word {answer} becomes the path where it is to write its diagnosis."""
+    """Run a tool in an empty folder; the word {answer} becomes the path where it is to write its diagnosis.
+
+    Its seconds are of processor time: what else runs on the machine is no part of them.
+    """
     with tempfile.TemporaryDirectory() as scratch:
         target = Path(scratch) / "diagnosis.json"
         words = [word.replace("{answer}", str(target)) for word in command]
-        start = time.monotonic()
+        before = _processor_time()
         status, message = _run(words, scratch)
-        seconds = time.monotonic() - start
+        seconds = _processor_time() - before
         diagnosis = json.loads(target.read_text(encoding="utf-8")) if target.is_file() else None
     return Answer(diagnosis, status, seconds, message)
+
+
+def _processor_time() -> float:
+    """Processor time [s] of all that this process started and saw end."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def _run(words: Sequence[str], folder: str) -> tuple[int, str]:

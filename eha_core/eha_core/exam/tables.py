@@ -12,7 +12,7 @@ from eha_core.exam.sittings import SCHEMA
 from eha_core.exam.summary import Summary
 from eha_core.exam.tiers import MEANINGS
 
-HEAD = ("cases", "right", "abstained", "wrong", "failed", "right site", "s, median", "s, longest")
+HEAD = ("cases", "right", "abstained", "wrong", "failed", "right site", "CPU s, median", "CPU s, longest")
 SHOWN = ("recording", "source", "concealed", "verdict", "named", "right", "s", "note")
 
 
