@@ -50,6 +50,14 @@ def test_the_kind_is_claimed_and_not_the_law():
     assert "coulomb_friction and stribeck_friction explain it alike" in said
 
 
+def test_a_name_that_is_less_than_sure_has_its_probability():
+    friction = NamedEffect("coulomb_friction", "force", "", {}, 100.0, "the seals rub: 1.9 kN", probability=0.57)
+    load = replace(friction, id="constant_load", statement="a load pushes", probability=0.96)
+    alone = replace(decision(("coulomb_friction", "constant_load")), verdict="missing_physics")
+    said = summary(alone, (friction, load), None, Explained(1.0, {}, True))
+    assert said == "Physics is missing: the seals rub: 1.9 kN (probability 57 %); and a load pushes."
+
+
 def test_an_event_is_told_before_its_cause_and_a_common_scale_after_the_verdict():
     friction = NamedEffect("coulomb_friction", "force", "", {}, 100.0, "the seals rub: 1.9 kN")
     alone = replace(decision(("coulomb_friction",)), verdict="missing_physics")

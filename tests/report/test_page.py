@@ -17,7 +17,7 @@ import pytest
 from matplotlib.image import imread
 
 import eha_core
-from eha_core.diagnosis.result import Diagnosis, Pictures
+from eha_core.diagnosis.result import Diagnosis, Pictures, ProbableSet
 from eha_core.quantities import quantity
 from eha_core.report.document import as_json
 from eha_core.report.evidence import evidence_picture
@@ -66,6 +66,17 @@ def _read(text: str) -> _Reader:
     reader.feed(text)
     assert reader.open == []
     return reader
+
+
+def test_the_report_says_how_probable_each_name_and_each_set_is(friction: Diagnosis) -> None:
+    (effect,) = friction.effects
+    sets = (ProbableSet((effect.id,), 0.58), ProbableSet((effect.id, "constant_load"), 0.41))
+    found = replace(friction, effects=(replace(effect, probability=0.994),), sets=sets)
+    stages = {stage.name: stage for stage in report_stages(found)}
+    (table,) = stages["name"].tables
+    assert [row[1] for row in table.rows] == ["58 %", "41 %"]
+    assert "constant load" in table.rows[1][0]
+    assert any("over 99 % probable" in text for text in stages["model"].parts[0].sentences)
 
 
 def test_tells_the_story_in_order_and_needs_nothing_else(any_diagnosis: Diagnosis) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eha_core.diagnosis.criteria import LEFT_IN_A_CHANNEL
+from eha_core.diagnosis.criteria import CERTAINTY, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.result import CommonScale, Explained, NamedEffect, UnknownLaw
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects as every_effect
@@ -60,7 +60,7 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
         return "No physics is missing: parameter values differ from the nominal ones."
     if decision.verdict == "unknown_physics":
         return _summary_of_unknown(effects, unknown)
-    named = "; and ".join(effect.statement for effect in effects)
+    named = _listed(effects)
     kind = kind_alone(decision)
     if decision.verdict == "ambiguous" and kind:
         forms = " and ".join(
@@ -74,6 +74,15 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
         others = ", ".join(" + ".join(entry.ids) for entry, _ in decision.rivals)
         return f"Physics is missing, most likely: {named}. This recording cannot tell it from {others}."
     return f"Physics is missing: {named}."
+
+
+def _listed(effects: tuple[NamedEffect, ...]) -> str:
+    """What the effects state, with the probability of each name that is less than sure."""
+    doubts = (f" (probability {100.0 * effect.probability:.0f} %)" for effect in effects)
+    return "; and ".join(
+        effect.statement + (doubt if effect.probability < CERTAINTY else "")
+        for effect, doubt in zip(effects, doubts, strict=True)
+    )
 
 
 def kind_alone(decision: Decision) -> str:
@@ -95,5 +104,5 @@ def _summary_of_unknown(effects: tuple[NamedEffect, ...], law: UnknownLaw | None
     unknown = f"{statement}, as a function of {law.function_of}"
     if not effects:
         return f"Something is missing: {unknown}."
-    named = "; and ".join(effect.statement for effect in effects)
+    named = _listed(effects)
     return f"Physics is missing: {named}; and beside it a law that the catalogue does not name: {unknown}."

@@ -108,7 +108,7 @@ def _screened(diagnosis: Diagnosis) -> str:
     blind = [effect.id for effect in left if effect.needs and not set(effect.needs) <= seen]
     weak = [effect.id for effect in left if effect.id not in blind]
     weakly = listed(list(map(effect_title, weak)))
-    remarks = [f"Screened out, as by a score test or a refit they gain too little: {weakly}."]
+    remarks = [f"Not in any of these sets, for they gain too little: {weakly}."]
     if blind:
         remarks.append(f"Not tried, as their channels were not recorded: {listed(list(map(effect_title, blind)))}.")
     return " ".join(remarks if weak else remarks[1:])

@@ -115,6 +115,11 @@ def percent(share: float) -> str:
     return f"{100.0 * share:.0f} %"
 
 
+def probable(probability: float) -> str:
+    """A probability in whole per cent; of what is next to sure only that, for nobody knows it better."""
+    return "over 99 %" if probability > 0.99 else percent(probability)
+
+
 def span(seconds: tuple[float, float]) -> str:
     """A span of time."""
     return f"{seconds[0]:.1f} s to {seconds[1]:.1f} s"

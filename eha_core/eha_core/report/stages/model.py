@@ -24,6 +24,7 @@ from eha_core.report.wording import (
     channel_title,
     effect_title,
     listed,
+    probable,
     sentence,
     variable_title,
     words,
@@ -88,7 +89,7 @@ def _part(diagnosis: Diagnosis, place: int, effect: NamedEffect, found: Mapping[
     """One effect: what it is, how large, where it acts, what it is worth, and its law."""
     details = missing(effect)
     title = f"{place}. {capital(details.title)}: {', '.join(details.values)}"
-    acts = f"It acts {SITES[effect.site].words}."
+    acts = f"It acts {SITES[effect.site].words}. The name is {probable(effect.probability)} probable."
     law = found.get(effect.id)
     panel = replace(law_panel(law, LAW_HEIGHT), title="") if law else None
     pictures = (Picture(f"5-law-{effect.id}", (Group((panel,)),)),) if panel else ()

@@ -4,27 +4,34 @@ from __future__ import annotations
 
 from eha_core.diagnosis.criteria import ENOUGH
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.report.evidence import IN_FULL, evidence_picture, named
+from eha_core.report.evidence import IN_FULL, evidence_picture, named, rung
 from eha_core.report.finding import counted, names_listed
-from eha_core.report.stage import Stage, adds_physics
-from eha_core.report.wording import listed
+from eha_core.report.stage import Stage, Table, adds_physics
+from eha_core.report.wording import listed, probable
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
     """Which of the catalogue's effects were tried, and how far the winner is ahead."""
     sentences = [
-        "Each effect that a score test expects to help was put into the model, alone and with others, and fitted with"
-        " every nominal parameter free. It has to gain more than its own parameters cost."
+        "A linear model of all effects at once says which sets should explain most. Those were fitted with every"
+        " nominal parameter free. An effect has to gain more than its own parameters cost."
     ]
     pictures = (evidence_picture(diagnosis),) if diagnosis.rivals else ()
     if not pictures:
-        sentences.append("A score test expects too little of every effect of the catalogue; none was fitted.")
+        sentences.append("Too little is expected of every effect of the catalogue; none was fitted.")
     elif not adds_physics(diagnosis):
         sentences.append(_why_none(diagnosis))
     if diagnosis.alternatives:
         rivals = listed([named(alternative.effects) for alternative in diagnosis.alternatives])
         sentences.append(f"This recording does not tell it from {rivals}: see the next experiment.")
-    return Stage("name", "Name", _headline(diagnosis), tuple(sentences), pictures)
+    return Stage("name", "Name", _headline(diagnosis), tuple(sentences), pictures, _sets(diagnosis))
+
+
+def _sets(diagnosis: Diagnosis) -> tuple[Table, ...]:
+    """The sets that together hold 95 % of the probability."""
+    chosen = {effect.id for effect in diagnosis.effects}
+    rows = tuple((rung(set(each.effects), chosen), probable(each.probability)) for each in diagnosis.sets)
+    return (Table(("set", "probability"), rows, "Sets that together hold 95 % of the probability"),) if rows else ()
 
 
 def _why_none(diagnosis: Diagnosis) -> str:
