@@ -101,7 +101,11 @@ def bench(
 ) -> Bench:
     """A recording of this plant, made as `recorded` does, in windows of this length [s]."""
     given = {**nominal_values(), **(nominal or {})}
-    observation = observe(recorded({**(nominal or {}), **parameters}, **how))
+    return bench_of(observe(recorded({**(nominal or {}), **parameters}, **how)), given, length)
+
+
+def bench_of(observation: Observation, given: Mapping[str, float], length: float) -> Bench:
+    """A recording in windows of this length [s], with these nominal values."""
     shooting = cut_together([observation], given, STEPS[0], length)
     farthest = float(np.max(np.abs(observation.channel("position").values)))
     plant = free_nominal_parameters(given, shooting.drive, farthest)

@@ -8,6 +8,7 @@ import pytest
 from made import LAWS, explanation
 from scipy.optimize import lsq_linear
 
+from eha_core.diagnosis.criteria import BEYOND
 from eha_core.diagnosis.hypothesis import NOTHING, Member
 from eha_core.diagnosis.search.best_sets import best_sets, objective_without, one_more
 from eha_core.diagnosis.search.columns import Column
@@ -79,6 +80,30 @@ def test_each_size_has_its_best_set_first_and_all_are_predicted_right():
             for proposal in found[size]:
                 places = frozenset(one.places for one in proposal.options)
                 assert proposal.predicted == pytest.approx(whole[places])
+
+
+def test_sets_that_keep_what_is_present_are_the_best_of_those():
+    for seed in range(8):
+        options = [option(name, [k], present=k < 2) for k, name in enumerate(NAMED[:8])]
+        model = model_of(options, seed)
+        found = best_sets(model, 4, keeping=True)
+        assert sorted(found) == [2, 3, 4]
+        for size, level in found.items():
+            assert all(proposal.options[:2] == tuple(options[:2]) for proposal in level)
+            whole = [value for places, value in enumerated(model, size).items() if {(0,), (1,)} <= places]
+            assert level[0].predicted == pytest.approx(min(whole))
+        assert best_sets(model, 1, keeping=True) == {}
+
+
+def test_sets_grow_little_beyond_the_size_that_pays():
+    model = model_of([option(name, [k]) for k, name in enumerate(NAMED[:9])], 0)
+    best = {size: level[0].predicted for size, level in best_sets(model, 9).items()}
+    assert max(best) == 9
+    for needed in (30.0, 300.0, 3000.0):
+        pays = min(best, key=lambda size: best[size] + needed * size)
+        found = best_sets(model, 9, needed)
+        assert max(found) == min(9, pays + BEYOND + 1)
+        assert all(found[size][0].predicted == best[size] for size in range(pays + 1))
 
 
 def test_of_pairs_the_best_are_all_there():

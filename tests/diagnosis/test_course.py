@@ -78,7 +78,7 @@ def test_every_fit_is_in_the_trace(found):
     _, _, comparison = found
     steps = [step.step for step in comparison.trace]
     assert steps[0] == "nominal" and "converge" in steps
-    assert any(step.startswith("expansion") for step in steps)
+    assert any("expansion" in step for step in steps)
     seconds = [step.cpu_s for step in comparison.trace]
     assert seconds == sorted(seconds)
     assert any(set(step.effects) == {name.partition(".")[0] for name in PLANTED} for step in comparison.trace)

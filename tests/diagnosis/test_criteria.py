@@ -50,12 +50,14 @@ THRESHOLDS = {
     "IMPROVES": 0.05,
     "EXPANSIONS_IN_ALL": 24,
     "BEAM": 10,
+    "BEYOND": 2,
     "OF_SIZE": 4,
     "TRIED": 16,
     "TRIED_AT_THE_NOISE": 4,
     "AT_FIRST": 3,
     "FURTHER": 8,
     "FITTED": 6,
+    "ADDED": 2,
     "MOST_TRIED": 12,
     "TO_THE_END": 12,
     "CONVERGED": 20,
@@ -64,9 +66,7 @@ THRESHOLDS = {
     "CARRIED": 2,
     "OUTSTANDING": 1.5,
     "COMPARED_WITHIN": 300.0,
-    "LOOKED_AT": 4.0,
     "IDENTIFIED": 2.0,
-    "IMPROBABLE": 2.0,
 }
 
 

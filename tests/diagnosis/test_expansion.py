@@ -1,9 +1,13 @@
 """One expansion after the other: what is proposed is fitted, and the search goes on from the best of all."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
-from made import bench
+from made import bench, bench_of
 
+from eha_core.api import known_model
 from eha_core.diagnosis.criteria import FITTED, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search import expansion
@@ -11,7 +15,12 @@ from eha_core.diagnosis.search.course import at_the_noise
 from eha_core.diagnosis.search.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.identification.fit import exact, fit
+from eha_core.identification.observation import observe
 from eha_core.identification.problem import objectives_at
+from eha_core.identification.short_windows import held
+from eha_core.recording import read_recording
+
+BAGS = Path(__file__).resolve().parents[2] / "bags"
 
 PLANTED = {"constant_load.force": 300.0, "valve_deadband.half_width": 1e-4}
 
@@ -71,6 +80,33 @@ def test_near_the_noise_only_what_is_predicted_to_come_nearer_is_fitted_besides(
     first = len(fitted[0])
     assert all(len(effects) <= first for effects in fitted)
     assert leader(search.pool) == rig.set_of("constant_load", "valve_deadband")
+
+
+@pytest.mark.parametrize(
+    ("size", "nearer", "tried"), [(2, 1.1, True), (2, 0.9, False), (1, 0.1, True), (1, -0.1, False), (3, 9.9, False)]
+)
+def test_near_the_noise_a_set_may_leave_more_for_what_it_has_fewer(rig, size, nearer, tried):
+    at = rig.pool.found[NOTHING]
+    names = ["constant_load", "valve_deadband", "turbulent_leakage"]
+    near, other = rig.set_of(*names[:2]), rig.set_of(*names[:size])
+    start = expansion._Start(at.objective, at.objective - nearer * required(at), other, {}, at.states)
+    assert expansion._contends(start, near, at) == tried
+
+
+def test_sets_that_keep_a_large_member_are_tried_however_well_the_others_are_predicted():
+    """Without a leak that explains nearly all the quadratic model promises thirty times too much."""
+    recording = read_recording(BAGS / "rig_five_effects.mcap")
+    given = known_model(None, recording).values
+    rig = bench_of(observe(recording), given, 0.2)
+    pool, leak = replace(rig.pool, believed=held(rig.pool.believed, given), found={}), rig.set_of("external_leakage")
+    begun = pool.try_set("nominal", NOTHING, given, None, 8)
+    first = rig.columns_of("external_leakage")[0].values
+    at = pool.try_set("leak", leak, {**begun.values, **first}, begun.states, 12)
+    assert at.objective < 0.2 * begun.objective
+    expand(Search(pool, rig.columns), leak, "second")
+    best = leader(pool)
+    assert {"external_leakage", "valve_deadband"} <= set(best.ids)
+    assert pool.found[best].objective < 0.1 * at.objective
 
 
 def test_the_objective_at_a_point_is_that_of_a_fit_that_does_not_move(rig):

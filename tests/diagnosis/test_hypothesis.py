@@ -17,7 +17,7 @@ def test_the_order_in_which_effects_were_added_does_not_matter():
 def test_an_effect_that_acts_in_an_interval_is_another_member():
     limited = NOTHING.with_effects([FRICTION], limited=True)
     assert limited != NOTHING.with_effects([FRICTION])
-    assert limited.limited
+    assert limited.limited and (limited.size, NOTHING.with_effects([FRICTION]).size) == (2, 1)
     assert not NOTHING.with_effects([FRICTION]).limited
 
 

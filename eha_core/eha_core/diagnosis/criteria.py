@@ -139,8 +139,9 @@ IDLE, IMPROVES = 2, 0.05
 EXPANSIONS_IN_ALL = 24
 """Expansions after which a diagnosis goes on with the best set that it has. Rigs of six effects took up to twelve."""
 
-BEAM = 10
-"""Sets of each size that are grown and shrunk in the quadratic model."""
+BEAM, BEYOND = 10, 2
+"""Sets of each size that are grown and shrunk in the quadratic model, up to so many members more than the best: two
+may explain together what neither does alone (assumed)."""
 
 OF_SIZE, TRIED, TRIED_AT_THE_NOISE = 4, 16, 4
 """Proposals of one size (and effects in the intervals in which they act), and of all, of which the members are fitted.
@@ -151,8 +152,9 @@ AT_FIRST, FURTHER, TO_THE_END, CONVERGED = 3, 8, 12, 20
 other windows; of a leader's; and of what is compared at the end. A fit ends before where an iteration gains too
 little."""
 
-FITTED = 6
-"""Proposals that are fitted, those that begin lowest; and sets near the best that are compared with it."""
+FITTED, ADDED = 6, 2
+"""Proposals that are fitted, those that begin lowest; sets near the best that are compared with it; and of proposals
+that only add to what is there those that are fitted besides."""
 
 RELATED = 3.0
 """The search goes on from a set that is worse than the leader by this factor at most."""
@@ -169,15 +171,6 @@ Of effects that do always act, the best windows in a row are predicted to gain n
 
 COMPARED_WITHIN = 300.0
 """Chi^2, in units of the residual's variance, behind the best within which a rival is fitted to its end."""
-
-LOOKED_AT = 4.0
-"""A member is tried to be dropped where the curvature says that it costs no more than this many times what it must
-gain; and the one that is needed least, whatever it says."""
-
-
-IMPROBABLE = 2.0
-"""Prior standard deviations by which a nominal parameter must have moved for a fit to be suspected of a local minimum.
-Assumed; nominal values that are off by 30 % are off by 1.2 of them at most."""
 
 
 def chance_gain(samples: int, times_noise: float) -> float:

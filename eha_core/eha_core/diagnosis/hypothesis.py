@@ -34,8 +34,8 @@ class Member:
 
     @property
     def size(self) -> int:
-        """What it counts as: 1, or LAW_SIZE."""
-        return LAW_SIZE if self.variable else 1
+        """What it counts as: 1, one more where its interval was chosen among all, or LAW_SIZE."""
+        return LAW_SIZE if self.variable else 1 + self.limited
 
     def span(self, values: Mapping[str, float]) -> tuple[float, float] | None:
         """From when until when it acts [s] in a model of these values; None where it always does."""
@@ -63,7 +63,7 @@ class Hypothesis:
 
     @property
     def size(self) -> int:
-        """How many members it has, a law in no catalogue counted as LAW_SIZE."""
+        """What its members count as together."""
         return sum(member.size for member in self.members)
 
     @property

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eha_core.compiled import compiled
-from eha_core.diagnosis.criteria import BEAM
+from eha_core.diagnosis.criteria import BEAM, BEYOND
 from eha_core.diagnosis.hypothesis import Member
 from eha_core.diagnosis.search.box import within_bounds
 from eha_core.diagnosis.search.quadratic import Option, QuadraticModel
@@ -23,20 +23,27 @@ class Proposal:
     predicted: float
 
 
-def best_sets(model: QuadraticModel, most: int) -> Mapping[int, list[Proposal]]:
-    """For each size up to `most` (see Hypothesis.size) the best sets, the best first."""
+def best_sets(
+    model: QuadraticModel, most: int, needed: float = 0.0, keeping: bool = False
+) -> Mapping[int, list[Proposal]]:
+    """For each size up to `most` (see Hypothesis.size) the best sets, the best first; only a little beyond the size
+    that is best where each member needs to gain so much; `keeping`: only those with all members that are present."""
     options = model.options
     table = _table(options)
     rivals = _exclusive(options)
     sizes = [option.member.size for option in options]
     levels: list[dict[tuple[int, ...], float]] = [{} for _ in range(most + 1)]
-    levels[0][()] = model.gain(())[0]
     present = tuple(k for k, option in enumerate(options) if option.present)
-    _add(levels, sizes, present, model.gain([options[k] for k in present])[0])
+    kept = frozenset(present if keeping else ())
+    for first in (tuple(sorted(kept)), present):
+        if sum(sizes[k] for k in first) <= most:
+            levels[sum(sizes[k] for k in first)][first] = model.gain([options[k] for k in first])[0]
     expanded: set[tuple[int, ...]] = set()
     while True:
         leading = [sorted(level, key=level.__getitem__, reverse=True)[:BEAM] for level in levels]
-        fresh = [chosen for level in leading for chosen in level if chosen not in expanded]
+        costs = [needed * size - max(level.values(), default=-np.inf) for size, level in enumerate(levels)]
+        within = leading[: int(np.argmin(costs)) + BEYOND + 1]
+        fresh = [chosen for level in within for chosen in level if chosen not in expanded]
         if not fresh:
             break
         for chosen in fresh:
@@ -45,7 +52,7 @@ def best_sets(model: QuadraticModel, most: int) -> Mapping[int, list[Proposal]]:
             gains = _with_each(model, table, chosen, allowed)
             for k in np.argsort(gains)[::-1][: 2 * BEAM]:
                 _add(levels, sizes, tuple(sorted((*chosen, int(k)))), float(gains[k]))
-            for k in chosen:
+            for k in set(chosen) - kept:
                 smaller = tuple(other for other in chosen if other != k)
                 if smaller not in levels[sum(sizes[other] for other in smaller)]:
                     _add(levels, sizes, smaller, model.gain([options[k] for k in smaller])[0])

@@ -100,7 +100,7 @@ def _over_growing_windows(
         pool, begin = begun(long, nominal, friction, material)
         pool = searched(pool, begin, friction, material, laws=False)
     else:
-        short = searched(short, begin, friction, material)
+        short = searched(short, begin, friction, material, laws=False)
         pool = carried(short, long, material)
         if at_the_noise(short) and not at_the_noise(pool):  # over long windows the error of the step adds up
             calibration, pool = at_step_needed(observations, calibration, pool, material)
@@ -114,7 +114,8 @@ def _over_growing_windows(
     pool = carried(bridge, calibration.problem, material)
     if at_the_noise(pool):
         return calibration, pool
-    found = carried(searched(longer, begin, friction, material), calibration.problem, material)
+    longer = searched(longer, begin, friction, material, laws=True)
+    found = carried(longer, calibration.problem, material)
     found.adopt(pool)
     return calibration, found
 
@@ -142,9 +143,9 @@ def begun(problem: Problem, nominal: Mapping[str, float], friction: Friction, ma
     return pool, pool.found[NOTHING] if is_at_noise(calibrated) else given
 
 
-def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool = True) -> Pool:
+def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool) -> Pool:
     """Sets over the windows of a pool: the friction of the force balance alone, then held while what is large beside it
-    is found, then free; then laws in no catalogue."""
+    is found, then free; then, where asked, laws in no catalogue."""
     base = NOTHING
     if friction.held is None:
         others = [column for column in material.columns if not (friction.known and column.effect.kind)]
@@ -216,7 +217,7 @@ def _search(search: Search, begin: Fit) -> None:
 
 def _search_laws(pool: Pool, base: Hypothesis, begin: Fit, material: Material) -> None:
     """Search among named effects and laws in no catalogue, from the nominal equations of `begin` on: what names did
-    wrongly must not stand in a law's way. What a law drew may have a name."""
+    wrongly must not stand in a law's way."""
     search = Search(pool, [*material.columns, *material.laws], material.progress, content=at_the_noise)
     expand(search, base, "with laws in no catalogue", begin)
     search_sets(search)
@@ -224,12 +225,6 @@ def _search_laws(pool: Pool, base: Hypothesis, begin: Fit, material: Material) -
     at = pool.found[best]
     if at.data > UNFITTED * at.count:  # then no curve is the law, and each bends to whatever is there
         pool.found = {hypothesis: result for hypothesis, result in pool if hypothesis.law is None}
-    elif best.law is not None:
-        rest = best.without(best.law)
-        off = {name: value for name, value in neutral(best.law.effect).items() if name in at.values}
-        values = {**at.values, **off}
-        undrawn = pool.at_rest(rest, values, at.states)
-        expand(Search(pool, material.columns, material.progress), rest, "names in the law's place", undrawn)
 
 
 def carried(pool: Pool, problem: Problem, material: Material) -> Pool:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from eha_core.diagnosis.criteria import (
+    ADDED,
     AT_FIRST,
     EXPANSIONS_LATER,
     FITTED,
@@ -104,7 +105,7 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)
     tried = 0
     near: Hypothesis | None = None
-    for start in _begun(pool, model, _worth_a_fit(pool, base, model))[:FITTED]:
+    for start in _starts(pool, base, model):
         if near is not None and not _contends(start, near, pool.found[near]):
             continue  # what is larger is proposed from there, if it is needed
         result = pool.try_set(step, start.hypothesis, start.values, start.states, AT_FIRST)
@@ -115,29 +116,46 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     if not is_at_noise(pool.found[now]) and (now != lead or base == lead):
         # what a fit that stopped short leaves would be taken for more effects
         pool.go_on(step, now, TO_THE_END, 2)
-        shift_instants(pool, now, TO_THE_END)
+        shift_instants(pool, now, set(now.members) - set(lead.members), TO_THE_END)
     left = pool.found[now].data / at.count
     search.say(f"{step}: {tried} sets tried, best {_shown(now)}, {left:.4g} times the noise")
     pool.measure_noise(now)
 
 
 def _contends(start: _Start, near: Hypothesis, at: Fit) -> bool:
-    """Whether a proposal is no larger than a set that came near the noise, and predicted to come nearer."""
-    return start.hypothesis.size <= near.size and start.predicted + required(at) < at.objective
+    """Whether a proposal is no larger than a set that came near the noise, and predicted to come nearer, or near enough
+    for what it has fewer."""
+    more = start.hypothesis.size - near.size
+    return more <= 0 and start.predicted + (1 + more) * required(at) < at.objective
 
 
 def _shown(hypothesis: Hypothesis) -> str:
     return " + ".join(hypothesis.ids) or "the nominal equations"
 
 
-def _worth_a_fit(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[tuple[Hypothesis, Proposal]]:
-    """The proposals of a quadratic model: at the noise what is significant, else the best few of each size that
-    explains noticeably more than a smaller one."""
+def _starts(pool: Pool, base: Hypothesis, model: QuadraticModel) -> list[_Start]:
+    """Where fits begin, the lowest first: a few of sets that only add to the base, and more of any others.
+
+    To take out a large member is a long way, over which the quadratic model promises too much.
+    """
+    needed, found = required(model.at), dict[Hypothesis, _Start]()
+    for keeping, most in ((True, ADDED), (False, FITTED)) if base.members else ((False, FITTED),):
+        proposals = _worth_a_fit(pool, base, model, best_sets(model, MOST_TRIED, needed, keeping))
+        others = [(hypothesis, proposal) for hypothesis, proposal in proposals if hypothesis not in found]
+        found |= {start.hypothesis: start for start in _begun(pool, model, others)[:most]}
+    return sorted(found.values(), key=lambda start: start.objective)
+
+
+def _worth_a_fit(
+    pool: Pool, base: Hypothesis, model: QuadraticModel, levels: Mapping[int, Sequence[Proposal]]
+) -> list[tuple[Hypothesis, Proposal]]:
+    """Of the best sets of each size: at the noise what is significant, else the best few of each size that explains
+    noticeably more than a smaller one."""
     at = model.at
     needed, at_noise = required(at), is_at_noise(at)
     chosen: dict[Hypothesis, tuple[int, float, Proposal]] = {}
     least = np.inf
-    for size, level in best_sets(model, MOST_TRIED).items():
+    for size, level in levels.items():
         if level[0].predicted + needed * size > least:
             continue
         least = level[0].predicted + needed * size

@@ -17,8 +17,6 @@ from eha_core.diagnosis.criteria import (
     FAR_FROM_NOISE,
     FITTED,
     FURTHER,
-    IMPROBABLE,
-    LOOKED_AT,
     NOISE_KNOWN,
     OF_ITS_FORM,
     OF_SAMPLES,
@@ -34,81 +32,48 @@ from eha_core.diagnosis.search.intervals import in_span
 from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit, exact, fit
-from eha_core.identification.free_parameters import LATE
 from eha_core.identification.numbers import Array
-from eha_core.identification.per_recording import base_name, is_one_of
+from eha_core.identification.per_recording import base_name
 
 
 def converge(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) -> Fit:
-    """Fit a set until nothing is gained, with derivatives at the full step, unless it was or cannot come low enough.
-
-    From the nominal values of what it moved further than is likely, too: it may have come to a local minimum.
-    """
+    """Fit a set until nothing is gained, with derivatives at the full step, unless it was or cannot come low enough."""
     at = pool.found[hypothesis]
-    if pool.settled.get(hypothesis) == at.objective:
-        return at
-    at = _to_its_end(pool, "converge", hypothesis, {}, give_up_above)
-    nominal = where_improbable(at)
-    if nominal and at.objective < give_up_above:
-        at = _to_its_end(pool, "from nominal values", hypothesis, nominal, at.objective)
-    pool.settled[hypothesis] = at.objective
+    if pool.settled.get(hypothesis) != at.objective:
+        result = fit(
+            exact(pool.problem), at.values, at.free, at.states,
+            iterations=CONVERGED, in_a_row=2, give_up_above=give_up_above,
+        )  # fmt: skip
+        pool.trace.add("converge", hypothesis, result)
+        at = pool.keep(hypothesis, result)
+        pool.settled[hypothesis] = at.objective
     return at
-
-
-def _to_its_end(
-    pool: Pool, step: str, hypothesis: Hypothesis, other: Mapping[str, float], give_up_above: float
-) -> Fit:
-    """The best fit of a set, once it was fitted from where it stands but for `other` values."""
-    at = pool.found[hypothesis]
-    result = fit(
-        exact(pool.problem), {**at.values, **other}, at.free, at.states,
-        iterations=CONVERGED, in_a_row=2, give_up_above=give_up_above,
-    )  # fmt: skip
-    pool.trace.add(step, hypothesis, result)
-    return pool.keep(hypothesis, result)
-
-
-def where_improbable(at: Fit) -> dict[str, float]:
-    """The nominal values of what a fit moved further than is likely, and then of the valve's dynamics, too: their
-    parameters make up for one another along a bent valley."""
-    plant = [(one, moved) for one, moved in zip(at.free, at.q, strict=True) if "." not in one.name]
-    found = {one.name: one.reference for one, moved in plant if abs(moved) > IMPROBABLE * one.prior_deviation}
-    return found | {one.name: one.reference for one, _ in plant if found and is_one_of(one.name, LATE)}
 
 
 def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypothesis, dict[Member, float]]:
     """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of them;
     and what each that stays gains over what is required."""
     converge(pool, hypothesis)
-    shift_instants(pool, hypothesis, CONVERGED, TO_THE_STEP)
-    at = pool.found[hypothesis]
-    refused: set[Member] = set()
-    gains: dict[Member, float] = {}
-    while hypothesis.members:
-        costs = predicted_costs(pool, hypothesis, at)
-        needed = {member: required_of(pool, member, costs, at) for member in costs}
-        gains = {member: costs[member] / needed[member] for member in costs} | {
-            member: ratio for member, ratio in gains.items() if member in refused
-        }
-        order = sorted(costs.keys() - refused, key=lambda member: costs[member] / needed[member])
-        # the curvature is not believed of the member that is needed least
-        believed = refused or len(costs) == 1
-        if not order or believed and costs[order[0]] > LOOKED_AT * needed[order[0]]:
-            break
-        member = order[0]
-        rest = hypothesis.without(member)
+    shift_instants(pool, hypothesis, hypothesis.members, CONVERGED, TO_THE_STEP)
+    at, gains = pool.found[hypothesis], dict[Member, float]()
+    while len(gains) < len(hypothesis.members):
+        if not gains:
+            costs = predicted_costs(pool, hypothesis, at)
+            needed = {member: required_of(pool, member, costs, at) for member in costs}
+        # a law in no catalogue first: what names explain must not be left to its curve
+        rest = costs.keys() - gains.keys()
+        member = min(rest, key=lambda member: (not member.variable, costs[member] / needed[member], member))
         simpler = _without(pool, hypothesis, member, at, needed[member])
         lost = simpler.objective - at.objective
         progress(f"without {member.id}: chi^2 rises by {lost:.4g}, {needed[member]:.4g} is required")
         if lost > needed[member]:
-            refused.add(member)
             gains[member] = lost / needed[member]
         else:
             # far from the noise no optimum is worth its last digits
-            near = rest.members and simpler.data < FAR_FROM_NOISE * simpler.count
-            hypothesis, at = rest, converge(pool, rest) if near else simpler
-            refused, gains = set(), {}
-    return hypothesis, {member: gains[member] for member in hypothesis.members}
+            hypothesis, gains = hypothesis.without(member), {}
+            near = hypothesis.members and simpler.data < FAR_FROM_NOISE * simpler.count
+            at = converge(pool, hypothesis) if near else simpler
+    return hypothesis, gains
 
 
 def predicted_costs(pool: Pool, hypothesis: Hypothesis, at: Fit) -> dict[Member, float]:
@@ -198,7 +163,8 @@ def rivals(
     ranked = _ranked(pool, compared)
     for entry in ranked:
         if entry.hypothesis != best and entry.score > ranked[0].score - CONTENDING:
-            shift_instants(pool, entry.hypothesis, CONVERGED, TO_THE_STEP)  # as the best set was
+            # as the best set was
+            shift_instants(pool, entry.hypothesis, entry.hypothesis.members, CONVERGED, TO_THE_STEP)
     return _ranked(pool, compared)[0].hypothesis, compared, model
 
 
