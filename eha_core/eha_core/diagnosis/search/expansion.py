@@ -116,7 +116,7 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     if not is_at_noise(pool.found[now]) and (now != lead or base == lead):
         # what a fit that stopped short leaves would be taken for more effects
         pool.go_on(step, now, TO_THE_END, 2)
-        shift_instants(pool, now, set(now.members) - set(lead.members), TO_THE_END)
+        shift_instants(pool, now, TO_THE_END)
     left = pool.found[now].data / at.count
     search.say(f"{step}: {tried} sets tried, best {_shown(now)}, {left:.4g} times the noise")
     pool.measure_noise(now)

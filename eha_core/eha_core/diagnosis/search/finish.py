@@ -54,7 +54,7 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
     """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of them;
     and what each that stays gains over what is required."""
     converge(pool, hypothesis)
-    shift_instants(pool, hypothesis, hypothesis.members, CONVERGED, TO_THE_STEP)
+    shift_instants(pool, hypothesis, CONVERGED, TO_THE_STEP)
     at, gains = pool.found[hypothesis], dict[Member, float]()
     while len(gains) < len(hypothesis.members):
         if not gains:
@@ -163,8 +163,7 @@ def rivals(
     ranked = _ranked(pool, compared)
     for entry in ranked:
         if entry.hypothesis != best and entry.score > ranked[0].score - CONTENDING:
-            # as the best set was
-            shift_instants(pool, entry.hypothesis, entry.hypothesis.members, CONVERGED, TO_THE_STEP)
+            shift_instants(pool, entry.hypothesis, CONVERGED, TO_THE_STEP)  # as the best set was
     return _ranked(pool, compared)[0].hypothesis, compared, model
 
 

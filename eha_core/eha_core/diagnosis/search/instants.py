@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import replace
 from itertools import product
 
@@ -25,14 +24,12 @@ COARSE, TO_THE_STEP = 2, 4
 friction begins to act between two samples the objective has a valley at each break-away."""
 
 
-def shift_instants(
-    pool: Pool, hypothesis: Hypothesis, members: Collection[Member], iterations: int, times: int = COARSE
-) -> None:
-    """Fit a set on from other instants of some members, where one leaves less once all else has adapted to it."""
-    owner = {name: member for member in members for name in _names_of(member)}
-    instants = [one.name for one in pool.found[hypothesis].free if one.resolution and base_name(one.name) in owner]
+def shift_instants(pool: Pool, hypothesis: Hypothesis, iterations: int, times: int = COARSE) -> None:
+    """Fit a set on from other instants where one of those leaves less once all else has adapted to it."""
+    instants = [parameter.name for parameter in pool.found[hypothesis].free if parameter.resolution]
     for reach, name in product([REACH * FINER**k for k in range(times)], instants):
-        at, member = pool.found[hypothesis], owner[base_name(name)]
+        at = pool.found[hypothesis]
+        member = next(one for one in hypothesis.members if base_name(name) in _names_of(one))
         model = _elsewhere(pool, hypothesis, at, member, name, reach)
         present = [option for option in model.options if option.present]
         places = [(*present, option) for option in model.options if not option.present]
