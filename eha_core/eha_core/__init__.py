@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from eha_core.plant import simulate_many
     from eha_core.recording.recording import Recording
     from eha_core.report.results import Results
+    from eha_core.studies import budget
 
 _HOMES = {
     "EhaError": "errors",
@@ -29,6 +30,7 @@ _HOMES = {
     "Recording": "recording",
     "RecordingError": "errors",
     "Results": "report.results",
+    "budget": "studies",
     "catalogue": "api",
     "diagnose": "api",
     "read": "api",
@@ -44,6 +46,7 @@ __all__ = [
     "RecordingError",
     "Results",
     "__version__",
+    "budget",
     "catalogue",
     "diagnose",
     "read",

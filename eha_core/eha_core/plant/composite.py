@@ -33,8 +33,8 @@ from eha_core.plant.parts import Source, parts
 SOURCES = (
     "compiled.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
     "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
-    "plant/windows.py", "plant/active_intervals.py", "plant/composite.py", "plant/ring.py", "plant/source.py", "plant/given.py",
-    "plant/parts/sources/*.py", "effects/*.py",
+    "plant/windows.py", "plant/active_intervals.py", "plant/composite.py", "plant/ring.py", "plant/source.py",
+    "plant/given.py", "plant/parts/sources/*.py", "effects/*.py",
 )
 
 
