@@ -1,11 +1,14 @@
-"""Studies that a Python session calls beside a diagnosis: what an error consists of."""
+"""Studies that go with a diagnosis: what a test can show before it is made, and what an error consists of after it."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from eha_core.api import Nominal, diagnose, given_model
 from eha_core.errors import EhaError, ParameterError
@@ -13,9 +16,70 @@ from eha_core.nominal import nominal_of
 from eha_core.recording import Recording, read_recording
 
 if TYPE_CHECKING:
+    from eha_core.detectability import Certificate
     from eha_core.error_budget import Budget, Rig
     from eha_core.report.results import Results
     from eha_core.signals import Signal
+
+Array = NDArray[np.float64]
+
+
+def detect(
+    command: str | ArrayLike | tuple[ArrayLike, ArrayLike],
+    nominal: Nominal = None,
+    *,
+    duration: float | None = None,
+    channels: Sequence[str] = ("position", "pressure_a", "pressure_b"),
+    noise: float = 1.0,
+    rate: float = 500.0,
+) -> Certificate:
+    """Say how small an effect a planned test shows, and what it cannot distinguish.
+
+    Args:
+        command: a signal such as "multisine:amplitude=0.12", one voltage [V] for each sample, or instants [s] and the
+            voltages that hold from them on.
+        nominal: the model of the rig, as `diagnose` takes it.
+        duration: length of the test [s]; by default that of the voltages, or 10 s of a signal.
+        channels: what is recorded beside the command: position, and pressure_a and pressure_b.
+        noise: factor on the sensors' noise; 1 is 10 um and 0.01 MPa.
+        rate: samples a second [Hz].
+
+    Returns:
+        For each effect the smallest size that a diagnosis names with 95 % probability, where the rig is as modelled
+        but for it; `eha_core.report.detectability` presents it.
+
+    Raises:
+        ParameterError: the command, the channels, the rate or the model do not fit.
+    """
+    from eha_core.detectability import PlannedTest, certify
+
+    times, voltages, length = _given(command, duration, rate)
+    test = PlannedTest(times, voltages, duration or length, tuple(channels), noise, rate)
+    return certify(given_model(nominal) or nominal_of({}), test)
+
+
+def _given(
+    command: str | ArrayLike | tuple[ArrayLike, ArrayLike], duration: float | None, rate: float
+) -> tuple[Array, Array, float]:
+    """Instants [s] and voltages [V] of a command, and its length [s]."""
+    from eha_core.signals import from_text
+
+    if not rate > 0.0:
+        raise ParameterError(f"rate = {rate:g} Hz is out of range; give samples a second")
+    if isinstance(command, str):
+        length = duration or 10.0
+        times = np.arange(round(length * rate)) / rate
+        return times, np.asarray(from_text(command).value(times), dtype=np.float64), length
+    if isinstance(command, tuple):
+        times, voltages = (np.asarray(each, dtype=np.float64) for each in command)
+    else:
+        voltages = np.asarray(command, dtype=np.float64)
+        times = np.arange(voltages.size) / rate
+    if voltages.ndim != 1 or not voltages.size or voltages.shape != times.shape:
+        raise ParameterError(f"command has the shape {voltages.shape}; give one voltage for each instant")
+    if not np.all(np.isfinite(voltages)):
+        raise ParameterError("command has voltages that are no numbers; give finite ones")
+    return times, voltages, float(times[-1]) + 1.0 / rate
 
 
 def budget(
