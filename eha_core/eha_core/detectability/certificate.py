@@ -9,7 +9,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from eha_core.detectability.confusion import Confusion, confusions
-from eha_core.detectability.linear import responses
+from eha_core.detectability.linear import COMPENSATED, responses
 from eha_core.detectability.planned import NOISE, Linearised, PlannedTest, linearised
 from eha_core.detectability.power import POWER
 from eha_core.detectability.refit import confirmed
@@ -23,10 +23,6 @@ from eha_core.plant import simulate_many
 
 ONE_SIDED = 1.645
 """Standard deviations below the mean that a normal variable exceeds with POWER."""
-
-COMPENSATED = 0.01
-"""Share of an effect's response that nominal parameters must leave for the effect not to be called compensated by
-them (assumed): of less, the size that is found is ten times what it would be with a rig that is exactly known."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +127,9 @@ def middle_shapes(tried: Sequence[Trial], factors: Sequence[float]) -> tuple[lis
 
 
 def _effects(at: Linearised, tried: Sequence[Trial], factors: Sequence[float]) -> tuple[Detectable, ...]:
-    sized = [min(factor, trial.most) for trial, factor in zip(tried, factors, strict=True)]
+    # what is not found is shown at the size that the search begins with: at the largest its own limits hold the rest
+    pairs = zip(tried, factors, strict=True)
+    sized = [factor if np.isfinite(factor) else min(1.0, trial.most) for trial, factor in pairs]
     columns = [trial.at(factor) for trial, factor in zip(tried, sized, strict=True)]
     seen = responses(at, columns)
     confused = confusions(columns, seen)
@@ -140,7 +138,7 @@ def _effects(at: Linearised, tried: Sequence[Trial], factors: Sequence[float]) -
     for k, (trial, factor) in enumerate(zip(tried, factors, strict=True)):
         name, row = _size_of(trial)
         found = bool(np.isfinite(factor))
-        share = seen.left(k) / (seen.energy(k) or 1.0)
+        share = seen.share(k)
         rows.append(Detectable(
             trial.column.effect.id, row.name, row.unit,
             abs(columns[k].values[name] - row.nominal) if found else None, None, share,

@@ -18,6 +18,11 @@ MENTIONED = 2
 """Nominal parameters that are named as those that compensate an effect."""
 
 
+COMPENSATED = 0.01
+"""Share of an effect's response that nominal parameters must leave for the effect not to be called compensated by
+them (assumed): of less, the size that is found is ten times what it would be with a rig that is exactly known."""
+
+
 @dataclass(frozen=True)
 class Responses:
     """The responses of columns at their sizes, in the search's quadratic model of the test about the rig as modelled.
@@ -45,6 +50,10 @@ class Responses:
             model.matrix, gradient, model.lower, model.upper, places, len(places), np.empty(len(places))
         )
         return max(self.energy(column) - max(gain, 0.0), 0.0)
+
+    def share(self, column: int) -> float:
+        """The share of a column's response that the nominal parameters do not explain."""
+        return self.left(column) / (self.energy(column) or 1.0)
 
     def compensating(self, column: int) -> tuple[str, ...]:
         """The nominal parameters without which most of a column's response would be left."""
