@@ -1,4 +1,4 @@
-"""`eha detect`: say, before a test is made, how small an effect it shows and what it cannot distinguish."""
+"""`eha detect`: say how small an effect a planned test shows, and what it cannot distinguish."""
 
 from __future__ import annotations
 
