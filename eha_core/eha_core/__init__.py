@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from eha_core.plant import simulate_many
     from eha_core.recording.recording import Recording
     from eha_core.report.results import Results
+    from eha_core.studies import budget, detect
 
 _HOMES = {
     "EhaError": "errors",
@@ -29,7 +30,9 @@ _HOMES = {
     "Recording": "recording",
     "RecordingError": "errors",
     "Results": "report.results",
+    "budget": "studies",
     "catalogue": "api",
+    "detect": "studies",
     "diagnose": "api",
     "read": "api",
     "signal_shapes": "api",
@@ -44,7 +47,9 @@ __all__ = [
     "RecordingError",
     "Results",
     "__version__",
+    "budget",
     "catalogue",
+    "detect",
     "diagnose",
     "read",
     "signal_shapes",

@@ -178,3 +178,21 @@ def test_the_interpreter_finds_the_same_numbers() -> None:
 def test_blocks_begin_where_a_cache_line_does() -> None:
     blocks = [LockStep([nominal_values()], 1e-4)._block for _ in range(8)]
     assert [block.ctypes.data % 64 for block in blocks] == [0] * 8
+
+
+@pytest.mark.parametrize("columns", [4, len(COLUMNS)])
+def test_every_lane_follows_a_command_of_its_own(columns: int) -> None:
+    """What a delay reads back is its own lane's command, and the row has the voltage as it was commanded."""
+    sets = [{}, {"command_delay.delay": 0.0123}, {"command_delay.delay": 0.003, "coulomb_friction.force": 200.0},
+            {"command_delay.delay": 0.01, "command_delay.acts_from": 0.1011}]  # fmt: skip
+    period = 10
+    held = np.repeat(np.array([[0.03], [0.05], [-0.04], [0.08]]) * command(1.0)[::period], period, axis=1)
+    lanes = LockStep([changed(nominal_values(), one) for one in sets], STEP, own_commands=True)
+    lanes.place(np.array([[0.0, 0.0, 1.05e7, 1.05e7]] * len(sets)))
+    lanes.start_memory()
+    rows = np.empty((STEPS // period, columns, lanes.lanes))
+    for tick in range(STEPS // period):
+        lanes.advance_each(tick * period, held[:, tick * period], period, rows[tick : tick + 1])
+    for lane, (one, voltages) in enumerate(zip(sets, held, strict=True)):
+        expected = Plant(one, STEP).run(voltages, period).values[:, -columns:]
+        assert rows[:, :, lane].tobytes() == np.ascontiguousarray(expected).tobytes()

@@ -9,15 +9,15 @@ from time import perf_counter
 
 import numpy as np
 
-from eha_core.errors import EhaError, ParameterError, RecordingError, remedy
+from eha_core.cli._command import Samples, is_signal, read_command
+from eha_core.errors import EhaError, ParameterError, RecordingError
 from eha_core.plant import PAPER, Composition, load_plant
 from eha_core.recording import read_recording
 from eha_core.recording.recording import FloatArray
 from eha_core.recording.simulated import Experiment, Simulated, simulate, simulate_sweep, write_simulated
 from eha_core.recording.simulated_table import write_csv
-from eha_core.signals import from_text, signals
+from eha_core.signals import signals
 
-_SIGNAL_DURATION = 10.0
 MCAP, CSV = ".mcap", ".csv"
 COMMAND_LIMIT = 10.0
 """V; what the simulator node's parameter command_limit is by default."""
@@ -183,55 +183,29 @@ def _settings(words: list[str]) -> tuple[dict[str, float], list[tuple[float, str
     return start, changes
 
 
-Samples = tuple[FloatArray, FloatArray]
-
-
 def _driving(
     arguments: argparse.Namespace, composition: Composition
 ) -> tuple[FloatArray, FloatArray, float, dict[str, Samples]]:
     """Instants [s] and voltages [V] of the command, the duration [s]; or what drives another source, by channel."""
     if composition.source.valve == "coil":
-        times, voltages, duration = _command(arguments, "voltage_command")
+        times, voltages, duration = read_command(arguments, "voltage_command")
         _warn_of_limit(voltages)
         return times, voltages, duration, {}
     if arguments.out.suffix.lower() != CSV:
         raise EhaError(f"--out {arguments.out}: a plant on {composition.source.id} is recorded as {CSV} alone")
     wanted = composition.source.inputs
-    if _is_signal(arguments.command) and len(wanted) > 1:
+    if is_signal(arguments.command) and len(wanted) > 1:
         raise EhaError(
             f"--command {arguments.command}: {composition.source.id} takes {' and '.join(wanted)}, a signal is one"
             " of them; give a file with these columns"
         )
-    times, values, duration = _command(arguments, wanted[0])
+    times, values, duration = read_command(arguments, wanted[0])
     inputs = {wanted[0]: (times, values)}
     for name in wanted[1:]:
-        inputs[name] = _command(arguments, name)[:2]
-    if not _is_signal(arguments.command):
+        inputs[name] = read_command(arguments, name)[:2]
+    if not is_signal(arguments.command):
         channels = read_recording(arguments.command, arguments.topics).channels
         inputs |= {name: (channels[name].time, channels[name].values) for name in composition.source.optional
                    if name in channels}  # fmt: skip
     none = np.empty(0)
     return none, none, duration, inputs
-
-
-def _is_signal(words: str) -> bool:
-    return words.partition(":")[0] in signals() and not Path(words).exists()
-
-
-def _command(arguments: argparse.Namespace, name: str) -> tuple[FloatArray, FloatArray, float]:
-    """Instants [s], values of that channel and the duration [s]."""
-    words: str = arguments.command
-    if _is_signal(words):
-        signal = from_text(words)
-        duration = arguments.duration or _SIGNAL_DURATION
-        times = np.arange(round(duration * arguments.rate)) / arguments.rate
-        return times, signal.value(times), duration
-    if not Path(words).exists():
-        shape = words.partition(":")[0]
-        raise EhaError(f"--command {words}: neither a file nor a signal; {remedy(shape, signals())}")
-    channel = read_recording(words, arguments.topics).channels.get(name)
-    if channel is None:
-        raise RecordingError(f"{words}: no {name} was recorded; a topics file (--topics) can name the topic")
-    end = float(channel.time[-1])
-    duration = arguments.duration or max(np.ceil(end * arguments.rate + 1) / arguments.rate, 1.0 / arguments.rate)
-    return channel.time, channel.values, duration

@@ -20,7 +20,8 @@ from eha_core.plant.active_intervals import BEGINS, FIRST, Timetable, Windows, s
 from eha_core.plant.composite import compiled_windows
 from eha_core.plant.memory import start_memory, starting_memory, trailing
 from eha_core.plant.one_by_one import side_by_side
-from eha_core.plant.simulator import LONGEST_DELAY, pack
+from eha_core.plant.ring import ring_size
+from eha_core.plant.simulator import pack
 from eha_core.plant.state import AT, COLUMNS, PISTON, SEEN, Places
 
 STATE_SIZE = 4
@@ -134,7 +135,7 @@ class Shooting:
         state = np.zeros(len(Places._fields))
         state[[AT.target, AT.current, AT.spool_position]] = current
         state[AT.supply_pressure], state[AT.return_pressure] = values["supply_pressure"], values["return_pressure"]
-        history = np.full(int(LONGEST_DELAY / self.step_size) + 3, first)
+        history = np.full(ring_size(self.step_size), first)
         history[-1] = 0
         memory = starting_memory(current, states[windows.start])
         kernel, slots = compiled_windows(), trailing().slots

@@ -33,8 +33,8 @@ from eha_core.plant.parts import Source, parts
 SOURCES = (
     "compiled.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
     "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
-    "plant/windows.py", "plant/active_intervals.py", "plant/composite.py", "plant/source.py", "plant/given.py",
-    "plant/parts/sources/*.py", "effects/*.py",
+    "plant/windows.py", "plant/active_intervals.py", "plant/composite.py", "plant/ring.py", "plant/source.py",
+    "plant/given.py", "plant/parts/sources/*.py", "effects/*.py",
 )
 
 
@@ -136,7 +136,9 @@ def lane_row(site: str, name: str, slot: int, slots: int = 1) -> str:
     """
     if name == "memory":
         return f"block, MEMORY + {slot} * LANES + {slots} * lane"
-    if name in ("history", "newest", "step_size", "time"):
+    if name == "history":
+        return "ring_of(history, lane, step_size)"
+    if name in ("newest", "step_size", "time"):
         return name
     if site == "sensor" and name in SEEN:
         name = f"seen_{name}"
@@ -165,7 +167,8 @@ def layout() -> Layout:
 def write_lane_hooks() -> str:
     """The source of the lock-step's hooks: each site calls its effects in order, in those lanes in which they act."""
     lines = ['"""Generated from the catalogue of effects, and written anew when a source changes: do not edit."""', ""]
-    lines += ["from eha_core.compiled import called, unowned", "from eha_core.plant.lane_rows import *", ""]
+    lines += ["from eha_core.compiled import called, unowned", "from eha_core.plant.lane_rows import *"]
+    lines += ["from eha_core.plant.ring import ring_of", ""]
     lines += [f"from eha_core.effects.{effect.id} import contribution as {effect.id}" for effect in effects()]
     lines += ["", f"MEMORY, ACTS = {layout().memory}, {layout().acts}"]
     place, slot = len(NOMINAL), 0

@@ -10,6 +10,7 @@ from __future__ import annotations
 from eha_core.compiled import called, compiled, inlined, unowned
 from eha_core.plant import lane_rows as at
 from eha_core.plant.equations import driving_force, external_leakage_flow, hydraulic_force, internal_leakage_flow
+from eha_core.plant.ring import rings_in
 from eha_core.plant.scheme import (
     coil_current,
     effective_velocity,
@@ -75,10 +76,15 @@ def schedule(block, lanes, active, time):
 
 
 @called
-def valve(block, lanes, active, voltage, history, newest, tau):
-    """Equations (1) and (2) over one step; then where the spool stands in each half of it."""
+def valve(block, lanes, active, history, stride, newest, tau):
+    """Equations (1) and (2) over one step; then where the spool stands in each half of it. The voltage is the newest in
+    the lane's ring, which begins `stride` after that of the lane before."""
+    voltage = history[newest]
     for lane in range(lanes):
         block[at.VOLTAGE + lane] = voltage
+    if stride:
+        for lane in range(lanes):
+            block[at.VOLTAGE + lane] = history[lane * stride + newest]
     if active & lane_hooks.COMMAND_EFFECTS:
         lane_hooks.command(block, lanes, active, history, newest, 2.0 * tau)
     for lane in range(lanes):
@@ -242,14 +248,14 @@ def write_seen(block, lanes, row):
 
 
 @called
-def write_all(block, lanes, active, voltage, row):
+def write_all(block, lanes, active, history, stride, newest, row):
     """Fill a row (COLUMNS, lanes) from the state at the end of a step."""
     for lane in range(lanes):
         block[at.OIL_SPOOL + lane] = block[at.SPOOL_POSITION + lane]
         block[at.OIL_POSITION + lane] = block[at.POSITION + lane]
     oil_conditions(block, lanes, active)
     for lane in range(lanes):
-        row[COLUMN.voltage, lane] = voltage
+        row[COLUMN.voltage, lane] = history[lane * stride + newest]
         for place in range(STATES):
             row[COLUMN.current + place, lane] = block[at.CURRENT + place * at.LANES + lane]
         row[COLUMN.flow_a, lane], row[COLUMN.flow_b, lane], _, _, _, _ = lane_ports(block, lane)
@@ -273,19 +279,25 @@ def advance(block, lanes, history, active, voltages, step_size, every, rows):
     """Advance every lane of `block` by one step for each of `voltages`, and write a row a lane after `every` of them.
 
     rows: (rows, columns, lanes); as wide as COLUMNS they take them all, four take what the sensors say. history: as in
-    `step.advance`, shared by all lanes. active: the bits of the effects that act in any lane.
+    `step.advance`, one for all lanes or, as `ring` has it, one a lane: `voltages` then has one a lane for each step.
+    active: the bits of the effects that act in any lane.
     """
     block, history = unowned(block), unowned(history)
-    newest, ring = int(history[-1]), history.shape[0] - 1
+    width = rings_in(history, step_size)
+    size = history.shape[0] // width
+    stride = size if width > 1 else 0
+    newest, ring = int(history[-1]), size - 1
     time, tau = block[at.TIME], 0.5 * step_size
     everything = rows.shape[1] > 4
     as_stated(block, lanes)
-    for index in range(voltages.shape[0]):
+    for index in range(voltages.shape[0] // width):
         newest = newest + 1 if newest + 1 < ring else 0
-        history[newest] = voltages[index]
+        history[newest] = voltages[index * width]
+        for lane in range(1, width):
+            history[lane * stride + newest] = voltages[index * width + lane]
         if active & lane_hooks.SCHEDULE_EFFECTS:
             schedule(block, lanes, active, time + tau)
-        valve(block, lanes, active, voltages[index], history, newest, tau)
+        valve(block, lanes, active, history, stride, newest, tau)
         first_half_of_the_way(block, lanes, tau)
         oil_half_step(block, lanes, active, tau)
         piston(block, lanes, active, step_size)
@@ -300,7 +312,7 @@ def advance(block, lanes, history, active, voltages, step_size, every, rows):
         if due or active & lane_hooks.SENSOR_EFFECTS:
             see(block, lanes, active, step_size)
         if due and everything:
-            write_all(block, lanes, active, voltages[index], rows[index // every])
+            write_all(block, lanes, active, history, stride, newest, rows[index // every])
         elif due:
             write_seen(block, lanes, rows[index // every])
     history[-1] = newest

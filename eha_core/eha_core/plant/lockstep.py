@@ -26,7 +26,8 @@ from eha_core.plant.lane_rows import (
     VELOCITY,
 )
 from eha_core.plant.memory import trailing
-from eha_core.plant.simulator import LONGEST_DELAY, Array, pack
+from eha_core.plant.ring import ring_size
+from eha_core.plant.simulator import Array, pack
 
 CACHE_LINE = 64
 """Bytes."""
@@ -36,13 +37,20 @@ class LockStep:
     """Up to LANES parameter sets (every parameter of each), stepped together; each gives what `Plant` gives for it.
 
     It starts at rest: coil and spool settled under the voltage `before`, the effects' memory as that implies, pistons
-    wherever `place` puts them. A lane more costs next to nothing until a register is full.
+    wherever `place` puts them. A lane more costs next to nothing until a register is full. With `own_commands` each has
+    a voltage of its own, which `advance_each` takes.
 
     Attributes:
         lanes: how many lanes are computed: as many as there are sets, rounded up to whole registers.
     """
 
-    def __init__(self, sets: Sequence[Mapping[str, float]], step_size: float, before: float = 0.0) -> None:
+    def __init__(
+        self,
+        sets: Sequence[Mapping[str, float]],
+        step_size: float,
+        before: float = 0.0,
+        own_commands: bool = False,
+    ) -> None:
         assert 0 < len(sets) <= LANES, "a block takes no more"
         self.lanes = -(-len(sets) // REGISTER) * REGISTER
         self.step_size = step_size
@@ -63,7 +71,7 @@ class LockStep:
         )
         supply, back = (np.array([v[name] for v in filled]) for name in ("supply_pressure", "return_pressure"))
         self._fill(TIME, np.stack([0.0 * current, current, supply, back, current, current]))
-        self._history = np.full(int(LONGEST_DELAY / step_size) + 3, before)
+        self._history = np.full(ring_size(step_size) * (self.lanes if own_commands else 1), before)
         self._history[-1] = 0
         self._kernel = compiled_lanes()
 
@@ -115,6 +123,20 @@ class LockStep:
                 self._kernel.advance_driven(
                     self._block, self.lanes, self._active, given[0], given[1], self.step_size, piece.every, rows
                 )
+
+    def advance_each(self, first: int, voltages: Array, steps: int, out: Array) -> None:
+        """Hold a voltage of its own (sets,) [V] in each lane for that many steps, the first of them step `first` of the
+        record. out: (1, columns, lanes), the last step's row, columns as in `advance`."""
+        spare = np.minimum(np.arange(self.lanes), len(voltages) - 1)
+        held = np.tile(voltages[spare], steps)
+        self._rows[TIME // LANES] = first * self.step_size
+        for piece in pieces(first, steps, steps, self._instants):
+            self._act(first + piece.steps.start)
+            given = held[piece.steps.start * self.lanes : piece.steps.stop * self.lanes]
+            self._kernel.advance(
+                self._block, self.lanes, self._history, self._active, given, self.step_size, piece.every,
+                out[piece.rows],
+            )  # fmt: skip
 
     def advance_windows(self, windows: Windows, starts: Array, inputs: Array, every: int, out: Array) -> Array:
         """Take a step for each column of `inputs` through the windows of a record, in each of which the pistons begin

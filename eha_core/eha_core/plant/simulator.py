@@ -22,13 +22,10 @@ from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.given import VALVES
 from eha_core.plant.memory import start_memory
 from eha_core.plant.parts import Source
+from eha_core.plant.ring import ring_size
 from eha_core.plant.state import AT, COLUMNS, PISTON, Places, Row
 
 Array = NDArray[np.float64]
-
-
-LONGEST_DELAY = 0.25
-"""s; how far back the plant remembers its command. The command delay's upper bound."""
 
 
 @dataclass(frozen=True)
@@ -234,7 +231,7 @@ class Plant:
         self._state = np.zeros(len(Places._fields))
         self._state[AT.supply_pressure], self._state[AT.return_pressure] = back if source.line else supply, back
         self._state[PISTON] = self._initial_position, 0.0, *pressures
-        self._history = np.zeros(int(LONGEST_DELAY / self.step_size) + 3)
+        self._history = np.zeros(ring_size(self.step_size))
         self._memory = np.zeros(max(1, sum(len(effect.memory) for effect in effects())))
         self._start_memory([True] * len(effects()))
         self.step_count = 0

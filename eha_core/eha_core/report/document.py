@@ -46,6 +46,8 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
                 diagnosis.parameters, ("name", "nominal", "fitted", "std", "unit", "changed", "note", "at_bound")
             ),
             "effects": [_effect(effect) for effect in diagnosis.effects],
+            "plant": diagnosis.composition.names,
+            "fitted_values": diagnosis.fitted_values,
             "alternatives": _rows(diagnosis.alternatives, ("effects", "evidence_gap")),
             "unknown": _row(diagnosis.unknown, ("site", "function_of", "expression", "r_squared", "samples")),
             "fit": {"training": _fits(diagnosis.training), "held_out": _fits(diagnosis.held_out)},

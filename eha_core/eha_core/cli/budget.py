@@ -1,0 +1,127 @@
+"""`eha budget`: say what each effect that was found costs in tracking error, and what its repair would gain."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eha_core.cli._paths import require_file, require_folder, require_recordings
+from eha_core.errors import EhaError, ParameterError
+
+# what simulates or plots is imported where it is used: the help and a refusal need none of it
+if TYPE_CHECKING:
+    from eha_core.error_budget import Rig, Task
+
+_FOLDER = Path("out/budget")
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb."""
+    parser = subparsers.add_parser(
+        "budget",
+        help="say what each effect found costs in tracking error",
+        description="Simulates a motion with every subset of the effects that a diagnosis found, and shares the"
+        " tracking RMSE out among them so that the shares add up to it. Prints what each repair alone would gain, and"
+        " the order of repairs that gains fastest.",
+        epilog="The controller is made for the rig as modelled. The error is that of the true position, whatever the"
+        " sensors say; effects that acted over an interval of the recording are taken to act always.",
+    )
+    add = parser.add_argument
+    add("source", nargs="?", type=Path, metavar="RECORDING|diagnosis.json", help="what was found; a recording is"
+        " diagnosed first")  # fmt: skip
+    add("--set", action="append", default=[], metavar="NAME=VALUE", help="in place of a diagnosis: an effect's value or"
+        " a leakage that departs from the model; may be given again")  # fmt: skip
+    add("--nominal", type=Path, metavar="FILE", help="the model, with a recording or --set: a parameters file")
+    add("--topics", type=Path, metavar="FILE", help="which topics, fields and units of a recording are which channels")
+    add("--controller", default="pid", metavar="NAME", help="pid (the default), cascade, lqr, sliding_mode or"
+        " feedforward")  # fmt: skip
+    add("--reference", metavar="SIGNAL", help="position to follow [m], as sine:amplitude=0.01,frequency=1")
+    add("--command", metavar="SIGNAL", help="in place of controller and reference: a voltage [V], open loop; the error"
+        " is then the difference from the rig as modelled")  # fmt: skip
+    add("--duration", type=float, metavar="S", help="length of the motion (default 4 s, of a voltage 10 s)")
+    add("--skip", type=float, metavar="S", help="seconds at the start that do not count (default 1, of a voltage 0)")
+    add("--rate", type=float, default=500.0, metavar="HZ", help="commands and samples a second (default 500)")
+    add("--command-limit", type=float, default=10.0, metavar="V", help="largest voltage (default 10)")
+    add("--out", type=Path, metavar="DIR", help=f"folder for budget.json and budget.png (default {_FOLDER})")
+    add("--json", metavar="FILE|-", help="write the budget there (- is standard output) and no picture")
+    add("--jobs", type=int, default=2, metavar="N", help="threads of a diagnosis (default 2)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the verb."""
+    _check(arguments)
+    task = _task(arguments)
+    rig = _rig(arguments)
+    # compiles and simulates: bad input should be reported at once
+    from eha_core.error_budget import error_budget
+    from eha_core.report.budget import account, as_json, write_budget
+
+    budget = error_budget(rig, task)
+    if arguments.json == "-":
+        print(as_json(budget), end="")
+        return 0
+    written: tuple[Path, ...] = ()
+    if arguments.json is not None:
+        written = (_write(Path(arguments.json), as_json(budget)),)
+    if arguments.json is None or arguments.out is not None:
+        written += write_budget(budget, arguments.out or _FOLDER)
+    print(account(budget))
+    print(f"\nWritten: {', '.join(map(str, written))}")
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Raise EhaError for arguments that do not go together, before any work is done."""
+    if (arguments.source is None) == (not arguments.set):
+        raise EhaError("give a diagnosis.json or a recording, or departures from the model with --set NAME=VALUE")
+    if (arguments.reference is None) == (arguments.command is None):
+        raise EhaError("give --reference SIGNAL, such as sine:amplitude=0.01,frequency=1, or --command SIGNAL")
+    if arguments.source is not None:
+        require_recordings([arguments.source])
+        if arguments.nominal and arguments.source.suffix == ".json":
+            raise EhaError(f"--nominal {arguments.nominal}: {arguments.source} has the model already; leave it out")
+    if arguments.json is None or arguments.out is not None:
+        require_folder(arguments.out or _FOLDER, "--out")
+    if arguments.json not in (None, "-"):
+        require_file(Path(arguments.json), "--json")
+
+
+def _task(arguments: argparse.Namespace) -> Task:
+    from eha_core.error_budget import Task
+    from eha_core.signals import from_text
+
+    follows = arguments.command is None
+    duration = arguments.duration if arguments.duration is not None else (4.0 if follows else 10.0)
+    skip = arguments.skip if arguments.skip is not None else (1.0 if follows else 0.0)
+    signal = from_text(arguments.reference if follows else arguments.command)
+    controller = arguments.controller if follows else ""
+    return Task(signal, controller, duration, skip, arguments.rate, arguments.command_limit)
+
+
+def _rig(arguments: argparse.Namespace) -> Rig:
+    from eha_core.studies import rig_of
+
+    if arguments.set:
+        return rig_of(_changes(arguments.set), arguments.nominal)
+    return rig_of(arguments.source, arguments.nominal, arguments.topics, arguments.jobs)
+
+
+def _changes(words: list[str]) -> Mapping[str, float]:
+    found: dict[str, float] = {}
+    for word in words:
+        name, _, value = word.partition("=")
+        try:
+            found[name] = float(value)
+        except ValueError:
+            raise ParameterError(f"--set {word!r} is no NAME=VALUE; write coulomb_friction.force=250") from None
+    return found
+
+
+def _write(path: Path, text: str) -> Path:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise EhaError(f"{path}: cannot be written ({error.strerror}); choose another --json") from error
+    return path

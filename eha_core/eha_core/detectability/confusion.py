@@ -1,0 +1,50 @@
+"""Which effects a planned test cannot distinguish: those whose responses another explains but for next to nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from eha_core.detectability.linear import Responses
+from eha_core.diagnosis.criteria import TIE
+from eha_core.diagnosis.search.columns import Column
+
+
+@dataclass(frozen=True)
+class Confusion:
+    """Another effect that explains a response.
+
+    `effect`: its id. `left`: chi^2 that it leaves of the response at its detectable size; below TIE the two cannot be
+    distinguished. `cosine`: of the angle between the two beside the nominal parameters, 1 where they are the same.
+    """
+
+    effect: str
+    left: float
+    cosine: float
+
+
+def confusions(columns: Sequence[Column], seen: Responses) -> list[tuple[Confusion, ...]]:
+    """Of each column, the other effects that leave less than TIE of its response, at any size within their bounds;
+    those that leave least first."""
+    groups: dict[str, list[int]] = {}
+    for place, column in enumerate(columns):
+        if seen.usable[place]:
+            groups.setdefault(column.effect.id, []).append(place)
+    return [
+        tuple(sorted(_of_one(place, columns, seen, groups), key=lambda rival: rival.left))
+        for place in range(len(columns))
+    ]
+
+
+def _of_one(
+    place: int, columns: Sequence[Column], seen: Responses, groups: dict[str, list[int]]
+) -> Iterator[Confusion]:
+    energy = seen.left(place)
+    if not seen.usable[place] or energy <= 0.0:
+        return
+    for rival, places in groups.items():
+        if rival == columns[place].effect.id:
+            continue
+        left = seen.left(place, places)
+        if left < TIE:
+            yield Confusion(rival, left, max(1.0 - left / energy, 0.0) ** 0.5)

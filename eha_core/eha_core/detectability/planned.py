@@ -1,0 +1,113 @@
+"""A test that is planned: a command on the rig as modelled, and what is to be recorded with which noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.diagnosis.calibrate import STEPS
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.search.pool import Pool, Trace
+from eha_core.errors import ParameterError
+from eha_core.identification.fit import Fit
+from eha_core.identification.free_parameters import free_nominal_parameters
+from eha_core.identification.observation import FITTED, SHORTEST, TICK, Measured, Observation
+from eha_core.identification.problem import whole
+from eha_core.identification.segments import cut
+from eha_core.nominal import NominalModel
+from eha_core.plant import COLUMNS, Plant, Trajectory
+from eha_core.plant.plant_file import require_voltage
+from eha_core.recording.simulated import POSITION_NOISE, PRESSURE_NOISE
+
+Array = NDArray[np.float64]
+
+NOISE = {"position": POSITION_NOISE, "pressure_a": PRESSURE_NOISE, "pressure_b": PRESSURE_NOISE}
+"""Standard deviation of each channel's noise at factor 1 [m, Pa]: what can be recorded, too."""
+
+LONGEST = 600.0
+"""s; a longer test takes minutes and gigabytes (assumed)."""
+
+
+@dataclass(frozen=True)
+class PlannedTest:
+    """A command, and what is recorded of what it does.
+
+    Attributes:
+        times, voltages: the command [V] from each instant on [s].
+        duration: [s].
+        channels: what is recorded beside the command, some of NOISE.
+        noise: factor on NOISE.
+        rate: samples a second [Hz].
+    """
+
+    times: Array
+    voltages: Array
+    duration: float
+    channels: tuple[str, ...] = tuple(NOISE)
+    noise: float = 1.0
+    rate: float = 500.0
+
+    def __post_init__(self) -> None:
+        """Check that a diagnosis could use the recording."""
+        unknown = [name for name in self.channels if name not in NOISE]
+        if unknown:
+            raise ParameterError(f"there is no channel {unknown[0]} to compare with; give some of {', '.join(NOISE)}")
+        if "position" not in self.channels:
+            raise ParameterError("position is not among the channels, and a diagnosis needs it; record it, too")
+        if not SHORTEST <= self.duration <= LONGEST:
+            raise ParameterError(f"duration = {self.duration:g} s is out of range; give {SHORTEST:g} to {LONGEST:g} s")
+        if not 1e-3 <= self.noise <= 1e6:
+            raise ParameterError(f"noise = {self.noise:g} is out of range; give 0.001 to 1e6")
+        if not 20.0 <= self.rate <= 1.0 / STEPS[0]:
+            raise ParameterError(f"rate = {self.rate:g} Hz is out of range; give 20 to {1.0 / STEPS[0]:g}")
+        if np.ptp(self.voltages) == 0.0:
+            raise ParameterError("the command is constant and excites nothing; give another signal")
+
+    def recording(self, channels: tuple[str, ...]) -> PlannedTest:
+        """The same test with other channels recorded."""
+        return replace(self, channels=channels)
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """The rig as modelled in this test: the observation it gives, a fit that is exact, and the pool of its windows."""
+
+    observation: Observation
+    pool: Pool
+    fit: Fit
+    motion: Trajectory
+
+
+def linearised(model: NominalModel, test: PlannedTest) -> Linearised:
+    """The test without noise and without a fault, as the search sees it over its long windows, nothing to fit left.
+
+    Raises ParameterError for an actuator that no voltage drives.
+    """
+    require_voltage(model.composition)
+    values, step = model.values, STEPS[0]
+    steps = round(test.duration / TICK) * round(TICK / step)
+    held = np.searchsorted(test.times, np.arange(steps) * step + 1e-9, side="right") - 1
+    voltages = np.where(held >= 0, test.voltages[np.maximum(held, 0)], 0.0).astype(np.float64)
+    motion = Plant(model.composition.named(values), step, composition=model.composition).run(voltages)
+    at = np.arange(1, int(test.duration * test.rate)) / test.rate
+    measured = tuple(
+        Measured(name, FITTED.index(name), at, np.interp(at, motion.time, motion.values[:, COLUMNS.index(name)]),
+                 test.noise * NOISE[name])
+        for name in FITTED if name in test.channels
+    )  # fmt: skip
+    observation = Observation(
+        "planned", "voltage", ((np.arange(steps, dtype=np.float64) * step, voltages),), measured, (), test.duration,
+        ("voltage_command", *test.channels), (), (), composition=model.composition,
+    )  # fmt: skip
+    problem = whole(cut(observation, values, step))
+    states = problem.shooting.initial_states.copy()
+    names = ("position", "velocity", "pressure_a", "pressure_b")
+    rows = motion.values[:, [COLUMNS.index(name) for name in names]]
+    later = problem.shooting.edges[1:-1]
+    states[1:] = rows[later - 1]
+    travel = float(np.max(np.abs(motion.position)))
+    plant = free_nominal_parameters(values, "voltage", travel, model.unknown, model.composition)
+    pool = Pool(problem, plant, Trace())
+    return Linearised(observation, pool, pool.at_rest(NOTHING, values, states), motion)

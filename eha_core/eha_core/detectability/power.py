@@ -1,0 +1,40 @@
+"""What the search asks of an effect before it names it, and what an effect has to show to pass with a probability."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from eha_core.diagnosis.criteria import ENOUGH, chance_gain, parameter_cost
+
+POWER = 0.95
+"""Probability with which an effect of the stated size is found."""
+
+
+def required_gain(count: int, parameters: int) -> float:
+    """Chi^2 that one effect of so many parameters must gain in `count` samples to be named, where it leaves noise.
+
+    It must gain more than chance does, and its score, in which each parameter is paid for, must suffice: the two rules
+    of `diagnosis.criteria` that hold of one effect alone.
+    """
+    return max(chance_gain(count, 1.0), ENOUGH + parameters * parameter_cost(count, 1.0))
+
+
+@lru_cache(maxsize=256)
+def energy_needed(gain: float, parameters: int, power: float = POWER) -> float:
+    """Chi^2 of an effect's own response without noise, with which it gains more than `gain` with that probability.
+
+    The gain of a fit of so many parameters is noncentral chi-squared, and the response's chi^2 its noncentrality.
+    """
+    from scipy.optimize import brentq
+    from scipy.special import chndtr
+
+    # the mean gain is the energy plus one a parameter, its deviation twice the root: far beyond both ends lie these
+    highest = 4.0 * gain + 100.0
+    return float(brentq(lambda energy: chndtr(gain, parameters, energy) - (1.0 - power), 0.0, highest))
+
+
+def probability_of(energy: float, gain: float, parameters: int) -> float:
+    """Probability that an effect whose response has this chi^2 gains more than `gain`."""
+    from scipy.special import chndtr
+
+    return float(1.0 - chndtr(gain, parameters, energy))

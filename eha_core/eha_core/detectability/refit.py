@@ -1,0 +1,63 @@
+"""Whether a size suffices, as the linearisation says: the nominal equations are fitted to what it does, noise-free.
+
+A response that nominal parameters compensate almost may be compensated better when they move far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import inf, isfinite
+
+from eha_core.detectability.linear import COMPENSATED, responses
+from eha_core.detectability.planned import Linearised
+from eha_core.detectability.sizes import Trial
+from eha_core.diagnosis.search.columns import Column
+from eha_core.identification.fit import exact, fit
+
+ITERATIONS = 8
+"""Of such a fit at most; most end after two, and what has not ended by then leaves more."""
+
+ROUNDS = 3
+"""How often a size is enlarged at most."""
+
+SHORT = 0.9
+"""Share of the energy that is needed below which a size is enlarged: 5 per cent of the size."""
+
+LARGER = 3.0
+"""Factor by which it is enlarged at most in one round."""
+
+
+def left_by_nominal(at: Linearised, column: Column, thorough: bool = False) -> float:
+    """Chi^2 that the nominal equations leave of what a column does, at their best; `thorough`: with derivatives at the
+    simulation's own step, without which a fit may end early in a flat valley."""
+    shooting = at.pool.problem.shooting
+    rows, _ = shooting.simulate({**at.fit.values, **column.beside(at.fit.values).values}, at.fit.states)
+    pairs = zip(shooting.samplings, shooting.sample(rows), strict=True)
+    faulty = replace(shooting, samplings=tuple(replace(sampling, values=values) for sampling, values in pairs))
+    problem = replace(at.pool.problem, shooting=faulty)
+    problem = exact(problem) if thorough else problem
+    return fit(problem, at.fit.values, at.pool.plant, at.fit.states, iterations=ITERATIONS, in_a_row=2).objective
+
+
+def confirmed(at: Linearised, tried: Sequence[Trial], factors: Sequence[float]) -> list[float]:
+    """The factors, those enlarged whose response the nominal equations explain better than the linearisation says; inf
+    where that takes more than the catalogue's bound. None is made smaller."""
+    columns = [trial.at(factor if isfinite(factor) else 1.0) for trial, factor in zip(tried, factors, strict=True)]
+    seen = responses(at, columns)
+    return [_confirmed(at, trial, factor, seen.share(place) < COMPENSATED)
+            for place, (trial, factor) in enumerate(zip(tried, factors, strict=True))]  # fmt: skip
+
+
+def _confirmed(at: Linearised, trial: Trial, factor: float, thorough: bool) -> float:
+    for _ in range(ROUNDS):
+        if not isfinite(factor):
+            break
+        left = left_by_nominal(at, trial.at(factor), thorough)
+        if left >= SHORT * trial.energy:
+            break
+        if factor >= trial.most:
+            return inf
+        larger = min((trial.energy / max(left, 1e-12)) ** 0.5, LARGER)
+        factor = min(factor * larger, trial.most)
+    return factor

@@ -1,0 +1,135 @@
+"""The smallest size of each effect that a planned test shows: a few secants, each nearer to the size that is asked for.
+
+What an effect does is seldom in proportion to its size, so its response is simulated at the size itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import exp, inf, log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.detectability.linear import responses
+from eha_core.detectability.planned import Linearised
+from eha_core.detectability.power import energy_needed, required_gain
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.effect_parameters import free_effect_parameters
+from eha_core.diagnosis.search.columns import SIZES, Column, applicable_effects, columns_of
+
+Array = NDArray[np.float64]
+
+PASSES = 10
+"""Secants at most; most sizes need four."""
+
+CLOSE = 0.04
+"""Share to which the energy of a response is met, two per cent of a size."""
+
+STEEPEST, FLATTEST = 6.0, 0.5
+"""Bounds of the power with which energy is taken to grow with the size: 2 where the response is linear; a dead band or
+a stop, which only large motions meet, grows faster."""
+
+FARTHEST = 7.0
+"""Logarithm of a factor by which a guess goes on from the last one at most: a thousand."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A column in one direction, at some factor of its size, and what the search asks of its effect.
+
+    `sign`: of the size, where either may be. `parameters`: how many a fit of the effect moves. `gain`: chi^2 required.
+    `energy`: what its response needs for that to be found with POWER. `most`: the largest factor that the catalogue
+    allows.
+    """
+
+    column: Column
+    sign: float
+    parameters: int
+    gain: float
+    energy: float
+    most: float
+
+    def at(self, factor: float) -> Column:
+        """The column with so many times its size."""
+        return replace(self.column, values=self.column.sized(self.sign * factor))
+
+    @property
+    def shape(self) -> dict[str, float]:
+        """The values that are no sizes of the effect, by full name."""
+        rows = dict(zip(self.column.effect.parameter_names(), self.column.effect.parameters, strict=True))
+        return {name: value for name, value in self.column.values.items() if name in rows and not rows[name].switches}
+
+
+def trials(at: Linearised) -> list[Trial]:
+    """One trial for each independent size of each effect in each of the shapes that the search tries, and two where the
+    size may have either sign: the nominal parameters' bounds make them differ."""
+    scales = characteristic_scales([at.observation], at.pool.problem.shooting, at.fit)
+    count, found = at.fit.count, dict[tuple[object, ...], Trial]()
+    for effect in applicable_effects([at.observation]):
+        for column in columns_of(effect, scales):
+            if column.most != SIZES[1.0]:
+                continue  # the same guess at another share of its size
+            parameters = len(free_effect_parameters(effect, column.values))
+            gain = required_gain(count, parameters)
+            least, most = replace(column, most=inf).factors()
+            for sign, farthest in ((1.0, most), (-1.0, -least)):
+                if farthest > 0.0:
+                    trial = Trial(column, sign, parameters, gain, energy_needed(gain, parameters), farthest)
+                    found.setdefault((column.sizes, sign, *sorted(trial.shape.items())), trial)
+    return list(found.values())
+
+
+def smallest(at: Linearised, tried: Sequence[Trial]) -> Array:
+    """Of each trial, the factor on its size at which its response has the energy that is asked for; inf where none up
+    to the catalogue's bound has. Ten passes, each of one secant for every trial that is not there yet."""
+    seen: list[list[Point]] = [[] for _ in tried]
+    guesses = [min(0.0, log(trial.most)) for trial in tried]
+    for _ in range(PASSES):
+        places = [k for k, trial in enumerate(tried) if not _is_done(seen[k], trial)]
+        if not places:
+            break
+        guesses = [next_guess(points, log(trial.energy), log(trial.most))
+                   for points, trial in zip(seen, tried, strict=True)]  # fmt: skip
+        found = responses(at, [tried[k].at(exp(guesses[k])) for k in places])
+        for place, k in enumerate(places):
+            energy = found.left(place) if found.usable[place] else 0.0
+            seen[k].append((guesses[k], log(energy) if energy > 0.0 else -inf))
+    return np.array([_reached(points, trial) for points, trial in zip(seen, tried, strict=True)])
+
+
+Point = tuple[float, float]
+"""Logarithms of a factor, and of the energy of the response there."""
+
+
+def next_guess(seen: Sequence[Point], wanted: float, highest: float) -> float:
+    """Where the energy's logarithm may be `wanted`, from where it was seen: along the power that the last two points
+    show, or in the middle of the bracket."""
+    if not seen:
+        return min(0.0, highest)
+    here, value = seen[-1]
+    power = 2.0
+    if len(seen) > 1 and min(value, seen[-2][1]) > -inf and here != seen[-2][0]:
+        power = min(max((value - seen[-2][1]) / (here - seen[-2][0]), FLATTEST), STEEPEST)
+    guess = here + min(max((wanted - value) / power, -FARTHEST), FARTHEST)
+    lower = max((x for x, y in seen if y < wanted), default=-inf)
+    upper = min((x for x, y in seen if y >= wanted), default=inf)
+    if lower < guess < upper:
+        return min(guess, highest)
+    return 0.5 * (lower + upper) if upper < inf else highest
+
+
+def _is_done(seen: Sequence[Point], trial: Trial) -> bool:
+    return bool(seen) and (abs(seen[-1][1] - log(trial.energy)) < CLOSE or _is_at_the_end(seen, trial))
+
+
+def _is_at_the_end(seen: Sequence[Point], trial: Trial) -> bool:
+    """Whether not even the largest size that the catalogue allows shows enough."""
+    return seen[-1][0] >= log(trial.most) and seen[-1][1] < log(trial.energy)
+
+
+def _reached(seen: Sequence[Point], trial: Trial) -> float:
+    """The factor that came nearest from above: what is claimed has to be found."""
+    enough = [x for x, y in seen if y > log(trial.energy) - CLOSE]
+    return exp(min(enough)) if enough else inf

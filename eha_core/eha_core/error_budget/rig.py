@@ -1,0 +1,187 @@
+"""A rig as a model and what it departs from it by: the effects found, a leakage that grew, and other parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eha_core.diagnosis.hypothesis import neutral
+from eha_core.effects import Effect, effects
+from eha_core.errors import EhaError
+from eha_core.parameters import effect_names
+from eha_core.plant import PAPER, Composition, composition_of
+from eha_core.plant.plant_file import require_voltage
+from eha_core.quantities import quantity
+
+Array = NDArray[np.float64]
+
+LEAKAGES = ("internal_leakage", "external_leakage")
+"""Parameters of the model that wear raises and new seals lower: each departs, and is repaired, by itself."""
+
+LEAKAGE_UNIT = "m^3/(s Pa)"
+
+PARAMETERS = "parameters"
+"""The departure that all other parameters make together. They are the rig's own, and no repair brings them back."""
+
+MOST = 10
+"""Departures of which every subset is simulated: 1,024 closed loops, some seconds."""
+
+
+@dataclass(frozen=True)
+class Departure:
+    """One thing by which the rig is not as modelled.
+
+    Attributes:
+        name: an effect's id, one of LEAKAGES, or PARAMETERS.
+        statement: it in words.
+        values: parameters (SI, by their names in the equations) where it is there.
+        absent: the same parameters where it is not.
+        repairable: whether a repair would take it away.
+    """
+
+    name: str
+    statement: str
+    values: Mapping[str, float]
+    absent: Mapping[str, float]
+    repairable: bool = True
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A rig as its model and its departures from that.
+
+    Attributes:
+        source: where it was read.
+        modelled: every parameter of the equations as modelled, all effects off [SI].
+        departures: at most MOST.
+        deviations: standard deviations [SI] of the departures' values as far as they are known, by name.
+        correlation: (n, n) of the errors of those values, in the order of `deviations`.
+        remarks: what was taken for granted, in sentences.
+        composition: the actuator's parts.
+    """
+
+    source: str
+    modelled: Mapping[str, float]
+    departures: tuple[Departure, ...]
+    deviations: Mapping[str, float]
+    correlation: Array
+    remarks: tuple[str, ...] = ()
+    composition: Composition = PAPER
+
+    def values(self, present: Iterable[Departure]) -> dict[str, float]:
+        """Every parameter of the rig with only these departures."""
+        found = dict(self.modelled)
+        for departure in present:
+            found |= departure.values
+        return found
+
+
+def rig_from_changes(
+    changes: Mapping[str, float], modelled: Mapping[str, float], composition: Composition = PAPER, source: str = "given"
+) -> Rig:
+    """A rig whose departures from the model (`modelled`, every parameter of the equations) are given by name.
+
+    Raises ParameterError for a name or a value that does not fit, EhaError where nothing departs or too much does.
+    """
+    require_voltage(composition)
+    composition.changed(composition.nominal_values(), changes)
+    given = {place: value for name, value in changes.items() for place in composition.stands_for(name)}
+    departures = _departures(source, modelled, {**modelled, **given}, [name for name in LEAKAGES if name in given], {})
+    return Rig(source, dict(modelled), departures, {}, np.empty((0, 0)), (), composition)
+
+
+def rig_from_document(document: Mapping[str, Any], source: str) -> Rig:
+    """The rig of a diagnosis, as `diagnosis.json` has it; of several recordings, with the values of the first.
+
+    Raises EhaError where it is no such document, or it found nothing that departs.
+    """
+    if not isinstance(document, Mapping) or document.get("schema") != "eha.diagnosis/1":
+        raise EhaError(f"{source}: no diagnosis; give the diagnosis.json that `eha diagnose` writes, or a recording")
+    if not document.get("fitted_values"):
+        raise EhaError(f"{source}: it has no fitted_values to simulate; diagnose the recording of an actuator again")
+    composition = composition_of(document["plant"])
+    require_voltage(composition)
+    fitted = composition.places(composition.nominal_values()) | document["fitted_values"]
+    rows = {row["name"]: row for row in document["parameters"] if "@" not in row["name"]}
+    modelled = {**fitted, **_all_off(), **{name: row["nominal"] for name, row in rows.items()}}
+    leaks = [name for name in LEAKAGES if name in rows and rows[name]["changed"]]
+    statements = {effect["id"]: effect["statement"] for effect in document["effects"]}
+    departures = _departures(source, modelled, fitted, leaks, statements)
+    deviations, correlation = _uncertainty(document, departures)
+    remarks = (*_remarks(document), *_vague(departures, deviations))
+    return Rig(source, modelled, departures, deviations, correlation, remarks, composition)
+
+
+def _departures(
+    source: str, modelled: Mapping[str, float], fitted: Mapping[str, float], leaks: Sequence[str],
+    statements: Mapping[str, str],
+) -> tuple[Departure, ...]:  # fmt: skip
+    """What the fitted values differ from the modelled ones by; `leaks` of LEAKAGES count by themselves."""
+    found = [_of_effect(effect, fitted, statements) for effect in effects() if effect.is_active(fitted)]
+    for name in leaks:
+        statement = f"{name.replace('_', ' ')} is {quantity(fitted[name], LEAKAGE_UNIT)}"
+        statement += f", modelled as {quantity(modelled[name], LEAKAGE_UNIT)}"
+        found.append(Departure(name, statement, {name: fitted[name]}, {name: modelled[name]}))
+    if not found:
+        raise EhaError(f"{source}: no effect and no changed leakage is named, so there is nothing to repair")
+    own = {name: value for name, value in fitted.items()
+           if name not in {*effect_names(), *leaks} and value != modelled[name]}  # fmt: skip
+    if own:
+        absent = {name: modelled[name] for name in own}
+        found.append(Departure(PARAMETERS, f"other values of {', '.join(own)}", own, absent, False))
+    if len(found) > MOST:
+        raise EhaError(f"{source}: {len(found)} departures have {2 ** len(found)} subsets; a budget takes {MOST}")
+    return tuple(found)
+
+
+def _of_effect(effect: Effect, fitted: Mapping[str, float], statements: Mapping[str, str]) -> Departure:
+    """An effect that always acts: an instant of the recording is no instant of the task."""
+    absent = neutral(effect)
+    values = {**absent, **{name: fitted[name] for name in effect.parameter_names()}}
+    for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
+        if row.relative_to == "time" and not row.logarithmic:
+            values[name] = row.lower
+    described = "a law that is in no catalogue, as recovered"
+    if effect.named:
+        described = effect.describe({row.name: values[f"{effect.id}.{row.name}"] for row in effect.parameters})
+    return Departure(effect.id, statements.get(effect.id, described), values, absent)
+
+
+def _uncertainty(
+    document: Mapping[str, Any], departures: Sequence[Departure]
+) -> tuple[dict[str, float], Array]:
+    """Standard deviations of the departures' values as far as the diagnosis knows them, and their correlation."""
+    known = {row["name"]: row["std"] for row in document["parameters"]}
+    for effect in document["effects"]:
+        known |= {f"{effect['id']}.{name}": row["std"] for name, row in effect["parameters"].items()}
+    correlated = document["correlation"] or {"names": [], "matrix": []}
+    of_rig = {name for departure in departures for name in departure.values}
+    places = [place for place, name in enumerate(correlated["names"]) if name in of_rig and known.get(name)]
+    matrix = np.array(correlated["matrix"], dtype=np.float64).reshape(len(correlated["names"]), -1)
+    names = [correlated["names"][place] for place in places]
+    return {name: known[name] for name in names}, matrix[np.ix_(places, places)]
+
+
+def _remarks(document: Mapping[str, Any]) -> Iterator[str]:
+    for effect in document["effects"]:
+        if effect["active"]:
+            begin, end = effect["active"]
+            yield f"{effect['id']} acted from {begin:.4g} s to {end:.4g} s of the recording; here it always acts"
+    if document["alternatives"]:
+        others = " or ".join(" + ".join(row["effects"]) for row in document["alternatives"])
+        yield f"the recording cannot distinguish the effects from {others}; the budget is of those that were named"
+
+
+def _vague(departures: Sequence[Departure], deviations: Mapping[str, float]) -> Iterator[str]:
+    for departure in departures:
+        if departure.repairable and not set(departure.values) & set(deviations):
+            yield f"the uncertainty of {departure.name} is not known and not counted"
+
+
+def _all_off() -> dict[str, float]:
+    """The values at which no effect of the catalogue acts."""
+    return {name: value for effect in effects() for name, value in neutral(effect).items()}

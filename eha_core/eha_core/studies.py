@@ -1,0 +1,159 @@
+"""Studies that go with a diagnosis: what a test can show before it is made, and what an error consists of after it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eha_core.api import Nominal, diagnose, given_model
+from eha_core.errors import EhaError, ParameterError
+from eha_core.nominal import nominal_of
+from eha_core.recording import Recording, read_recording
+
+if TYPE_CHECKING:
+    from eha_core.detectability import Certificate
+    from eha_core.error_budget import Budget, Rig
+    from eha_core.report.results import Results
+    from eha_core.signals import Signal
+
+Array = NDArray[np.float64]
+
+
+def detect(
+    command: str | ArrayLike | tuple[ArrayLike, ArrayLike],
+    nominal: Nominal = None,
+    *,
+    duration: float | None = None,
+    channels: Sequence[str] = ("position", "pressure_a", "pressure_b"),
+    noise: float = 1.0,
+    rate: float = 500.0,
+) -> Certificate:
+    """Say how small an effect a planned test shows, and what it cannot distinguish.
+
+    Args:
+        command: a signal such as "multisine:amplitude=0.12", one voltage [V] for each sample, or instants [s] and the
+            voltages that hold from them on.
+        nominal: the model of the rig, as `diagnose` takes it.
+        duration: length of the test [s]; by default that of the voltages, or 10 s of a signal.
+        channels: what is recorded beside the command: position, and pressure_a and pressure_b.
+        noise: factor on the sensors' noise; 1 is 10 um and 0.01 MPa.
+        rate: samples a second [Hz].
+
+    Returns:
+        For each effect the smallest size that a diagnosis names with 95 % probability, where the rig is as modelled
+        but for it; `eha_core.report.detectability` presents it.
+
+    Raises:
+        ParameterError: the command, the channels, the rate or the model do not fit.
+    """
+    from eha_core.detectability import PlannedTest, certify
+
+    times, voltages, length = _given(command, duration, rate)
+    test = PlannedTest(times, voltages, duration or length, tuple(channels), noise, rate)
+    return certify(given_model(nominal) or nominal_of({}), test)
+
+
+def _given(
+    command: str | ArrayLike | tuple[ArrayLike, ArrayLike], duration: float | None, rate: float
+) -> tuple[Array, Array, float]:
+    """Instants [s] and voltages [V] of a command, and its length [s]."""
+    from eha_core.signals import from_text
+
+    if not rate > 0.0:
+        raise ParameterError(f"rate = {rate:g} Hz is out of range; give samples a second")
+    if isinstance(command, str):
+        length = duration or 10.0
+        times = np.arange(round(length * rate)) / rate
+        return times, np.asarray(from_text(command).value(times), dtype=np.float64), length
+    if isinstance(command, tuple):
+        times, voltages = (np.asarray(each, dtype=np.float64) for each in command)
+    else:
+        voltages = np.asarray(command, dtype=np.float64)
+        times = np.arange(voltages.size) / rate
+    if voltages.ndim != 1 or not voltages.size or voltages.shape != times.shape:
+        raise ParameterError(f"command has the shape {voltages.shape}; give one voltage for each instant")
+    if not np.all(np.isfinite(voltages)):
+        raise ParameterError("command has voltages that are no numbers; give finite ones")
+    return times, voltages, float(times[-1]) + 1.0 / rate
+
+
+def budget(
+    found: Results | Recording | Mapping[str, float] | str | Path,
+    reference: str | Signal,
+    controller: str = "pid",
+    *,
+    nominal: Nominal = None,
+    duration: float | None = None,
+    skip: float | None = None,
+    rate: float = 500.0,
+    command_limit: float = 10.0,
+) -> Budget:
+    """Share the RMSE of a tracking error out among the effects that a rig has, and say what each repair would gain.
+
+    Args:
+        found: what `diagnose` returned, the path of a diagnosis.json, a recording or its path, which is diagnosed
+            first, or values that depart from the model, as {"coulomb_friction.force": 250.0}.
+        reference: the position to follow [m], as "sine:amplitude=0.01,frequency=1"; in open loop the voltage [V].
+        controller: one of `eha_core.control.CONTROLLERS`, made for the rig as modelled; empty for open loop, where the
+            error is the difference from the rig as modelled.
+        nominal: the model, of a recording or of values that depart, as `diagnose` takes it.
+        duration: length of the motion [s]; 4, in open loop 10.
+        skip: seconds at the start that are not counted; 1, in open loop 0.
+        rate: commands and samples of the error a second [Hz].
+        command_limit: largest voltage of the controller [V].
+
+    Returns:
+        Shares that add up to today's RMSE with that of the rig as modelled; `eha_core.report.budget` presents them.
+
+    Raises:
+        EhaError: nothing was found that could be repaired, or too much for every subset to be simulated.
+        ParameterError: the task or the rig's values do not fit.
+    """
+    from eha_core.error_budget import Task, error_budget
+    from eha_core.signals import from_text
+
+    signal = from_text(reference) if isinstance(reference, str) else reference
+    defaults = (4.0, 1.0) if controller else (10.0, 0.0)
+    task = Task(
+        signal, controller, defaults[0] if duration is None else duration, defaults[1] if skip is None else skip, rate,
+        command_limit,
+    )  # fmt: skip
+    return error_budget(rig_of(found, nominal), task)
+
+
+def rig_of(
+    found: Results | Recording | Mapping[str, float] | str | Path,
+    nominal: Nominal = None,
+    topics: str | Path | None = None,
+    jobs: int = 2,
+) -> Rig:
+    """The rig that `budget` is of; a recording is read by `topics` and diagnosed on so many threads."""
+    from eha_core.error_budget import rig_from_changes, rig_from_document
+    from eha_core.report.document import document
+    from eha_core.report.results import Results
+
+    if isinstance(found, Mapping):
+        model = given_model(nominal) or nominal_of({})
+        if model.unknown:
+            raise ParameterError(f"{min(model.unknown)} is unknown, which only a diagnosis takes; give its value")
+        return rig_from_changes(found, model.values, model.composition)
+    if isinstance(found, (str, Path)) and Path(found).suffix == ".json":
+        return rig_from_document(_loaded(Path(found)), str(found))
+    if not isinstance(found, Results):
+        recording = found if isinstance(found, Recording) else read_recording(found, topics)
+        found = diagnose(recording, nominal, jobs=jobs)
+    return rig_from_document(document(found.diagnosis), found.diagnosis.path)
+
+
+def _loaded(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise EhaError(f"{path}: cannot be read ({error.strerror}); give the diagnosis.json of a diagnosis") from error
+    except ValueError as error:
+        raise EhaError(f"{path}: no JSON; give the diagnosis.json that `eha diagnose` writes") from error
