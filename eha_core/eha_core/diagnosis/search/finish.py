@@ -92,8 +92,10 @@ def _without(pool: Pool, hypothesis: Hypothesis, member: Member, at: Fit, needed
     free = tuple(parameter for parameter in at.free if base_name(parameter.name) not in off)
     simpler = pool.try_set("without a member", rest, values, at.states, FURTHER, free, 1, at.objective + needed)
     if simpler.objective - at.objective > needed:
-        simpler = pool.go_on("without a member", rest, CONVERGED, 2, give_up_above=at.objective + needed)
-    return simpler
+        pool.go_on("without a member", rest, CONVERGED, 2, give_up_above=at.objective + needed)
+    if pool.found[rest].objective - at.objective > needed:
+        shift_instants(pool, rest, CONVERGED)  # what acts together with the member may begin elsewhere without it
+    return pool.found[rest]
 
 
 def required_of(pool: Pool, member: Member, costs: Mapping[Member, float], at: Fit) -> float:
