@@ -30,12 +30,23 @@ OVERLAP = 0.5
 
 @dataclass(frozen=True)
 class FaultKind:
-    """A kind of fault: its name, the words under which it may be found, in which channel, and how it is made."""
+    """A kind of fault.
+
+    Attributes:
+        name: what it is.
+        expected: the words under which it may be found.
+        channel: in which channel.
+        make: how it is made.
+        refused: whether a recording with it cannot be diagnosed.
+        effects: effects of the catalogue that are this very fault, as a filter is a sensor's lag.
+    """
 
     name: str
     expected: tuple[str, ...]
     channel: str
     make: Make
+    refused: bool = False
+    effects: tuple[str, ...] = ()
 
 
 def _span(time: FloatArray, chance: np.random.Generator, length: float) -> Span:
@@ -262,7 +273,7 @@ FAULTS = (
     FaultKind("position interpolated from 50 Hz", ("interpolated",), "position", _interpolated("position", 0.02)),
     FaultKind("pressure interpolated from 50 Hz", ("interpolated",), "pressure_a", _interpolated("pressure_a", 0.02)),
     FaultKind("command interpolated from 50 Hz", ("interpolated",), "voltage_command",
-              _interpolated("voltage_command", 0.02)),
+              _interpolated("voltage_command", 0.02), refused=True),
     FaultKind("position at the end of its range", ("saturated",), "position", _clipped("position", 0.15)),
     FaultKind("pressure at the end of its range", ("saturated",), "pressure_a", _clipped("pressure_a", 0.15)),
     FaultKind("command clipped in the log", ("saturated",), "voltage_command", _clipped("voltage_command", 0.15)),
@@ -280,12 +291,14 @@ FAULTS = (
     FaultKind("spikes in a pressure", ("spikes",), "pressure_a", _spikes("pressure_a")),
     FaultKind("hum in the position", ("hum",), "position", _hum("position", 3.0)),
     FaultKind("hum in a pressure", ("hum",), "pressure_b", _hum("pressure_b", 3.0)),
-    FaultKind("pressure low-passed at 25 Hz", ("low_passed",), "pressure_a", _low_passed("pressure_a", 25.0)),
-    FaultKind("position low-passed at 25 Hz", ("low_passed",), "position", _low_passed("position", 25.0)),
+    FaultKind("pressure low-passed at 25 Hz", ("low_passed",), "pressure_a", _low_passed("pressure_a", 25.0),
+              effects=("pressure_sensor_lag",)),
+    FaultKind("position low-passed at 25 Hz", ("low_passed",), "position", _low_passed("position", 25.0),
+              effects=("position_sensor_lag",)),
     FaultKind("pressure disturbed", ("noisy",), "pressure_b", _noisy("pressure_b")),
-    FaultKind("log of 20 Hz", ("too_slow",), "voltage_command", _slow(20.0)),
-    FaultKind("clock of the sensors 2 % fast", ("clock",), "position", _drifting(0.02)),
-    FaultKind("piston that does not move", ("still",), "position", _blocked),
+    FaultKind("log of 20 Hz", ("too_slow",), "voltage_command", _slow(20.0), refused=True),
+    FaultKind("clock of the sensors 2 % fast", ("clock",), "position", _drifting(0.02), refused=True),
+    FaultKind("piston that does not move", ("still",), "position", _blocked, refused=True),
 )  # fmt: skip
 """Faults that arise while a recording is made or exported, each in one channel."""
 
