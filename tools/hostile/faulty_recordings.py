@@ -12,6 +12,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from eha_core.health import Fault
+from eha_core.health.faults.spikes import FAR
 from eha_core.health.noise import Flags
 from eha_core.recording.reader import STANDARD_ATMOSPHERE
 from eha_core.recording.recording import FloatArray
@@ -23,7 +24,8 @@ Make = Callable[[Arrays, np.random.Generator], Made]
 WHOLE: tuple[Span, ...] = ()
 """In place of spans: the fault is in all of the channel."""
 
-
+CLEAR = 4.0
+"""Times the size of a spike that can be found: of half of the largest it is twice."""
 OVERLAP = 0.5
 """Share of the time of either span that both have, from which on the span is right."""
 
@@ -191,17 +193,21 @@ def _spikes(name: str) -> Make:
         time, values = arrays[name]
         spiked = values.copy()
         places = chance.choice(np.arange(20, len(values) - 20), 12, replace=False)
-        size = max(float(np.ptp(values)), 1e-3 if name == "position" else 1e6)
+        size = max(float(np.ptp(values)), CLEAR * FAR * _noise(values))
         spiked[places] += chance.choice((-1.0, 1.0), len(places)) * chance.uniform(0.5, 1.0, len(places)) * size
         return {**arrays, name: (time, spiked)}, WHOLE
 
     return make
 
 
+def _noise(values: FloatArray) -> float:
+    return float(np.std(np.diff(values, 4))) / np.sqrt(70.0)
+
+
 def _hum(name: str, level: float) -> Make:
     def make(arrays: Arrays, chance: np.random.Generator) -> Made:
         time, values = arrays[name]
-        noise = float(np.std(np.diff(values, 4))) / np.sqrt(70.0)
+        noise = _noise(values)
         return {**arrays, name: (time, values + level * noise * np.sin(2.0 * np.pi * 50.0 * time))}, WHOLE
 
     return make
@@ -221,7 +227,7 @@ def _noisy(name: str) -> Make:
     def make(arrays: Arrays, chance: np.random.Generator) -> Made:
         time, values = arrays[name]
         span = _span(time, chance, 1.0)
-        noise = 20.0 * float(np.std(np.diff(values, 4))) / np.sqrt(70.0)
+        noise = 20.0 * _noise(values)
         disturbed = values + np.where(_within(time, span), noise * chance.standard_normal(len(values)), 0.0)
         return {**arrays, name: (time, disturbed)}, (span,)
 
