@@ -160,3 +160,17 @@ def test_sensors_of_another_clock_follow_ever_later_or_earlier(rate: float) -> N
     assert [fault.fault for fault in found] == (["clock"] if rate else [])
     if found:
         assert f"{100.0 * abs(rate):.2g} % {'fast' if rate > 0.0 else 'slow'}" in found[0].seen
+
+
+def test_a_position_that_passes_the_end_of_its_counter_slowly_wraps_all_the_same() -> None:
+    """Ten times as much noise as the piston moves in a sample, one sample in a hundred lost: it leaps there many times."""
+    generator = np.random.default_rng(8)
+    true = WAVE + 1e-3 * generator.standard_normal(len(TIME))
+    kept = generator.random(len(TIME)) > 0.01
+    wrapped = np.where(true > 0.008, true - 0.06, true)
+    recording = eha.Recording.from_arrays(time=TIME[kept], position=wrapped[kept])
+    health = examine(recording)
+    assert {fault.fault for fault in health.faults} == {"wrapped"}
+    _, values = health.sound(recording.channels["position"])
+    assert np.min(values) > -0.03 and np.max(values) < 0.009
+    assert len(values) > 0.5 * len(TIME)
