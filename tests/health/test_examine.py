@@ -174,3 +174,15 @@ def test_a_position_that_passes_the_end_of_its_counter_slowly_wraps_all_the_same
     _, values = health.sound(recording.channels["position"])
     assert np.min(values) > -0.03 and np.max(values) < 0.009
     assert len(values) > 0.5 * len(TIME)
+
+
+def test_a_scale_leaps_at_the_moment_of_the_leap_whatever_the_noise_of_blocks_does() -> None:
+    """A pressure that turns to kPa at 5.013 s; its noise grows and shrinks slowly by a tenth."""
+    generator = np.random.default_rng(9)
+    noise = 1e4 * (1.0 + 0.1 * np.sin(2.0 * np.pi * 0.2 * TIME)) * generator.standard_normal(len(TIME))
+    values = 4e6 + 1e6 * np.sin(2.0 * np.pi * 0.5 * TIME) + noise
+    recording = eha.Recording.from_arrays(
+        time=TIME, pressures="gauge", pressure_a=np.where(TIME >= 5.013, 1e-3 * values, values)
+    )
+    (fault,) = examine(recording).faults
+    assert fault.fault == "jump" and fault.start == pytest.approx(5.013, abs=0.003)
