@@ -84,6 +84,7 @@ COMMANDS = {
     "a trapezoid": np.clip(2.0 * np.sin(2.0 * np.pi * TIME), -1.0, 1.0).round(1),
     "one step": np.where(TIME > 3.0, 1.0, 0.0),
     "a sine": np.sin(2.0 * np.pi * TIME),
+    "pulses one way beside small steps": 0.05 * STEPS + np.where(TIME % 2.0 < 0.2, 5.0, 0.0),
     "of a loop with noise": WAVE + 0.001 * CHANCE.standard_normal(len(TIME)),
 }
 
@@ -186,3 +187,14 @@ def test_a_scale_leaps_at_the_moment_of_the_leap_whatever_the_noise_of_blocks_do
     )
     (fault,) = examine(recording).faults
     assert fault.fault == "jump" and fault.start == pytest.approx(5.013, abs=0.003)
+
+
+def test_a_command_of_steps_that_drops_to_a_fill_value_is_told_from_its_steps() -> None:
+    """Four times 40 ms at -10 V in steps of 1 V; the last beside a step."""
+    dropped = STEPS.copy()
+    for first in (510, 1220, 2030, 3140):
+        dropped[first : first + 20] = -10.0
+    recording = eha.Recording.from_arrays(time=TIME, voltage_command=dropped, position=WAVE)
+    faults = [fault for fault in examine(recording).faults if fault.channel == "voltage_command"]
+    assert [fault.fault for fault in faults] == 4 * ["dropped"]
+    assert faults[0].span == pytest.approx((TIME[510], TIME[529]))
