@@ -164,7 +164,7 @@ def test_sensors_of_another_clock_follow_ever_later_or_earlier(rate: float) -> N
 
 
 def test_a_position_that_passes_the_end_of_its_counter_slowly_wraps_all_the_same() -> None:
-    """Ten times as much noise as the piston moves in a sample, one sample in a hundred lost: it leaps there many times."""
+    """With noise of ten times its motion in a sample, and one sample in a hundred lost, it leaps there many times."""
     generator = np.random.default_rng(8)
     true = WAVE + 1e-3 * generator.standard_normal(len(TIME))
     kept = generator.random(len(TIME)) > 0.01

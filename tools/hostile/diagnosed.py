@@ -46,8 +46,8 @@ def try_named(extent: Extent, seed: int) -> list[Row]:
 
 
 def try_planted(extent: Extent, seed: int) -> list[Row]:
-    """Diagnose rigs that lack one or two effects, with each kind of fault in turn that leaves something to compare, where
-    what is missing is named exactly without the fault."""
+    """Diagnose rigs that lack one or two effects, with each kind of fault in turn that leaves something to compare,
+    where what is missing is named exactly without the fault."""
     kinds = [kind for kind in FAULTS if not kind.refused]
     row = Row(f"diagnosed, one effect or two missing, {len(kinds)} kinds of faults", seed)
     for case, kind, (verdict, named) in _diagnosed(extent, seed, SOMETHING_MISSING, kinds):

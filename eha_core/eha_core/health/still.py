@@ -22,8 +22,8 @@ SECONDS, FEWEST = 0.1, 20
 MOTION = 2.0
 """Power of the means over that of noise from which on there is motion."""
 TAKEN = 0.05
-"""Share of the rated command, from its lowest value to its highest, that a sound valve may take (assumed: 1 % of overlap
-either way and 3 % of hysteresis, which servo valves' data sheets allow)."""
+"""Share of the rated command, from its lowest value to its highest, that a sound valve may take (assumed: 1 % of
+overlap either way and 3 % of hysteresis, which servo valves' data sheets allow)."""
 
 
 def still(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> Sequence[Fault]:
