@@ -201,7 +201,7 @@ def _spikes(name: str) -> Make:
 
 
 def _noise(values: FloatArray) -> float:
-    return float(np.std(np.diff(values, 4))) / np.sqrt(70.0)
+    return float(np.std(np.diff(values, 4)) / np.sqrt(70.0))
 
 
 def _hum(name: str, level: float) -> Make:
