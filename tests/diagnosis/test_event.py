@@ -21,7 +21,9 @@ def left(*loud: int, times: float = 5.0):
     shooting = SimpleNamespace(
         windows=WINDOWS, samplings=(sampling, sampling), edges=5000 * np.arange(WINDOWS + 1), step_size=2e-4
     )
-    return shooting, SimpleNamespace(residuals=tuple(noise))
+    after = noise.copy()
+    after[1, np.isin(window, loud)] /= times
+    return shooting, SimpleNamespace(residuals=tuple(noise)), SimpleNamespace(residuals=tuple(after))
 
 
 @pytest.mark.parametrize(
@@ -45,6 +47,13 @@ def test_what_is_hardly_more_than_noise_is_none():
 
 
 def test_a_short_recording_has_none():
-    shooting, fit = left(3)
+    shooting, *fits = left(3)
     shooting.windows = 5
-    assert event(shooting, fit) is None
+    assert event(shooting, *fits) is None
+
+
+def test_what_explains_more_at_other_times_too_is_none():
+    """As behind a filter, where the noise is taken as it was before it."""
+    shooting, nominal, winner = left(3)
+    winner.residuals[0][:] *= 0.5
+    assert event(shooting, nominal, winner) is None

@@ -66,6 +66,19 @@ def test_of_two_values_that_are_told_each_is():
     assert "only the" not in named(values, far).statement
 
 
+def test_of_a_value_that_may_be_nothing_the_most_is_told():
+    """The second bias has no more than its deviation."""
+    effect = named(dict(zip(_biases(), (3e5, 1e4), strict=True)), np.diag([2e4, 2e4]) ** 2)
+    assert effect.statement == "the pressure sensors are off: chamber A's by 300 kPa, chamber B's by at most 50.0 kPa"
+
+
+def test_the_place_of_a_stop_that_was_not_met_is_not_told():
+    values = {"lower": -1.7, "upper": 0.023, "stiffness": 7e6, "damping": 2500.0}
+    full = {f"end_stop.{name}": value for name, value in values.items()}
+    effect = named(full, np.diag([200.0, 1e-6, 1e4, 70.0]) ** 2)
+    assert "below a value that is not known or above 23.00 mm" in effect.statement
+
+
 @pytest.mark.parametrize("correlation", [0.0, 0.6])
 def test_what_an_effect_is_worth_is_how_many_deviations_its_sizes_are_from_nothing(correlation):
     sizes, spread = np.array([3e5, -1e5]), np.array([2e4, 5e4])

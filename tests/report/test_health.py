@@ -9,6 +9,7 @@ import numpy as np
 from eha_core.diagnosis.result import Diagnosis, RecordingFit
 from eha_core.health import Fault
 from eha_core.report.account import account
+from eha_core.report.finding import warnings
 from eha_core.report.first_screen import pictures, residual_picture
 from eha_core.report.health import excluded, faults_told
 from eha_core.report.picture import Line, Spans
@@ -55,6 +56,14 @@ def test_the_first_picture_shades_what_was_excluded_and_draws_nothing_there(fric
     drawn = line.x[np.isfinite(line.y)]
     assert not np.any((drawn > 2.001) & (drawn < 2.999)) and np.any(drawn > 4.5)
     assert not any(isinstance(mark, Spans) for mark in residual_picture(friction).groups[0].panels[0].marks)
+
+
+def test_a_sensors_hole_is_shaded_and_the_page_begins_with_it(friction: Diagnosis) -> None:
+    hole = replace(HOLE, channel="position", excludes=False)
+    assert excluded(ill(friction, hole), "position") == ((4.0, 4.5),)
+    assert excluded(ill(friction, hole), "pressure_a") == ()
+    assert warnings(ill(friction, hole)) == ("Position: no sample for 0.5 s, from 4 s to 4.5 s; record it without"
+                                             " interruption.",)  # fmt: skip
 
 
 def test_where_a_part_was_excluded_the_first_picture_shows_it(friction: Diagnosis) -> None:

@@ -14,10 +14,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="make hostile", description=__doc__)
     parser.add_argument("--seconds", type=float, default=20.0, help="how long each trial goes on (default %(default)s)")
     parser.add_argument("--times", type=int, help="how often each trial is made instead, the same on every run")
+    parser.add_argument("--first", type=int, default=0, help="number of the first recording that is diagnosed")
     parser.add_argument("--seed", type=int, default=1, help="what the trials are drawn from (default %(default)s)")
     parser.add_argument("trials", nargs="*", help="some of the trials (default all)")
     arguments = parser.parse_args()
     from tools.hostile.commands import try_commands
+    from tools.hostile.diagnosed import try_named, try_planted
     from tools.hostile.files import try_files
     from tools.hostile.kills import try_kills
     from tools.hostile.nodes import try_nodes
@@ -26,12 +28,13 @@ def main() -> int:
     trials = {
         "files": try_files, "kills": try_kills, "commands": try_commands, "nodes": try_nodes,
         "sound": try_sound, "mistakes": try_mistakes, "faults": try_faults,
+        "named": try_named, "planted": try_planted,
     }  # fmt: skip
     unknown = [name for name in arguments.trials if name not in trials]
     if unknown:
         parser.error(f"there is no trial {unknown[0]}; give some of {', '.join(trials)}, or none for all")
     rows: list[Row] = []
-    extent = Extent(arguments.seconds, arguments.times)
+    extent = Extent(arguments.seconds, arguments.times, arguments.first)
     for name in arguments.trials or trials:
         print(f"{name} ...", file=sys.stderr, flush=True)
         rows += trials[name](extent, arguments.seed)

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Extent:
-    """A trial's extent: `times` where it is given, else `seconds`; so many times are the same on every run."""
+    """A trial's extent: `times` where it is given, else `seconds`; so many times are the same on every run. One that
+    takes hours begins with the number `first`, so that it can be made in parts."""
 
     seconds: float = 20.0
     times: int | None = None
+    first: int = 0
 
     def begin(self) -> Course:
         """Start the clock."""

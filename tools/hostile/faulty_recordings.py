@@ -12,6 +12,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from eha_core.health import Fault
+from eha_core.health.faults.spikes import FAR
 from eha_core.health.noise import Flags
 from eha_core.recording.reader import STANDARD_ATMOSPHERE
 from eha_core.recording.recording import FloatArray
@@ -23,19 +24,31 @@ Make = Callable[[Arrays, np.random.Generator], Made]
 WHOLE: tuple[Span, ...] = ()
 """In place of spans: the fault is in all of the channel."""
 
-
+CLEAR = 4.0
+"""Times the size of a spike that can be found: of half of the largest it is twice."""
 OVERLAP = 0.5
 """Share of the time of either span that both have, from which on the span is right."""
 
 
 @dataclass(frozen=True)
 class FaultKind:
-    """A kind of fault: its name, the words under which it may be found, in which channel, and how it is made."""
+    """A kind of fault.
+
+    Attributes:
+        name: what it is.
+        expected: the words under which it may be found.
+        channel: in which channel.
+        make: how it is made.
+        refused: whether a recording with it cannot be diagnosed.
+        effects: effects of the catalogue that are this very fault, as a filter is a sensor's lag.
+    """
 
     name: str
     expected: tuple[str, ...]
     channel: str
     make: Make
+    refused: bool = False
+    effects: tuple[str, ...] = ()
 
 
 def _span(time: FloatArray, chance: np.random.Generator, length: float) -> Span:
@@ -180,17 +193,21 @@ def _spikes(name: str) -> Make:
         time, values = arrays[name]
         spiked = values.copy()
         places = chance.choice(np.arange(20, len(values) - 20), 12, replace=False)
-        size = max(float(np.ptp(values)), 1e-3 if name == "position" else 1e6)
+        size = max(float(np.ptp(values)), CLEAR * FAR * _noise(values))
         spiked[places] += chance.choice((-1.0, 1.0), len(places)) * chance.uniform(0.5, 1.0, len(places)) * size
         return {**arrays, name: (time, spiked)}, WHOLE
 
     return make
 
 
+def _noise(values: FloatArray) -> float:
+    return float(np.std(np.diff(values, 4)) / np.sqrt(70.0))
+
+
 def _hum(name: str, level: float) -> Make:
     def make(arrays: Arrays, chance: np.random.Generator) -> Made:
         time, values = arrays[name]
-        noise = float(np.std(np.diff(values, 4))) / np.sqrt(70.0)
+        noise = _noise(values)
         return {**arrays, name: (time, values + level * noise * np.sin(2.0 * np.pi * 50.0 * time))}, WHOLE
 
     return make
@@ -210,7 +227,7 @@ def _noisy(name: str) -> Make:
     def make(arrays: Arrays, chance: np.random.Generator) -> Made:
         time, values = arrays[name]
         span = _span(time, chance, 1.0)
-        noise = 20.0 * float(np.std(np.diff(values, 4))) / np.sqrt(70.0)
+        noise = 20.0 * _noise(values)
         disturbed = values + np.where(_within(time, span), noise * chance.standard_normal(len(values)), 0.0)
         return {**arrays, name: (time, disturbed)}, (span,)
 
@@ -262,7 +279,7 @@ FAULTS = (
     FaultKind("position interpolated from 50 Hz", ("interpolated",), "position", _interpolated("position", 0.02)),
     FaultKind("pressure interpolated from 50 Hz", ("interpolated",), "pressure_a", _interpolated("pressure_a", 0.02)),
     FaultKind("command interpolated from 50 Hz", ("interpolated",), "voltage_command",
-              _interpolated("voltage_command", 0.02)),
+              _interpolated("voltage_command", 0.02), refused=True),
     FaultKind("position at the end of its range", ("saturated",), "position", _clipped("position", 0.15)),
     FaultKind("pressure at the end of its range", ("saturated",), "pressure_a", _clipped("pressure_a", 0.15)),
     FaultKind("command clipped in the log", ("saturated",), "voltage_command", _clipped("voltage_command", 0.15)),
@@ -280,12 +297,14 @@ FAULTS = (
     FaultKind("spikes in a pressure", ("spikes",), "pressure_a", _spikes("pressure_a")),
     FaultKind("hum in the position", ("hum",), "position", _hum("position", 3.0)),
     FaultKind("hum in a pressure", ("hum",), "pressure_b", _hum("pressure_b", 3.0)),
-    FaultKind("pressure low-passed at 25 Hz", ("low_passed",), "pressure_a", _low_passed("pressure_a", 25.0)),
-    FaultKind("position low-passed at 25 Hz", ("low_passed",), "position", _low_passed("position", 25.0)),
+    FaultKind("pressure low-passed at 25 Hz", ("low_passed",), "pressure_a", _low_passed("pressure_a", 25.0),
+              effects=("pressure_sensor_lag",)),
+    FaultKind("position low-passed at 25 Hz", ("low_passed",), "position", _low_passed("position", 25.0),
+              effects=("position_sensor_lag",)),
     FaultKind("pressure disturbed", ("noisy",), "pressure_b", _noisy("pressure_b")),
-    FaultKind("log of 20 Hz", ("too_slow",), "voltage_command", _slow(20.0)),
-    FaultKind("clock of the sensors 2 % fast", ("clock",), "position", _drifting(0.02)),
-    FaultKind("piston that does not move", ("still",), "position", _blocked),
+    FaultKind("log of 20 Hz", ("too_slow",), "voltage_command", _slow(20.0), refused=True),
+    FaultKind("clock of the sensors 2 % fast", ("clock",), "position", _drifting(0.02), refused=True),
+    FaultKind("piston that does not move", ("still",), "position", _blocked, refused=True),
 )  # fmt: skip
 """Faults that arise while a recording is made or exported, each in one channel."""
 

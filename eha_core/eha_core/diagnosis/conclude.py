@@ -147,7 +147,8 @@ def _event(evidence: Evidence, decision: Decision) -> tuple[float, float] | None
     if decision.verdict in ("consistent", "parameters"):
         return None
     shooting = evidence.calibration.shooting
-    return event(evidence.shown(shooting), evidence.shown_fit(shooting, evidence.calibration.nominal))
+    fits = (evidence.calibration.nominal, decision.winner.fit)
+    return event(evidence.shown(shooting), *(evidence.shown_fit(shooting, result) for result in fits))
 
 
 def polish(evidence: Evidence, winner: Entry) -> Fit:

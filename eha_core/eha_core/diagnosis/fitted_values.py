@@ -19,6 +19,7 @@ from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.per_recording import base_name, is_one_of
 from eha_core.identification.profile import Ends
+from eha_core.parameter import Parameter
 from eha_core.plant import Composition
 from eha_core.quantities import Quantity
 
@@ -104,16 +105,32 @@ def wald(result: Fit, effect: Effect) -> float:
 
 def _statement(effect: Effect, values: Mapping[str, FittedValue]) -> str:
     """The effect in words, with no more of its values than the recording tells."""
-    if all(value.interval is None for value in values.values()):
+    unsure = [row for row in effect.parameters if _is_unsure(values[row.name], row)]
+    if len(unsure) == len(effect.parameters):
+        unsure = []  # what is known of them together is said elsewhere
+    if not unsure and all(value.interval is None for value in values.values()):
         return effect.describe({name: value.value for name, value in values.items()})
     first = values[effect.parameters[0].name]
     opposite = bool(effect.opposite) and first.value < 0.0
     shown = {name: _bounded(value) for name, value in values.items()}
+    shown |= {row.name: _most(values[row.name], row) for row in unsure}
     if opposite:
         low, high = first.interval or (first.value, first.value)
         magnitude = replace(first, value=-first.value, interval=(_negative(high), _negative(low)))
         shown[effect.parameters[0].name] = _bounded(magnitude)
     return (effect.opposite if opposite else effect.statement).format(**shown)
+
+
+def _is_unsure(value: FittedValue, row: Parameter) -> bool:
+    """Whether a value that was fitted may as well be that which leaves it out."""
+    return value.interval is None and abs(value.value - row.nominal) < IDENTIFIED * value.std < float("inf")
+
+
+def _most(value: FittedValue, row: Parameter) -> Quantity:
+    """The largest size that a value may have; of one that no size leaves out, nothing."""
+    if row.nominal != 0.0:
+        return Quantity(float("nan"), value.unit, "a value that is ")
+    return Quantity(abs(value.value) + IDENTIFIED * value.std, value.unit, "at most ")
 
 
 def _negative(value: float | None) -> float | None:

@@ -28,6 +28,8 @@ ORDER = 4
 """Of the differences that show noise and not motion."""
 RARE, FEW = 0.005, 16
 """Share of a channel's changes, and so many of them at least, that may be a fault's and no usual ones."""
+TOGETHER = 0.05
+"""s between two samples of one fault up to which what lies between them is taken as a part of it."""
 FALSE_ALARMS = 1e-6
 """Probability with which a check may find a fault in a sound channel."""
 
@@ -135,7 +137,12 @@ class Signal:
         """A change from one sample to the next that is far larger than noise and the usual motion."""
         rare = max(RARE, FEW / max(len(self.steps), 1))
         usual = float(np.quantile(np.abs(self.steps), max(0.0, 1.0 - rare))) if len(self.steps) else 0.0
-        return max(3.0 * usual, 12.0 * self.noise, 5.0 * self.step)
+        return max(3.0 * usual, self.visible)
+
+    @cached_property
+    def visible(self) -> float:
+        """A change from one sample to the next that is more than noise and a level or two."""
+        return max(12.0 * self.noise, 5.0 * self.step)
 
     @cached_property
     def extent(self) -> float:
@@ -170,3 +177,14 @@ def covered(flags: Flags) -> list[tuple[int, int]]:
     """The runs of set flags, as first and last place."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return [(int(first), int(end) - 1) for first, end in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def joined(signal: Signal, flags: Flags) -> list[tuple[int, int]]:
+    """The runs of set flags as first and last place, those that only noise parts as one."""
+    spans: list[tuple[int, int]] = []
+    for first, last in covered(flags):
+        if spans and signal.time[first] - signal.time[spans[-1][1]] < TOGETHER:
+            spans[-1] = (spans[-1][0], last)
+        else:
+            spans.append((first, last))
+    return spans

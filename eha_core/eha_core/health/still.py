@@ -2,7 +2,7 @@
 
 The means of blocks of a position at rest scatter as white noise of the samples says, within a factor of two in power:
 over 20 blocks and more that is one sound recording in a thousand whose piston moves by as little as its noise, and none
-whose motion shows. A small command is no fault: a valve's overlap and the seals' stiction may take all of it, and that
+whose motion shows. A small command is no fault: a valve's overlap and hysteresis may take all of it, and that
 is what such a recording tells.
 """
 
@@ -21,9 +21,9 @@ SECONDS, FEWEST = 0.1, 20
 """A block's length and how many there are at least."""
 MOTION = 2.0
 """Power of the means over that of noise from which on there is motion."""
-TAKEN = 0.024
-"""Share of the rated command, from its lowest value to its highest, that overlap and stiction may take (assumed: 1 % of
-it either way, and a fifth more, as for a command that does not show in the motion)."""
+TAKEN = 0.05
+"""Share of the rated command, from its lowest value to its highest, that a sound valve may take (assumed: 1 % of
+overlap either way and 3 % of hysteresis, which servo valves' data sheets allow)."""
 
 
 def still(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> Sequence[Fault]:

@@ -9,6 +9,7 @@ from importlib import import_module
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, FittedValue, NamedEffect
 from eha_core.effects import SITES, effects
 from eha_core.quantities import bounds, quantity, within
+from eha_core.report.health import faults_told
 from eha_core.report.stage import SURE
 from eha_core.report.wording import (
     VERDICT_TITLES,
@@ -119,12 +120,14 @@ def effects_listed(diagnosis: Diagnosis) -> str:
 
 
 def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """What casts doubt on everything below it: data taken although they cannot be right, or a damaged file."""
+    """What everything below it is to be read by: data taken although they cannot be right, a damaged file, holes and
+    faults of channels."""
     doubts = [remark for remark in diagnosis.remarks if "warning: " in remark]
     # of several recordings, a remark begins with the path of its own
     shown = [sentence(remark) if remark.startswith("warning") else f"{remark}." for remark in doubts]
     damaged = f"Warning: the file is damaged, and this rests on what could be read: {diagnosis.damaged}."
-    return (*shown, damaged) if diagnosis.damaged else tuple(shown)
+    faults = (sentence(line) for line in faults_told(diagnosis))
+    return (*shown, *([damaged] if diagnosis.damaged else ()), *faults)
 
 
 def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.health import in_words
+from eha_core.health import Fault, in_words
 from eha_core.identification.numbers import Array
 from eha_core.report.picture import Spans
 from eha_core.report.series import pieces, thinned
@@ -23,14 +23,15 @@ def faults_told(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def excluded(diagnosis: Diagnosis, name: str) -> Intervals:
-    """The spans [s] in which a channel of the recording that is drawn was excluded, or what drove the plant."""
+    """The spans [s] in which a channel of the recording that is drawn was excluded or has a hole, or in which the
+    command was lost."""
     paths = [recording.path for recording in diagnosis.together]
     drawn = paths.index(diagnosis.path) + 1 if diagnosis.path in paths else 1
     compared = diagnosis.pictures.after
     spans = sorted(
         fault.span
         for number, fault in diagnosis.health
-        if number == drawn and fault.excludes and (fault.channel == name or fault.channel not in compared)
+        if number == drawn and _is_missing(fault) and (fault.channel == name or fault.channel not in compared)
     )
     joined: list[tuple[float, float]] = []
     for start, end in spans:
@@ -41,9 +42,13 @@ def excluded(diagnosis: Diagnosis, name: str) -> Intervals:
     return tuple(joined)
 
 
+def _is_missing(fault: Fault) -> bool:
+    return fault.excludes or fault.fault == "hole"
+
+
 def shaded(spans: Intervals) -> tuple[Spans, ...]:
     """The spans as marks of a panel, if there are any."""
-    return (Spans(spans, "excluded: a fault of the recording"),) if spans else ()
+    return (Spans(spans, "excluded: a hole or a fault of the recording"),) if spans else ()
 
 
 def drawn_line(time: Array, values: Array, spans: Intervals, most: int) -> tuple[Array, Array]:

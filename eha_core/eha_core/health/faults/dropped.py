@@ -2,7 +2,8 @@
 
 Found where the value leaps away and back, and is one and the same to the last digit meanwhile; or leaps away and stays
 so to the end. The piston's position cannot leap at all, and a pressure that leaps is not constant afterwards: neither
-happens in a sound channel. A command that is made of steps is not looked at.
+happens in a sound channel. Of a command that is made of steps, which may leap, a fill value is one that lies beyond all
+others by more than they span, more than once, and from which it returns at once to where it was.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.health.fault import Fault, Found
+from eha_core.health.noise import Integers
 from eha_core.health.signal import Signal
 from eha_core.recording.recording import FloatArray
 
@@ -23,13 +25,17 @@ LONGEST = 0.25
 """Share of the channel that may be filled: more, and it is the rest that is wrong."""
 OF_STEPS = 0.2
 """Share of a command's changes that are none, from which on it is made of steps."""
+OF_SPAN = 0.25
+"""Of what a command of steps spans that it may have moved on by meanwhile (assumed)."""
+AT_ONCE = 0.1
+"""s that a command of steps may be at a fill value; a pulse of a test takes longer (assumed)."""
 
 
 def find(signal: Signal) -> Found | None:
     """The runs of a fill value."""
     steps = np.abs(signal.steps)
     if signal.is_command and np.mean(steps == 0.0) > OF_STEPS:
-        return None
+        return _of_steps(signal)
     starts, lengths = signal.runs
     last = len(signal.values) - 1
     ends = starts + lengths - 1
@@ -47,9 +53,32 @@ def find(signal: Signal) -> Found | None:
     chosen |= begins & at_the_end
     if not chosen.any():
         return None
+    return _filled(signal, starts[chosen], ends[chosen])
+
+
+def _of_steps(signal: Signal) -> Found | None:
+    """The runs of a fill value in a command of steps."""
+    starts, lengths = signal.runs
+    ends = starts + lengths - 1
+    for value in (np.min(signal.values), np.max(signal.values)):
+        at = signal.values == value
+        others = signal.values[~at]
+        span = float(np.ptp(others)) if len(others) else 0.0
+        if not 0.0 < span < float(np.min(np.abs(others - value))):
+            continue
+        chosen = (signal.values[starts] == value) & (starts > 0) & (ends < len(at) - 1)
+        if np.sum(chosen) < 2 or np.max(lengths[chosen]) * signal.period > AT_ONCE:
+            continue
+        moved = np.abs(signal.values[ends[chosen] + 1] - signal.values[starts[chosen] - 1])
+        if np.median(moved) < OF_SPAN * span:
+            return _filled(signal, starts[chosen], ends[chosen])
+    return None
+
+
+def _filled(signal: Signal, starts: Integers, ends: Integers) -> Found:
     here = np.zeros(len(signal.values), dtype=np.bool_)
     faults = []
-    for first, final in zip(starts[chosen], ends[chosen], strict=True):
+    for first, final in zip(starts, ends, strict=True):
         here[first : final + 1] = True
         faults.append(
             Fault(

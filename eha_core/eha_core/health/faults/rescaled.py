@@ -16,8 +16,8 @@ from eha_core.recording.recording import FloatArray
 
 APART = 2.0
 """Times the noise of one side that the other's must be."""
-WORTH_A_LOOK = 1.25
-"""The same in the geometric mean, below which no split is looked at closer."""
+SMALLEST = 1e-6
+"""Of the largest block's noise that any block has at least: more than a unit makes of it, and not nothing."""
 CLEAR = 1.2
 """Times the larger quarter of one side's blocks that the smaller quarter of the other's must be."""
 FEWEST = 4
@@ -49,20 +49,23 @@ def find(signal: Signal) -> Found | None:
 
 
 def _split(sizes: FloatArray) -> tuple[int, float]:
-    """Before which block the noise becomes another, and how many times as large or as small; 0 where it does not."""
-    best, times = 0, APART
-    logarithms = np.log(np.maximum(sizes, 1e-300))
-    before = np.cumsum(logarithms)[:-1] / np.arange(1, len(sizes))
-    after = np.cumsum(logarithms[::-1])[:-1][::-1] / np.arange(len(sizes) - 1, 0, -1)
-    if not len(before) or np.max(np.abs(before - after)) < np.log(WORTH_A_LOOK):
-        return best, times
-    for split in range(FEWEST, len(sizes) - FEWEST + 1):
-        sides = (sizes[:split], sizes[split:])
-        low, high = sides if np.median(sides[0]) < np.median(sides[1]) else sides[::-1]
-        ratio = float(np.median(high)) / max(float(np.median(low)), 1e-300)
-        if ratio > times and float(np.quantile(high, 0.25)) > CLEAR * float(np.quantile(low, 0.75)):
-            best, times = split, ratio
-    return best, times
+    """Before which block the noise becomes another, and how many times as large or as small; 0 where it does not.
+
+    The split is where the logarithms' means before and after explain most of their scatter.
+    """
+    logarithms = np.log(np.maximum(sizes, SMALLEST * float(np.max(sizes))))
+    count = np.arange(1, len(sizes))
+    before = np.cumsum(logarithms)[:-1] / count
+    after = np.cumsum(logarithms[::-1])[:-1][::-1] / (len(sizes) - count)
+    explained = count * (len(sizes) - count) * (before - after) ** 2
+    split = FEWEST + int(np.argmax(explained[FEWEST - 1 : 1 - FEWEST])) if len(sizes) >= 2 * FEWEST else 0
+    if not split:
+        return 0, 1.0
+    sides = (sizes[:split], sizes[split:])
+    low, high = sides if np.median(sides[0]) < np.median(sides[1]) else sides[::-1]
+    times = float(np.median(high)) / max(float(np.median(low)), 1e-300)
+    is_clear = float(np.quantile(high, 0.25)) > CLEAR * float(np.quantile(low, 0.75))
+    return (split, times) if times > APART and is_clear else (0, times)
 
 
 def _is_white(values: FloatArray) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 
 from eha_core.health.fault import Fault, Found
 from eha_core.health.noise import Flags
-from eha_core.health.signal import Signal, covered
+from eha_core.health.signal import Signal, covered, joined
 
 IN_A_ROW = 3
 """Samples of the extreme value in a row, once at least."""
@@ -18,8 +18,6 @@ OFTEN = 10
 """Samples of the extreme value."""
 MORE = 3.0
 """Times as many as of the next value that occurs."""
-TOGETHER = 0.05
-"""s between two samples at the range's end up to which what lies between them is taken as cut off, too."""
 
 
 def find(signal: Signal) -> Found | None:
@@ -32,7 +30,7 @@ def find(signal: Signal) -> Found | None:
         at = signal.values == end
         if not _is_cut_off(signal, at, end):
             continue
-        for first, last in _joined(signal, at):
+        for first, last in joined(signal, at):
             here[first : last + 1] = True
             faults.append(
                 Fault(
@@ -68,14 +66,3 @@ def _is_clipped(signal: Signal, runs: list[tuple[int, int]]) -> bool:
         outside[last] for _, last in runs if last < len(outside)
     ]
     return bool(np.median(edges) > 0.1 * usual)
-
-
-def _joined(signal: Signal, at: Flags) -> list[tuple[int, int]]:
-    """Runs at the range's end, those that only noise parts as one."""
-    spans: list[tuple[int, int]] = []
-    for first, last in covered(at):
-        if spans and signal.time[first] - signal.time[spans[-1][1]] < TOGETHER:
-            spans[-1] = (spans[-1][0], last)
-        else:
-            spans.append((first, last))
-    return spans

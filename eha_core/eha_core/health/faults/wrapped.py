@@ -1,7 +1,8 @@
 """A position that wraps: a counter that overflows leaps by its whole range, and goes on as before.
 
-All its leaps are of one size, and with them undone it has none. The samples after the leaps are not lost for good, but
-which of the turns is the true one the recording does not say; the shorter parts are excluded.
+All its leaps are of one size, and far larger than any other change; noise may make many of them where the piston passes
+the end of the counter slowly. The samples after the leaps are not lost for good, but which of the turns is the true one
+the recording does not say; the shorter parts are excluded.
 """
 
 from __future__ import annotations
@@ -9,34 +10,53 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.health.fault import Fault, Found
-from eha_core.health.faults.jump import leaps_of
-from eha_core.health.signal import Signal
+from eha_core.health.faults.jump import ALONE, AT_AN_EDGE
+from eha_core.health.signal import TOGETHER, Signal, joined
+from eha_core.recording.recording import FloatArray
 
 FEWEST = 2
 """Leaps of one size."""
 ALIKE = 0.2
 """Spread of their sizes over their mean: the piston moves on within a sample."""
+STAYS = 10
+"""Samples in a row on another turn, once at least; a lone one is a spike."""
 
 
 def find(signal: Signal) -> Found | None:
     """The parts on another turn than most."""
-    leaps = leaps_of(signal)
+    if signal.channel.unit != "m":
+        return None
+    steps = _steps(signal)
+    is_leap = np.abs(steps) > 0.5 * np.max(np.abs(steps), initial=0.0)
+    leaps, others = np.flatnonzero(is_leap), np.abs(steps[~is_leap])
     if len(leaps) < FEWEST:
         return None
-    sizes = signal.steps[leaps]
+    sizes = steps[leaps]
     modulus = float(np.mean(np.abs(sizes)))
     if np.max(np.abs(np.abs(sizes) - modulus)) > ALIKE * modulus or np.ptp(signal.values) > 1.2 * modulus:
+        return None
+    if np.max(others, initial=0.0) > ALONE * modulus or modulus < signal.visible:
         return None
     turns = np.concatenate([[0], np.cumsum(np.sign(sizes))])
     parts = np.diff(np.concatenate([[0], leaps + 1, [len(signal.values)]]))
     most = max(set(turns.tolist()), key=lambda turn: int(parts[turns == turn].sum()))
-    here = np.repeat(turns != most, parts)
-    edges = np.concatenate([[0], leaps + 1, [len(signal.values)]])
-    faults = [
-        Fault(
-            signal.name, "wrapped", float(signal.time[edges[place]]), float(signal.time[edges[place + 1] - 1]),
-            f"wraps by {modulus:.4g} {signal.channel.unit}", "give the counter more bits, or unwrap the channel",
-        )
-        for place in np.flatnonzero(turns != most)
-    ]  # fmt: skip
+    if np.max(parts[turns != most]) < STAYS:
+        return None
+    here = np.zeros(len(signal.values), dtype=np.bool_)
+    faults = []
+    for first, last in joined(signal, np.repeat(turns != most, parts)):
+        here[first : last + 1] = True
+        faults.append(
+            Fault(
+                signal.name, "wrapped", float(signal.time[first]), float(signal.time[last]),
+                f"wraps by {modulus:.4g} {signal.channel.unit}", "give the counter more bits, or unwrap the channel",
+            )
+        )  # fmt: skip
     return Found(faults, signal.lost(here))
+
+
+def _steps(signal: Signal) -> FloatArray:
+    """The change from each sample to the next, also where some samples are missing between the two."""
+    steps = np.where(np.diff(signal.time) < max(2.5 * signal.period, TOGETHER), np.diff(signal.values), 0.0)
+    steps[:AT_AN_EDGE] = steps[-AT_AN_EDGE:] = 0.0
+    return steps
