@@ -29,8 +29,8 @@ def test_an_effect_that_acts_for_a_while_is_an_option_with_its_interval():
     found = [values[f"constant_load.{name}"] for name in limits]
     assert found == pytest.approx(acts, abs=2.0 * WINDOW)
     assert values["constant_load.force"] == pytest.approx(100.0, rel=0.2)
-    # and it is the best single effect
-    (best,) = best_sets(model, 1)[1][0].options
+    # and it is the best set, though its interval counts as a member more
+    (best,) = best_sets(model, 2)[2][0].options
     assert best.member == load.member
 
 
@@ -80,4 +80,4 @@ def test_spans_keep_to_their_recordings_and_are_few():
     spans = intervals._spans([range(3), range(3, 703), range(703, 2003)])
     assert {0, 3, 703, 2003} <= set(spans.tolist())
     assert len(spans) - 1 <= intervals.MOST_SPANS + 1
-    assert np.max(np.diff(spans)) <= 21
+    assert np.max(np.diff(spans)) <= 1.05 * 2003 / intervals.MOST_SPANS
