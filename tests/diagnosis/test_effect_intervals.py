@@ -80,4 +80,4 @@ def test_spans_keep_to_their_recordings_and_are_few():
     spans = intervals._spans([range(3), range(3, 703), range(703, 2003)])
     assert {0, 3, 703, 2003} <= set(spans.tolist())
     assert len(spans) - 1 <= intervals.MOST_SPANS + 1
-    assert np.max(np.diff(spans)) <= 1.05 * 2003 / intervals.MOST_SPANS
+    assert np.max(np.diff(spans)) <= 21

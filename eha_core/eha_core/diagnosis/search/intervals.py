@@ -18,9 +18,9 @@ from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.problem import LINK, Linearised, Problem
 from eha_core.identification.shooting import STATE_SIZE
 
-MOST_SPANS = 50
+MOST_SPANS = 100
 """Where there are more windows, neighbours are taken together to ask since when and until when an effect acts, for the
-answer has a number for each pair. A fit of the instants follows, so nothing hangs on a fiftieth of the record."""
+answer has a number for each pair. A fit of the instants follows, so nothing hangs on a hundredth of the record."""
 
 
 @dataclass(frozen=True)
