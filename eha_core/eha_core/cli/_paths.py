@@ -40,3 +40,12 @@ def require_file(path: Path, option: str) -> None:
 
 def _closed(path: Path, code: int, option: str) -> EhaError:
     return EhaError(f"{path}: cannot be written ({os.strerror(code)}); choose another {option}")
+
+
+def write_json(path: Path, text: str) -> Path:
+    """Write a document where --json says; EhaError where that is not possible."""
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise EhaError(f"{path}: cannot be written ({error.strerror}); choose another --json") from error
+    return path

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eha_core.cli._paths import require_file, require_folder, require_recordings
+from eha_core.cli._paths import require_recordings
+from eha_core.cli._study import check_outputs, present
 from eha_core.errors import EhaError, ParameterError
 
 # what simulates or plots is imported where it is used: the help and a refusal need none of it
@@ -59,17 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
     from eha_core.report.budget import account, as_json, write_budget
 
     budget = error_budget(rig, task)
-    if arguments.json == "-":
-        print(as_json(budget), end="")
-        return 0
-    written: tuple[Path, ...] = ()
-    if arguments.json is not None:
-        written = (_write(Path(arguments.json), as_json(budget)),)
-    if arguments.json is None or arguments.out is not None:
-        written += write_budget(budget, arguments.out or _FOLDER)
-    print(account(budget))
-    print(f"\nWritten: {', '.join(map(str, written))}")
-    return 0
+    return present(arguments, _FOLDER, account(budget), as_json(budget), lambda folder: write_budget(budget, folder))
 
 
 def _check(arguments: argparse.Namespace) -> None:
@@ -82,10 +73,7 @@ def _check(arguments: argparse.Namespace) -> None:
         require_recordings([arguments.source])
         if arguments.nominal and arguments.source.suffix == ".json":
             raise EhaError(f"--nominal {arguments.nominal}: {arguments.source} has the model already; leave it out")
-    if arguments.json is None or arguments.out is not None:
-        require_folder(arguments.out or _FOLDER, "--out")
-    if arguments.json not in (None, "-"):
-        require_file(Path(arguments.json), "--json")
+    check_outputs(arguments, _FOLDER)
 
 
 def _task(arguments: argparse.Namespace) -> Task:
@@ -117,11 +105,3 @@ def _changes(words: list[str]) -> Mapping[str, float]:
         except ValueError:
             raise ParameterError(f"--set {word!r} is no NAME=VALUE; write coulomb_friction.force=250") from None
     return found
-
-
-def _write(path: Path, text: str) -> Path:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise EhaError(f"{path}: cannot be written ({error.strerror}); choose another --json") from error
-    return path

@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eha_core.cli._paths import require_file, require_folder
-from eha_core.errors import EhaError
+from eha_core.cli._study import check_outputs, present
 
 # what simulates or plots is imported where it is used: the help and a refusal need none of it
 if TYPE_CHECKING:
@@ -43,24 +42,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb."""
-    if arguments.json is None or arguments.out is not None:
-        require_folder(arguments.out or _FOLDER, "--out")
-    if arguments.json not in (None, "-"):
-        require_file(Path(arguments.json), "--json")
-    certificate = _certificate(arguments)
+    check_outputs(arguments, _FOLDER)
+    made = _certificate(arguments)
     from eha_core.report.detectability import account, as_json, write_certificate
 
-    if arguments.json == "-":
-        print(as_json(certificate), end="")
-        return 0
-    written: tuple[Path, ...] = ()
-    if arguments.json is not None:
-        written = (_write(Path(arguments.json), as_json(certificate)),)
-    if arguments.json is None or arguments.out is not None:
-        written += write_certificate(certificate, arguments.out or _FOLDER)
-    print(account(certificate))
-    print(f"\nWritten: {', '.join(map(str, written))}")
-    return 0
+    return present(arguments, _FOLDER, account(made), as_json(made), lambda folder: write_certificate(made, folder))
 
 
 def _certificate(arguments: argparse.Namespace) -> Certificate:
@@ -73,11 +59,3 @@ def _certificate(arguments: argparse.Namespace) -> Certificate:
         (times, voltages), arguments.nominal, duration=duration, channels=channels, noise=arguments.noise,
         rate=arguments.rate,
     )  # fmt: skip
-
-
-def _write(path: Path, text: str) -> Path:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise EhaError(f"{path}: cannot be written ({error.strerror}); choose another --json") from error
-    return path

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eha_core.cli._paths import require_file, require_folder, require_recordings
+from eha_core.cli._paths import require_file, require_folder, require_recordings, write_json
 from eha_core.cli._progress import Progress
 from eha_core.errors import EhaError
 
@@ -141,7 +141,7 @@ def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Prog
         print(as_json(diagnosis))
     else:
         if arguments.json is not None:
-            written = (*written, _write(Path(arguments.json), as_json(diagnosis)))
+            written = (*written, write_json(Path(arguments.json), as_json(diagnosis)))
         print(account(diagnosis, written))
 
 
@@ -216,7 +216,7 @@ def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Record
         print(as_json(found.diagnosis))
     else:
         if arguments.json is not None:
-            written = (*written, _write(Path(arguments.json), as_json(found.diagnosis)))
+            written = (*written, write_json(Path(arguments.json), as_json(found.diagnosis)))
         print(account(found.diagnosis, written))
     return DAMAGED if any(recording.damaged for recording in recordings) else 0
 
@@ -278,11 +278,3 @@ def diagnose_alone(
         return path, UNUSABLE, str(error)
     summary = " ".join([diagnosis.summary, *(long_record.statement for long_record in diagnosis.long_records)])
     return path, DAMAGED if record.damaged else 0, summary
-
-
-def _write(path: Path, text: str) -> Path:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise EhaError(f"{path}: cannot be written ({error.strerror}); choose another --json") from error
-    return path

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from eha_core.error_budget import Budget, Share
 from eha_core.error_budget.rig import PARAMETERS
 from eha_core.error_budget.shares import Figure as Told
-from eha_core.errors import EhaError
 from eha_core.quantities import Scale, quantity, scale_for, short
+from eha_core.report.study_files import write_study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -110,16 +110,7 @@ def write_budget(budget: Budget, folder: Path) -> tuple[Path, ...]:
 
     Raises EhaError where the folder cannot be written to.
     """
-    paths = folder / "budget.json", folder / "budget.png"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        paths[0].write_text(as_json(budget), encoding="utf-8")
-        waterfall(budget).savefig(paths[1], dpi=120)
-    except OSError as error:
-        raise EhaError(
-            f"{error.filename or folder}: cannot be written ({error.strerror}); choose another --out"
-        ) from error
-    return paths
+    return write_study(folder, "budget", as_json(budget), waterfall(budget))
 
 
 def waterfall(budget: Budget) -> Figure:

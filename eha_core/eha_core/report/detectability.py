@@ -9,8 +9,8 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from eha_core.detectability import NOISE, Certificate, Detectable, Noticeable
-from eha_core.errors import EhaError
 from eha_core.quantities import quantity, short
+from eha_core.report.study_files import write_study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -120,16 +120,7 @@ def write_certificate(certificate: Certificate, folder: Path) -> tuple[Path, ...
 
     Raises EhaError where the folder cannot be written to.
     """
-    paths = folder / "detect.json", folder / "detect.png"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        paths[0].write_text(as_json(certificate), encoding="utf-8")
-        picture(certificate).savefig(paths[1], dpi=120)
-    except OSError as error:
-        raise EhaError(
-            f"{error.filename or folder}: cannot be written ({error.strerror}); choose another --out"
-        ) from error
-    return paths
+    return write_study(folder, "detect", as_json(certificate), picture(certificate))
 
 
 def picture(certificate: Certificate) -> Figure:

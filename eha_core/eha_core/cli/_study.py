@@ -1,0 +1,34 @@
+"""What the verbs of studies share: a table on the terminal, a document and a picture in a folder."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+
+from eha_core.cli._paths import require_file, require_folder, write_json
+
+
+def check_outputs(arguments: argparse.Namespace, folder: Path) -> None:
+    """Raise EhaError where --out (by default `folder`) or --json cannot be written to, before any work is done."""
+    if arguments.json is None or arguments.out is not None:
+        require_folder(arguments.out or folder, "--out")
+    if arguments.json not in (None, "-"):
+        require_file(Path(arguments.json), "--json")
+
+
+def present(
+    arguments: argparse.Namespace, folder: Path, table: str, text: str, write: Callable[[Path], tuple[Path, ...]]
+) -> int:
+    """Print the table, or the document `text` where --json is -, and `write` what --json and --out ask for."""
+    if arguments.json == "-":
+        print(text, end="")
+        return 0
+    written: tuple[Path, ...] = ()
+    if arguments.json is not None:
+        written = (write_json(Path(arguments.json), text),)
+    if arguments.json is None or arguments.out is not None:
+        written += write(arguments.out or folder)
+    print(table)
+    print(f"\nWritten: {', '.join(map(str, written))}")
+    return 0
