@@ -17,7 +17,7 @@ from eha_core.recording import Recording, read_recording
 
 if TYPE_CHECKING:
     from eha_core.detectability import Certificate
-    from eha_core.error_budget import Budget, Rig
+    from eha_core.error_budget import Budget, Rig, Task
     from eha_core.report.results import Results
     from eha_core.signals import Signal
 
@@ -114,16 +114,25 @@ def budget(
         EhaError: nothing was found that could be repaired, or too much for every subset to be simulated.
         ParameterError: the task or the rig's values do not fit.
     """
-    from eha_core.error_budget import Task, error_budget
+    from eha_core.error_budget import error_budget
+
+    task = task_of(reference, controller, duration, skip, rate, command_limit)
+    return error_budget(rig_of(found, nominal), task)
+
+
+def task_of(
+    reference: str | Signal, controller: str, duration: float | None, skip: float | None, rate: float,
+    command_limit: float,
+) -> Task:  # fmt: skip
+    """The motion that `budget` counts the error of, with its defaults."""
+    from eha_core.error_budget import Task
     from eha_core.signals import from_text
 
     signal = from_text(reference) if isinstance(reference, str) else reference
-    defaults = (4.0, 1.0) if controller else (10.0, 0.0)
-    task = Task(
-        signal, controller, defaults[0] if duration is None else duration, defaults[1] if skip is None else skip, rate,
-        command_limit,
-    )  # fmt: skip
-    return error_budget(rig_of(found, nominal), task)
+    usual = (4.0, 1.0) if controller else (10.0, 0.0)
+    length, uncounted = (given if given is not None else default
+                         for given, default in zip((duration, skip), usual, strict=True))  # fmt: skip
+    return Task(signal, controller, length, uncounted, rate, command_limit)
 
 
 def rig_of(

@@ -77,15 +77,13 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _task(arguments: argparse.Namespace) -> Task:
-    from eha_core.error_budget import Task
-    from eha_core.signals import from_text
+    from eha_core.studies import task_of
 
     follows = arguments.command is None
-    duration = arguments.duration if arguments.duration is not None else (4.0 if follows else 10.0)
-    skip = arguments.skip if arguments.skip is not None else (1.0 if follows else 0.0)
-    signal = from_text(arguments.reference if follows else arguments.command)
-    controller = arguments.controller if follows else ""
-    return Task(signal, controller, duration, skip, arguments.rate, arguments.command_limit)
+    return task_of(
+        arguments.reference if follows else arguments.command, arguments.controller if follows else "",
+        arguments.duration, arguments.skip, arguments.rate, arguments.command_limit,
+    )  # fmt: skip
 
 
 def _rig(arguments: argparse.Namespace) -> Rig:
