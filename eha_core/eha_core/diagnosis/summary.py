@@ -78,11 +78,11 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
 
 def _listed(effects: tuple[NamedEffect, ...]) -> str:
     """What the effects state, with the probability of each name that is less than sure."""
-    doubts = (f" (probability {100.0 * effect.probability:.0f} %)" for effect in effects)
-    return "; and ".join(
-        effect.statement + (doubt if effect.probability < CERTAINTY else "")
-        for effect, doubt in zip(effects, doubts, strict=True)
-    )
+    return "; and ".join(f"{effect.statement}{_doubt(effect)}" for effect in effects)
+
+
+def _doubt(effect: NamedEffect) -> str:
+    return f" (probability {100.0 * effect.probability:.0f} %)" if effect.probability < CERTAINTY else ""
 
 
 def kind_alone(decision: Decision) -> str:
