@@ -75,7 +75,7 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
     decades = range(int(np.ceil(np.log10(max(float(behind.max()), 10.0 * TIE)))) + 1)
     ticks = tuple((exponent + np.log10(STUB), _decade(exponent)) for exponent in decades)
     panel = Panel(
-        (Upright(float(np.log10(TIE * STUB)), "remarks apart"), rungs),
+        (Upright(float(np.log10(TIE * STUB)), "distinguished"), rungs),
         "evidence behind the best (log scale)",
         height=50 + 30 * len(ranked),
         x_range=(0.0, 1.45 * (decades[-1] + np.log10(STUB))),
