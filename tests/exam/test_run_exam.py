@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import json
+import os
+import subprocess
 import sys
 
 import pytest
@@ -135,6 +138,25 @@ def test_a_tool_is_charged_for_the_processor_and_not_for_waiting() -> None:
     waits = "import time; time.sleep(3.0)"
     works = "import time\nwhile time.process_time() < 1.0: pass"
     assert run_tool([sys.executable, "-c", waits]).seconds < 1.0 < run_tool([sys.executable, "-c", works]).seconds
+
+
+def test_a_tool_is_charged_for_what_it_starts_and_not_for_what_ends_meanwhile() -> None:
+    works = "import time\nwhile time.process_time() < 2.0: pass"
+    starts = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {works!r}])"
+    assert run_tool([sys.executable, "-c", starts]).seconds > 2.0
+    forgotten = subprocess.Popen([sys.executable, "-c", works])
+    number = forgotten.pid
+    with pytest.warns(ResourceWarning, match="is still running"):
+        del forgotten
+        gc.collect()
+    os.waitid(os.P_PID, number, os.WEXITED | os.WNOWAIT)
+    assert run_tool([sys.executable, "-c", "pass"]).seconds < 1.0
+
+
+def test_a_tool_that_takes_too_long_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("eha_core.exam.run_exam.LONGEST", 1.0)
+    answer = run_tool([sys.executable, "-c", "import time; time.sleep(600.0)"])
+    assert (answer.status, answer.message) == (-1, "took longer than 1 s")
 
 
 @pytest.mark.parametrize("sent", ["SIGTERM", "SIGINT", "SIGHUP"])

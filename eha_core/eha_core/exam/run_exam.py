@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import resource
 import shlex
 import signal
 import subprocess
@@ -18,6 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import count, takewhile
 from pathlib import Path
+from threading import Event, Timer
 from typing import Any
 
 from eha_core.errors import EhaError
@@ -200,42 +200,54 @@ def diagnose_recording(recordings: Sequence[str], answers: str, command: str) ->
 def run_tool(command: Sequence[str]) -> Answer:
     """Run a tool in an empty folder; the word {answer} becomes the path where it is to write its diagnosis.
 
-    Its seconds are of processor time: what else runs on the machine is no part of them.
+    Its seconds are the processor time of the tool and of what it started and waited for: what else runs on the machine,
+    or ends meanwhile, is no part of them.
     """
     with tempfile.TemporaryDirectory() as scratch:
         target = Path(scratch) / "diagnosis.json"
         words = [word.replace("{answer}", str(target)) for word in command]
-        before = _processor_time()
-        status, message = _run(words, scratch)
-        seconds = _processor_time() - before
+        status, seconds, message = _run(words, scratch)
         diagnosis = json.loads(target.read_text(encoding="utf-8")) if target.is_file() else None
     return Answer(diagnosis, status, seconds, message)
 
 
-def _processor_time() -> float:
-    """Processor time [s] of all that this process started and saw end."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def _run(words: Sequence[str], folder: str) -> tuple[int, str]:
-    try:
-        ended = subprocess.run(
-            words,
-            cwd=folder,
-            env={**os.environ, **ONE_CORE},
-            capture_output=True,
-            text=True,
-            timeout=LONGEST,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return -1, f"took longer than {LONGEST:g} s"
-    except OSError as error:
-        raise EhaError(f"{words[0]}: cannot be started ({error.strerror}); check the tool's command") from None
-    if -ended.returncode in STOPPED:
+def _run(words: Sequence[str], folder: str) -> tuple[int, float, str]:
+    """Exit status, processor time [s] and the end of what was written to stderr."""
+    environment = {**os.environ, **ONE_CORE}
+    with tempfile.TemporaryFile() as said:
+        try:
+            process = subprocess.Popen(words, cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=said)
+        except OSError as error:
+            raise EhaError(f"{words[0]}: cannot be started ({error.strerror}); check the tool's command") from None
+        overdue, seconds = _wait(process)
+        said.seek(0)
+        message = said.read().decode(errors="replace")[-2000:]
+    if overdue:
+        return -1, seconds, f"took longer than {LONGEST:g} s"
+    if -process.returncode in STOPPED:
         raise EhaError(f"{words[0]}: was stopped from outside; start the exam again, what is done stays done")
-    return ended.returncode, ended.stderr[-2000:]
+    return process.returncode, seconds, message
+
+
+def _wait(process: subprocess.Popen[bytes]) -> tuple[bool, float]:
+    """Whether the process had to be ended for taking too long, and its processor time [s]."""
+    overdue = Event()
+
+    def end() -> None:
+        overdue.set()
+        os.kill(process.pid, signal.SIGKILL)
+
+    limit = Timer(LONGEST, end)
+    limit.start()
+    try:
+        _, ended, used = os.wait4(process.pid, 0)
+    except BaseException:
+        process.kill()
+        raise
+    finally:
+        limit.cancel()
+    process.returncode = os.waitstatus_to_exitcode(ended)
+    return overdue.is_set(), used.ru_utime + used.ru_stime
 
 
 def _write(path: Path, text: str) -> None:
