@@ -19,7 +19,7 @@ from eha_core.diagnosis.search.finish import (
     required_of,
     rivals,
 )
-from eha_core.diagnosis.search.pool import Pool, Trace
+from eha_core.diagnosis.search.pool import Pool, Trace, is_at_noise
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.parameters import nominal_values
 
@@ -178,6 +178,21 @@ def test_a_form_that_contains_the_best_one_comes_as_near_and_does_not_lead():
     rivals(rig.pool, best, rig.columns, lambda _: None)
     again = {tuple(step.effects) for step in rig.pool.trace.steps[fits:]}
     assert not again & {hypothesis.ids for hypothesis in hopeless}
+
+
+def test_a_set_left_at_the_noise_after_few_iterations_is_fitted_on_before_it_is_compared():
+    spring, load = {"spring_stiffness": 2e4}, {"constant_load.force": 0.6}
+    rig = bench(load, spring, duration=12.0)
+    rig.fitted(load)
+    best, offset = rig.set_of("constant_load"), rig.set_of("position_sensor_offset")
+    converge(rig.pool, best)
+    at = rig.pool.found[best]
+    begun = {**at.values, "constant_load.force": 0.0, "position_sensor_offset.offset": -3e-6}
+    left = rig.pool.try_set("left", offset, begun, at.states, 0)
+    assert is_at_noise(left) and left.objective > at.objective + criteria.COMPARED_WITHIN
+    _, compared, _ = rivals(rig.pool, best, [], lambda _: None)
+    assert offset in compared
+    assert rig.pool.found[offset].objective == pytest.approx(at.objective, abs=criteria.TIE)
 
 
 def test_another_form_of_a_law_begins_as_large(rig):

@@ -31,7 +31,7 @@ from eha_core.diagnosis.search.instants import TO_THE_STEP, shift_instants
 from eha_core.diagnosis.search.intervals import in_span
 from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
-from eha_core.identification.fit import Fit, exact, fit
+from eha_core.identification.fit import Ending, Fit, exact, fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name
 
@@ -154,6 +154,9 @@ def rivals(
         for hypothesis, proposal in more.items():
             values, states = beside.start(proposal.options)
             _compare(pool, "simpler form", hypothesis, values, states, at.objective + within, progress)
+    for hypothesis in _near_the_noise(pool, best):
+        progress(f"comparing with {' + '.join(hypothesis.ids)}")
+        pool.go_on("rival", hypothesis, FURTHER, give_up_above=at.objective + within)
     close = [
         hypothesis for hypothesis, result in pool
         if hypothesis != best and result.objective < at.objective + within and hypothesis.members
@@ -167,6 +170,17 @@ def rivals(
         if entry.hypothesis != best and entry.score > ranked[0].score - CONTENDING:
             shift_instants(pool, entry.hypothesis, CONVERGED, TO_THE_STEP)  # as the best set was
     return _ranked(pool, compared)[0].hypothesis, compared, model
+
+
+def _near_the_noise(pool: Pool, best: Hypothesis) -> list[Hypothesis]:
+    """Sets that a few iterations brought to the noise, and that were left there because another came lower by then: how
+    far down they lead, nobody has seen."""
+    found = [
+        (result.objective, hypothesis) for hypothesis, result in pool
+        if hypothesis.members and is_at_noise(result) and result.ending is Ending.ITERATIONS
+        and not set(best.members) <= set(hypothesis.members)
+    ]  # fmt: skip
+    return [hypothesis for _, hypothesis in sorted(found)[:FITTED]]
 
 
 def _ranked(pool: Pool, compared: Sequence[Hypothesis]) -> tuple[Entry, ...]:
