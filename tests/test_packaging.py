@@ -48,6 +48,7 @@ def test_what_is_optional_allows_what_is_tested() -> None:
     assert {name: {one.name for one in ones} for name, ones in optional.items()} == {
         "files": {"h5py", "pyarrow", "openpyxl", "npTDMS", "asammdf"},
         "page": {"starlette", "uvicorn"},
+        "export": {"ziglang"},
     }
     assert all(one.specifier.contains(develop[one.name]) for ones in optional.values() for one in ones)
 

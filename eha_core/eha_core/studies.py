@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eha_core.api import Nominal, diagnose, given_model
-from eha_core.errors import EhaError, ParameterError
+from eha_core.errors import ParameterError
 from eha_core.nominal import nominal_of
+from eha_core.plant.fitted import read_diagnosis
 from eha_core.recording import Recording, read_recording
 
 if TYPE_CHECKING:
@@ -152,17 +152,8 @@ def rig_of(
             raise ParameterError(f"{min(model.unknown)} is unknown, which only a diagnosis takes; give its value")
         return rig_from_changes(found, model.values, model.composition)
     if isinstance(found, (str, Path)) and Path(found).suffix == ".json":
-        return rig_from_document(_loaded(Path(found)), str(found))
+        return rig_from_document(read_diagnosis(found), str(found))
     if not isinstance(found, Results):
         recording = found if isinstance(found, Recording) else read_recording(found, topics)
         found = diagnose(recording, nominal, jobs=jobs)
     return rig_from_document(document(found.diagnosis), found.diagnosis.path)
-
-
-def _loaded(path: Path) -> Any:
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise EhaError(f"{path}: cannot be read ({error.strerror}); give the diagnosis.json of a diagnosis") from error
-    except ValueError as error:
-        raise EhaError(f"{path}: no JSON; give the diagnosis.json that `eha diagnose` writes") from error

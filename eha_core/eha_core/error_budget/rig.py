@@ -13,7 +13,8 @@ from eha_core.diagnosis.hypothesis import neutral
 from eha_core.effects import Effect, effects
 from eha_core.errors import EhaError
 from eha_core.parameters import effect_names
-from eha_core.plant import PAPER, Composition, composition_of
+from eha_core.plant import PAPER, Composition
+from eha_core.plant.fitted import fitted_plant
 from eha_core.plant.plant_file import require_voltage
 from eha_core.quantities import quantity
 
@@ -99,13 +100,8 @@ def rig_from_document(document: Mapping[str, Any], source: str) -> Rig:
 
     Raises EhaError where it is no such document, or it found nothing that departs.
     """
-    if not isinstance(document, Mapping) or document.get("schema") != "eha.diagnosis/1":
-        raise EhaError(f"{source}: no diagnosis; give the diagnosis.json that `eha diagnose` writes, or a recording")
-    if not document.get("fitted_values"):
-        raise EhaError(f"{source}: it has no fitted_values to simulate; diagnose the recording of an actuator again")
-    composition = composition_of(document["plant"])
+    composition, fitted = fitted_plant(document, source)
     require_voltage(composition)
-    fitted = composition.places(composition.nominal_values()) | document["fitted_values"]
     rows = {row["name"]: row for row in document["parameters"] if "@" not in row["name"]}
     modelled = {**fitted, **_all_off(), **{name: row["nominal"] for name, row in rows.items()}}
     leaks = [name for name in LEAKAGES if name in rows and rows[name]["changed"]]

@@ -1,0 +1,134 @@
+/* FMI 2.0 for co-simulation. What a plant of real variables alone has no use for answers with an error. */
+#include "fmu.h"
+
+typedef struct {
+    void (*logger)(void *, const char *, int, const char *, const char *, ...);
+    void *(*allocate)(size_t, size_t);
+    void (*release)(void *);
+    void (*step_finished)(void *, int);
+    void *environment;
+} callbacks;
+
+typedef struct {
+    unit_state unit;
+    callbacks functions;
+    char *name;
+} instance;
+
+static int answer(instance *made, eha_status status) {
+    if (status == EHA_OK) return OK;
+    if (made->functions.logger)
+        made->functions.logger(made->functions.environment, made->name, ERROR, "logStatusError", "%s",
+                               eha_message(status));
+    return ERROR;
+}
+
+EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
+EXPORT const char *fmi2GetVersion(void) { return "2.0"; }
+EXPORT int fmi2SetDebugLogging(instance *made, int on, size_t count, const char *const *categories) { return OK; }
+
+EXPORT instance *fmi2Instantiate(const char *name, int type, const char *guid, const char *resources,
+                                 const callbacks *functions, int visible, int logging) {
+    instance *made;
+    if (type != 1 || !guid || strcmp(guid, FMU_TOKEN) || !(made = calloc(1, sizeof *made))) return 0;
+    if (functions) made->functions = *functions;
+    made->name = name ? strcpy(malloc(strlen(name) + 1), name) : 0;
+    unit_start(&made->unit);
+    return made;
+}
+
+EXPORT void fmi2FreeInstance(instance *made) {
+    if (made) free(made->name);
+    free(made);
+}
+
+EXPORT int fmi2SetupExperiment(instance *made, int with_tolerance, double tolerance, double start, int with_stop,
+                               double stop) {
+    made->unit.start_time = made->unit.time = start;
+    return OK;
+}
+
+EXPORT int fmi2EnterInitializationMode(instance *made) { return OK; }
+
+EXPORT int fmi2ExitInitializationMode(instance *made) {
+    eha_status status = unit_rest(&made->unit);
+    made->unit.running = status == EHA_OK;
+    return answer(made, status);
+}
+
+EXPORT int fmi2Terminate(instance *made) { return OK; }
+
+EXPORT int fmi2Reset(instance *made) {
+    unit_start(&made->unit);
+    return OK;
+}
+
+EXPORT int fmi2GetReal(instance *made, const unsigned *references, size_t count, double *values) {
+    return answer(made, unit_get(&made->unit, references, count, values));
+}
+
+EXPORT int fmi2SetReal(instance *made, const unsigned *references, size_t count, const double *values) {
+    return answer(made, unit_set(&made->unit, references, count, values));
+}
+
+EXPORT int fmi2DoStep(instance *made, double from, double size, int no_earlier_state) {
+    return answer(made, unit_step(&made->unit, from, size));
+}
+
+EXPORT int fmi2GetFMUstate(instance *made, void **state) {
+    if (*state) memcpy(*state, &made->unit, sizeof(unit_state));
+    else *state = unit_copy(&made->unit);
+    return *state ? OK : ERROR;
+}
+
+EXPORT int fmi2SetFMUstate(instance *made, const void *state) {
+    memcpy(&made->unit, state, sizeof(unit_state));
+    return OK;
+}
+
+EXPORT int fmi2FreeFMUstate(instance *made, void **state) {
+    free(*state);
+    *state = 0;
+    return OK;
+}
+
+EXPORT int fmi2SerializedFMUstateSize(instance *made, const void *state, size_t *size) {
+    *size = sizeof(unit_state);
+    return OK;
+}
+
+EXPORT int fmi2SerializeFMUstate(instance *made, const void *state, char *bytes, size_t size) {
+    if (size < sizeof(unit_state)) return ERROR;
+    memcpy(bytes, state, sizeof(unit_state));
+    return OK;
+}
+
+EXPORT int fmi2DeSerializeFMUstate(instance *made, const char *bytes, size_t size, void **state) {
+    if (size != sizeof(unit_state)) return ERROR;
+    *state = unit_copy(bytes);
+    return *state ? OK : ERROR;
+}
+
+/* there are no variables of these types, and a request for none of them is granted */
+#define OTHER_TYPE(NAME) \
+    EXPORT int fmi2Get##NAME(instance *made, const unsigned *references, size_t count, void *values) { \
+        return count ? ERROR : OK; \
+    } \
+    EXPORT int fmi2Set##NAME(instance *made, const unsigned *references, size_t count, const void *values) { \
+        return count ? ERROR : OK; \
+    }
+OTHER_TYPE(Integer)
+OTHER_TYPE(Boolean)
+OTHER_TYPE(String)
+
+#define UNSUPPORTED(NAME) \
+    EXPORT int fmi2##NAME() { return ERROR; }
+UNSUPPORTED(GetDirectionalDerivative)
+UNSUPPORTED(SetRealInputDerivatives)
+UNSUPPORTED(GetRealOutputDerivatives)
+UNSUPPORTED(CancelStep)
+UNSUPPORTED(GetStatus)
+UNSUPPORTED(GetRealStatus)
+UNSUPPORTED(GetIntegerStatus)
+UNSUPPORTED(GetBooleanStatus)
+UNSUPPORTED(GetStringStatus)
