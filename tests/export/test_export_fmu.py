@@ -187,12 +187,22 @@ def test_what_a_communication_step_is_off_does_not_add_up(unit: Unit) -> None:
     assert abs(plant.time - unit.time) <= 0.5e-4
 
 
-@pytest.mark.parametrize("changes", [{"moving_mass": -1.0}, {"moving_mass": float("nan")}, {"initial_position": 1.0},
-                                     {"supply_pressure": 1e6, "return_pressure": 2e6}])  # fmt: skip
-def test_values_that_make_no_plant_are_refused(unit: Unit, changes: dict[str, float]) -> None:
+@pytest.mark.parametrize(
+    "changes, said",
+    [
+        ({"moving_mass": -1.0}, "moving_mass = -1 is out of range"),
+        ({"moving_mass": float("nan")}, "moving_mass = nan is out of range"),
+        ({"initial_position": 1.0}, "initial_position is outside the stroke"),
+        ({"supply_pressure": 1e6, "return_pressure": 2e6}, "supply_pressure must exceed return_pressure"),
+    ],
+)
+def test_values_that_make_no_plant_are_refused_in_a_line(
+    unit: Unit, changes: dict[str, float], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     with pytest.raises(Exception, match="Error|failed"):
         unit.set(**changes)
         unit.begin()
+    assert said in capsys.readouterr().out
 
 
 def test_a_voltage_that_is_no_number_is_refused(unit: Unit) -> None:

@@ -23,7 +23,7 @@ FLAGS = ("-O2", "-w", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-g0"
 def require_compiler() -> None:
     """Raise EhaError where ziglang is not installed."""
     if find_spec("ziglang") is None:
-        raise EhaError("the compiler is missing: pip install ziglang==0.17.1")
+        raise EhaError("the compiler is missing; install it: pip install ziglang")
 
 
 def require_target(target: str) -> None:

@@ -51,6 +51,7 @@ def tables_text(model: ExportedModel) -> str:
     lines += [f"static const int BALANCED = {int(model.composition.cylinder.balanced)};"]
     lines += _table("double START[EHA_VALUES]", (repr(float(places[name])) for name in catalogue()))
     lines += _table("double START_PROPAGATOR[EHA_DYNAMICS]", map(repr, propagator))
+    lines += _table("char *const NAMES[EHA_PARAMETERS]", (f'"{name}"' for name in rows))
     lines += _table("short PLACES[]", (numbers[place] for _, place in parameters))
     lines += _table(
         "struct { double lower, upper; short first, count; } PARAMETERS[EHA_PARAMETERS]",

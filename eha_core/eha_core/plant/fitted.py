@@ -36,7 +36,7 @@ def fitted_plant(document: Mapping[str, Any], source: str) -> FittedPlant:
     """
     if not isinstance(document, Mapping) or document.get("schema") != "eha.diagnosis/1":
         raise EhaError(f"{source}: no diagnosis; give the diagnosis.json that `eha diagnose` writes")
-    if not document.get("fitted_values"):
+    if not document.get("fitted_values") or "plant" not in document:
         raise EhaError(f"{source}: it has no fitted_values to simulate; diagnose the recording of an actuator again")
     composition = composition_of(document["plant"])
     return FittedPlant(composition, composition.places(composition.nominal_values()) | document["fitted_values"])

@@ -156,6 +156,8 @@ double eha_get(const eha_plant *plant, int parameter) {
     return plant->values[PLACES[PARAMETERS[parameter].first]];
 }
 
+const char *eha_name(int parameter) { return parameter < 0 || parameter >= EHA_PARAMETERS ? "" : NAMES[parameter]; }
+
 eha_status eha_advance(eha_plant *plant, double voltage, int64_t steps) {
     double voltages[CHUNK];
     bool active[EHA_EFFECTS];
@@ -188,7 +190,7 @@ eha_status eha_advance(eha_plant *plant, double voltage, int64_t steps) {
 const char *eha_message(eha_status status) {
     static const char *const messages[] = {
         "no error",
-        "a parameter is not finite or beyond its bounds; give a value between its min and max",
+        "a parameter is beyond its bounds, or there is none of that number",
         "supply_pressure must exceed return_pressure; change both together",
         "initial_position is outside the stroke; give at most actuator_displacement",
         "voltage_command is not finite; give volts",

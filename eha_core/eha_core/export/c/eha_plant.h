@@ -45,6 +45,9 @@ eha_status eha_set(eha_plant *plant, int parameter, double value);
 /* The value of a parameter; not a number where there is none of that number. */
 double eha_get(const eha_plant *plant, int parameter);
 
+/* Its name; "" where there is none of that number. */
+const char *eha_name(int parameter);
+
 /* Hold a voltage [V] for that many steps of EHA_STEP_SIZE. */
 eha_status eha_advance(eha_plant *plant, double voltage, int64_t steps);
 

@@ -12,14 +12,13 @@ typedef struct {
 typedef struct {
     unit_state unit;
     callbacks functions;
-    char *name;
+    char *name, line[LINE];
 } instance;
 
-static int answer(instance *made, eha_status status) {
-    if (status == EHA_OK) return OK;
+static int answer(instance *made, const char *wrong) {
+    if (!wrong) return OK;
     if (made->functions.logger)
-        made->functions.logger(made->functions.environment, made->name, ERROR, "logStatusError", "%s",
-                               eha_message(status));
+        made->functions.logger(made->functions.environment, made->name, ERROR, "logStatusError", "%s", wrong);
     return ERROR;
 }
 
@@ -51,9 +50,9 @@ EXPORT int fmi2SetupExperiment(instance *made, int with_tolerance, double tolera
 EXPORT int fmi2EnterInitializationMode(instance *made) { return OK; }
 
 EXPORT int fmi2ExitInitializationMode(instance *made) {
-    eha_status status = unit_rest(&made->unit);
-    made->unit.running = status == EHA_OK;
-    return answer(made, status);
+    const char *wrong = unit_rest(&made->unit);
+    made->unit.running = !wrong;
+    return answer(made, wrong);
 }
 
 EXPORT int fmi2Terminate(instance *made) { return OK; }
@@ -68,7 +67,7 @@ EXPORT int fmi2GetReal(instance *made, const unsigned *references, size_t count,
 }
 
 EXPORT int fmi2SetReal(instance *made, const unsigned *references, size_t count, const double *values) {
-    return answer(made, unit_set(&made->unit, references, count, values));
+    return answer(made, unit_set(&made->unit, references, count, values, made->line));
 }
 
 EXPORT int fmi2DoStep(instance *made, double from, double size, int no_earlier_state) {

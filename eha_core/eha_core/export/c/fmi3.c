@@ -9,11 +9,12 @@ typedef struct {
     unit_state unit;
     log_message *log;
     void *environment;
+    char line[LINE];
 } instance;
 
-static int answer(instance *made, eha_status status) {
-    if (status == EHA_OK) return OK;
-    if (made->log) made->log(made->environment, ERROR, "logStatusError", eha_message(status));
+static int answer(instance *made, const char *wrong) {
+    if (!wrong) return OK;
+    if (made->log) made->log(made->environment, ERROR, "logStatusError", wrong);
     return ERROR;
 }
 
@@ -44,9 +45,9 @@ EXPORT int fmi3EnterInitializationMode(instance *made, bool with_tolerance, doub
 }
 
 EXPORT int fmi3ExitInitializationMode(instance *made) {
-    eha_status status = unit_rest(&made->unit);
-    made->unit.running = status == EHA_OK;
-    return answer(made, status);
+    const char *wrong = unit_rest(&made->unit);
+    made->unit.running = !wrong;
+    return answer(made, wrong);
 }
 
 EXPORT int fmi3Terminate(instance *made) { return OK; }
@@ -62,7 +63,7 @@ EXPORT int fmi3GetFloat64(instance *made, const unsigned *references, size_t cou
 
 EXPORT int fmi3SetFloat64(instance *made, const unsigned *references, size_t count, const double *values,
                           size_t size) {
-    return size < count ? ERROR : answer(made, unit_set(&made->unit, references, count, values));
+    return size < count ? ERROR : answer(made, unit_set(&made->unit, references, count, values, made->line));
 }
 
 EXPORT int fmi3DoStep(instance *made, double from, double size, bool no_earlier_state, bool *event, bool *terminate,

@@ -3,6 +3,7 @@
 #define EHA_FMU_H
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +15,7 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
-enum { OK, WARNING, DISCARD, ERROR };
+enum { OK, WARNING, DISCARD, ERROR, LINE = 160 };
 
 /* value references: parameters, outputs, and then these; as `eha_core.export.model.ExportedModel.variables` */
 enum { VOLTAGE_COMMAND = EHA_PARAMETERS + EHA_OUTPUTS, INITIAL_POSITION, TIME };
@@ -31,50 +32,56 @@ static inline void unit_start(unit_state *unit) {
     eha_start(&unit->plant);
 }
 
+/* The functions below return what is wrong in one line, or 0. */
+static inline const char *said(eha_status status) { return status == EHA_OK ? 0 : eha_message(status); }
+
 /* Before the first step a new value changes where the plant rests. */
-static inline eha_status unit_rest(unit_state *unit) {
-    return unit->running ? EHA_OK : eha_reset(&unit->plant, unit->initial_position);
+static inline const char *unit_rest(unit_state *unit) {
+    return unit->running ? 0 : said(eha_reset(&unit->plant, unit->initial_position));
 }
 
-static inline eha_status unit_get(unit_state *unit, const unsigned *references, size_t count, double *values) {
-    eha_status status = EHA_OK;
-    for (size_t i = 0; i < count && status == EHA_OK; i++) {
+static inline const char *unit_get(unit_state *unit, const unsigned *references, size_t count, double *values) {
+    for (size_t i = 0; i < count; i++) {
         unsigned reference = references[i];
+        const char *wrong = 0;
+        if (reference > TIME) return "there is no variable of this value reference";
         if (reference < EHA_PARAMETERS) {
             values[i] = eha_get(&unit->plant, reference);
         } else if (reference < VOLTAGE_COMMAND) {
-            status = unit_rest(unit);
+            wrong = unit_rest(unit);
             values[i] = unit->plant.outputs[reference - EHA_PARAMETERS];
-        } else if (reference <= TIME) {
-            values[i] = (double[]){unit->voltage, unit->initial_position, unit->time}[reference - VOLTAGE_COMMAND];
         } else {
-            status = EHA_OUT_OF_RANGE;
+            values[i] = (double[]){unit->voltage, unit->initial_position, unit->time}[reference - VOLTAGE_COMMAND];
         }
+        if (wrong) return wrong;
     }
-    return status;
+    return 0;
 }
 
-static inline eha_status unit_set(unit_state *unit, const unsigned *references, size_t count, const double *values) {
-    eha_status status = EHA_OK;
-    for (size_t i = 0; i < count && status == EHA_OK; i++) {
-        if (references[i] < EHA_PARAMETERS)
-            status = eha_set(&unit->plant, references[i], values[i]);
-        else if (references[i] == VOLTAGE_COMMAND)
-            unit->voltage = values[i];
-        else if (references[i] == INITIAL_POSITION && !unit->running)
-            unit->initial_position = values[i];
-        else
-            status = EHA_OUT_OF_RANGE;
+/* `line` holds LINE characters for what is wrong. */
+static inline const char *unit_set(unit_state *unit, const unsigned *references, size_t count, const double *values,
+                                   char *line) {
+    for (size_t i = 0; i < count; i++) {
+        unsigned reference = references[i];
+        if (reference < EHA_PARAMETERS) {
+            if (eha_set(&unit->plant, reference, values[i]) == EHA_OK) continue;
+            snprintf(line, LINE, "%s = %g is out of range; give a value from its min to its max", eha_name(reference),
+                     values[i]);
+            return line;
+        }
+        if (reference == VOLTAGE_COMMAND) unit->voltage = values[i];
+        else if (reference == INITIAL_POSITION && !unit->running) unit->initial_position = values[i];
+        else return "only the input, parameters and, before the first step, initial_position can be set";
     }
-    return status;
+    return 0;
 }
 
 /* To the plant's step that is nearest to the end of the communication step: what a step is off does not add up. */
-static inline eha_status unit_step(unit_state *unit, double from, double size) {
+static inline const char *unit_step(unit_state *unit, double from, double size) {
     double target = rint((from + size - unit->start_time) / EHA_STEP_SIZE);
-    if (!(target >= (double)unit->plant.steps && target < 9e15)) return EHA_OUT_OF_RANGE;
+    if (!(target >= (double)unit->plant.steps && target < 9e15)) return "the step ends before the plant's time";
     unit->time = from + size;
-    return eha_advance(&unit->plant, unit->voltage, (int64_t)target - unit->plant.steps);
+    return said(eha_advance(&unit->plant, unit->voltage, (int64_t)target - unit->plant.steps));
 }
 
 static inline void *unit_copy(const void *source) {
