@@ -31,10 +31,10 @@ def voltages(seconds: float) -> Array:
     return voltage
 
 
-def advanced(plant: Plant, commands: Array) -> Array:
+def advanced(plant: Plant, commands: Array, steps: int = STEPS) -> Array:
     """What the plant reports before the first communication step and after each: (n + 1, columns)."""
     rows = [plant.state]
     for command in commands:
-        plant.advance(float(command), STEPS)
+        plant.advance(float(command), steps)
         rows.append(plant.state)
     return np.array(rows)

@@ -16,7 +16,7 @@ import pytest
 from exported import FIVE, advanced, values, voltages
 
 from eha_core.cli import main
-from eha_core.plant import COLUMNS, Plant
+from eha_core.plant import COLUMNS, Plant, compose
 
 pytest.importorskip("ziglang", reason="the compiler is not installed: pip install ziglang")
 fmpy = pytest.importorskip("fmpy", reason="what runs FMUs is not installed: pip install fmpy")
@@ -235,6 +235,21 @@ def test_the_libraries_export_all_of_fmi(unit_file: tuple[Path, int], tmp_path: 
     text = (tmp_path / "binaries" / linux / "rig.so").read_bytes()
     assert all(f"{name}\0".encode() in text for name in wanted)
     assert not re.search(rb"Py[A-Z]|numba|NRT_", text)
+
+
+def test_a_single_rod_with_a_step_of_its_own_starts_in_balance(tmp_path: Path) -> None:
+    parts, changes = "plant: {cylinder: single_rod}", {"piston_area_b": 4e-4, "spring_stiffness": 1e4}
+    values_text = ", ".join(f"{name}: {value!r}" for name, value in changes.items())
+    (tmp_path / "rod.yaml").write_text(f"{parts}\n/**/eha_sim: {{ros__parameters: {{{values_text}}}}}\n")
+    words = ["export", "fmu", "--nominal", str(tmp_path / "rod.yaml"), "--fmi", "3", "--step", "2.5e-5"]
+    assert main([*words, "--out", str(tmp_path / "rod.fmu")]) == 0
+    unit = Unit(tmp_path / "rod.fmu", 3)
+    unit.set(initial_position=-0.01)
+    unit.begin()
+    plant = Plant(changes, 2.5e-5, -0.01, compose(cylinder="single_rod"))
+    rows = [unit.get(), *map(unit.step, voltages(0.1))]
+    unit.of.freeInstance()
+    np.testing.assert_array_equal(rows, advanced(plant, voltages(0.1), 40))
 
 
 def test_the_same_model_makes_the_same_file(unit_file: tuple[Path, int], tmp_path: Path) -> None:

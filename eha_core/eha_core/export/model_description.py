@@ -14,7 +14,7 @@ from eha_core.version import __version__
 TOKEN = {2: "guid", 3: "instantiationToken"}
 ABILITIES = {
     2: {"canHandleVariableCommunicationStepSize": "true", "canGetAndSetFMUstate": "true",
-        "canSerializeFMUstate": "true"},
+        "canSerializeFMUstate": "true", "canNotUseMemoryManagementFunctions": "true"},
     3: {"canHandleVariableCommunicationStepSize": "true", "canGetAndSetFMUState": "true",
         "canSerializeFMUState": "true"},
 }  # fmt: skip
@@ -37,7 +37,6 @@ def describe(model: ExportedModel, name: str, identifier: str, version: int) -> 
     for reference, variable in enumerate(model.variables):
         (_add_variable_2 if version == 2 else _add_variable_3)(variables, variable, str(reference))
     _add_structure(structure, model, version)
-    # a library that was compiled from another model, or another version of the plant's sources, does not fit
     token = str(uuid.uuid5(uuid.NAMESPACE_URL, ElementTree.tostring(root, "unicode")))
     root.set(TOKEN[version], token)
     ElementTree.indent(root)

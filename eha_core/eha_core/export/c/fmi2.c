@@ -12,7 +12,7 @@ typedef struct {
 typedef struct {
     unit_state unit;
     callbacks functions;
-    char *name, line[LINE];
+    char name[LINE], line[LINE];
 } instance;
 
 static int answer(instance *made, const char *wrong) {
@@ -31,15 +31,12 @@ EXPORT instance *fmi2Instantiate(const char *name, int type, const char *guid, c
     instance *made;
     if (type != 1 || !guid || strcmp(guid, FMU_TOKEN) || !(made = calloc(1, sizeof *made))) return 0;
     if (functions) made->functions = *functions;
-    made->name = name ? strcpy(malloc(strlen(name) + 1), name) : 0;
+    snprintf(made->name, LINE, "%s", name ? name : "");
     unit_start(&made->unit);
     return made;
 }
 
-EXPORT void fmi2FreeInstance(instance *made) {
-    if (made) free(made->name);
-    free(made);
-}
+EXPORT void fmi2FreeInstance(instance *made) { free(made); }
 
 EXPORT int fmi2SetupExperiment(instance *made, int with_tolerance, double tolerance, double start, int with_stop,
                                double stop) {
