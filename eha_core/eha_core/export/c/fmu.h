@@ -33,11 +33,11 @@ static inline void unit_start(unit_state *unit) {
 }
 
 /* The functions below return what is wrong in one line, or 0. */
-static inline const char *said(eha_status status) { return status == EHA_OK ? 0 : eha_message(status); }
+static inline const char *complaint(eha_status status) { return status == EHA_OK ? 0 : eha_message(status); }
 
 /* Before the first step a new value changes where the plant rests. */
 static inline const char *unit_rest(unit_state *unit) {
-    return unit->running ? 0 : said(eha_reset(&unit->plant, unit->initial_position));
+    return unit->running ? 0 : complaint(eha_reset(&unit->plant, unit->initial_position));
 }
 
 static inline const char *unit_get(unit_state *unit, const unsigned *references, size_t count, double *values) {
@@ -81,7 +81,7 @@ static inline const char *unit_step(unit_state *unit, double from, double size) 
     double target = rint((from + size - unit->start_time) / EHA_STEP_SIZE);
     if (!(target >= (double)unit->plant.steps && target < 9e15)) return "the step ends before the plant's time";
     unit->time = from + size;
-    return said(eha_advance(&unit->plant, unit->voltage, (int64_t)target - unit->plant.steps));
+    return complaint(eha_advance(&unit->plant, unit->voltage, (int64_t)target - unit->plant.steps));
 }
 
 static inline void *unit_copy(const void *source) {
