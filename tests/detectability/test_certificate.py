@@ -7,9 +7,10 @@ import pytest
 from tested_rig import at, measuring, planned
 
 from eha_core.detectability import Certificate, PlannedTest, certify
-from eha_core.detectability.power import POWER, required_gain
 from eha_core.detectability.refit import confirmed, left_by_nominal
-from eha_core.detectability.sizes import smallest, trials
+from eha_core.diagnosis.criteria import chance_gain
+from eha_core.diagnosis.detection.power import POWER, required_gain
+from eha_core.diagnosis.detection.sizes import smallest, trials
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effect
 from eha_core.errors import ParameterError
@@ -52,7 +53,8 @@ def test_an_effect_of_the_stated_size_is_named_that_often(certificate: Certifica
             with_it = fit(measured, values, free, rig.fit.states, iterations=5)
             without = fit(measured, {**with_it.values, "coulomb_friction.force": 0.0}, rig.pool.plant, with_it.states,
                           iterations=5)  # fmt: skip
-            named[share] += without.objective - with_it.objective > required_gain(with_it.count, 1)
+            required = required_gain(chance_gain(with_it.count, 1.0), 1, with_it.count)
+            named[share] += without.objective - with_it.objective > required
     assert named[1.0] >= 9 and named[0.5] <= 3, named
     assert certificate.power == POWER
 
@@ -90,6 +92,7 @@ def test_a_leak_is_told_as_the_flow_that_the_plant_leaks_more(certificate: Certi
     pressure = Plant({}, 2e-4).run(voltages).pressure_a
     assert entry.flow == pytest.approx(entry.size * float(np.sqrt(np.mean(pressure**2))), rel=0.02)
     assert row(certificate, "constant_load").flow is None
+    assert row(certificate, "valve_null_leakage").flow is None  # past the valve's lands: the plant's rows have no such
     leakage = next(one for one in certificate.parameters if one.name == "internal_leakage")
     assert leakage.flow is not None and leakage.change > 0.0
 

@@ -241,6 +241,7 @@ def _fitted_elsewhere(monkeypatch):
     monkeypatch.setattr(conclude, "judge", lambda shooting, model: JUDGED)
     monkeypatch.setattr(conclude, "explained", lambda *given: Explained(1.0, {"position": 1.0}, True))
     monkeypatch.setattr(conclude, "predictions", lambda *given: {})
+    monkeypatch.setattr(conclude, "undetected", lambda *given: None)
     monkeypatch.setattr(conclude, "pictures", lambda *given: None)
     monkeypatch.setattr(conclude, "correlation", lambda final: Correlation())
     monkeypatch.setattr(conclude, "propose", lambda *given: "a test")

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from eha_core.detectability import Certificate, Confusion, Detectable, Noticeable, PlannedTest
+from eha_core.detectability import Certificate, PlannedTest
+from eha_core.diagnosis.result import Confusion, Detectable, Noticeable
 from eha_core.report.detectability import account, document, picture, write_certificate
 
-FRICTION = Detectable("coulomb_friction", "force", "N", 12.0, 1.5, 0.3, (), {}, 200.0, None,
-                      (Confusion("stribeck_friction", 3.0, 0.98),))  # fmt: skip
-LEAK = Detectable("external_leakage", "coefficient_a", "m^3/(s Pa)", 1e-12 / 60, None, 0.2, (), {}, 1e-12, 1e-6 / 60)
-SCALE = Detectable("position_sensor_scale", "ratio", "-", None, None, 1e-7, ("moving_mass",), {}, 0.05)
+FRICTION = Detectable("coulomb_friction", "force", "N", 12.0, 0.3, (), {}, 200.0, None,
+                      (Confusion("stribeck_friction", 3.0, 0.98),), 1.5)  # fmt: skip
+LEAK = Detectable("external_leakage", "coefficient_a", "m^3/(s Pa)", 1e-12 / 60, 0.2, (), {}, 1e-12, 1e-6 / 60)
+SCALE = Detectable("position_sensor_scale", "ratio", "-", None, 1e-7, ("moving_mass",), {}, 0.05)
 
 
 @pytest.fixture

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.diagnosis.calibrate import STEPS
+from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.detection.responses import FittedModel
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.errors import ParameterError
-from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.identification.observation import FITTED, SHORTEST, TICK, Measured, Observation
 from eha_core.identification.problem import whole
@@ -71,16 +72,13 @@ class PlannedTest:
 
 
 @dataclass(frozen=True)
-class Linearised:
-    """The rig as modelled in this test: the observation it gives, a fit that is exact, and the pool of its windows."""
+class RigAsModelled(FittedModel):
+    """The rig as modelled in this test: a fit that is exact, and `motion`, what the test does."""
 
-    observation: Observation
-    pool: Pool
-    fit: Fit
     motion: Trajectory
 
 
-def linearised(model: NominalModel, test: PlannedTest) -> Linearised:
+def linearised(model: NominalModel, test: PlannedTest) -> RigAsModelled:
     """The test without noise and without a fault, as the search sees it over its long windows, nothing to fit left.
 
     Raises ParameterError for an actuator that no voltage drives.
@@ -110,4 +108,6 @@ def linearised(model: NominalModel, test: PlannedTest) -> Linearised:
     travel = float(np.max(np.abs(motion.position)))
     plant = free_nominal_parameters(values, "voltage", travel, model.unknown, model.composition)
     pool = Pool(problem, plant, Trace())
-    return Linearised(observation, pool, pool.at_rest(NOTHING, values, states), motion)
+    exact = pool.at_rest(NOTHING, values, states)
+    scales = characteristic_scales([observation], problem.shooting, exact)
+    return RigAsModelled((observation,), pool, NOTHING, exact, scales, motion)

@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import inf, isfinite
 
-from eha_core.detectability.linear import COMPENSATED, responses
-from eha_core.detectability.planned import Linearised
-from eha_core.detectability.sizes import Trial
+from eha_core.diagnosis.detection.responses import COMPENSATED, FittedModel, responses
+from eha_core.diagnosis.detection.sizes import Trial
 from eha_core.diagnosis.search.columns import Column
 from eha_core.identification.fit import exact, fit
 
@@ -28,7 +27,7 @@ LARGER = 3.0
 """Factor by which it is enlarged at most in one round."""
 
 
-def left_by_nominal(at: Linearised, column: Column, thorough: bool = False) -> float:
+def left_by_nominal(at: FittedModel, column: Column, thorough: bool = False) -> float:
     """Chi^2 that the nominal equations leave of what a column does, at their best; `thorough`: with derivatives at the
     simulation's own step, without which a fit may end early in a flat valley."""
     shooting = at.pool.problem.shooting
@@ -40,7 +39,7 @@ def left_by_nominal(at: Linearised, column: Column, thorough: bool = False) -> f
     return fit(problem, at.fit.values, at.pool.plant, at.fit.states, iterations=ITERATIONS, in_a_row=2).objective
 
 
-def confirmed(at: Linearised, tried: Sequence[Trial], factors: Sequence[float]) -> list[float]:
+def confirmed(at: FittedModel, tried: Sequence[Trial], factors: Sequence[float]) -> list[float]:
     """The factors, those enlarged whose response the nominal equations explain better than the linearisation says; inf
     where that takes more than the catalogue's bound. None is made smaller."""
     columns = [trial.at(factor if isfinite(factor) else 1.0) for trial, factor in zip(tried, factors, strict=True)]
@@ -49,7 +48,7 @@ def confirmed(at: Linearised, tried: Sequence[Trial], factors: Sequence[float]) 
             for place, (trial, factor) in enumerate(zip(tried, factors, strict=True))]  # fmt: skip
 
 
-def _confirmed(at: Linearised, trial: Trial, factor: float, thorough: bool) -> float:
+def _confirmed(at: FittedModel, trial: Trial, factor: float, thorough: bool) -> float:
     for _ in range(ROUNDS):
         if not isfinite(factor):
             break

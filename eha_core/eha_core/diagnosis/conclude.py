@@ -36,6 +36,7 @@ from eha_core.diagnosis.result import (
 from eha_core.diagnosis.search.comparison import Entry
 from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.supported import one_sided, supported
+from eha_core.diagnosis.undetected import undetected
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness
 from eha_core.effects import effects as every_effect
 from eha_core.health import Fault
@@ -123,6 +124,7 @@ def _findings(
         sets=sets,
         event=happened,
         scale=scale,
+        undetected=undetected(evidence, left, parameters),
     )
 
 

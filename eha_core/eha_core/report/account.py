@@ -15,12 +15,13 @@ from eha_core.report.finding import fitted_in_words, told_parameters
 from eha_core.report.health import faults_told
 from eha_core.report.location import location_statement
 from eha_core.report.stage import errors_told, models_told
+from eha_core.report.undetected import not_missing
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
 _INDENT = 13
 _LONGEST = {
     "Recording": 2, "Health": 4, "Verdict": 3, "Whole": 5, "Located": 2, "Named": 2, "Recovered": 2, "Parameters": 2,
-    "Next test": 3, "Note": 2,
+    "Not found": 2, "Next test": 3, "Note": 2,
 }  # fmt: skip
 _MOST_EFFECTS = 8
 
@@ -66,6 +67,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         f"{' + '.join(alternative.effects)} (evidence {alternative.evidence_gap:.1f} less)"
         for alternative in diagnosis.alternatives
     ]
+    yield "Not found", not_missing(diagnosis)
     yield "Rivals", f"cannot be distinguished from {' or '.join(rivals)}" if rivals else ""
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
-from eha_core.detectability import NOISE, Certificate, Detectable, Noticeable
+from eha_core.detectability import NOISE, Certificate
+from eha_core.diagnosis.result import Detectable, Noticeable
 from eha_core.quantities import quantity, short
 from eha_core.report.study_files import write_study
 
@@ -33,14 +34,14 @@ def document(certificate: Certificate) -> dict[str, Any]:
                  "noise": {name: test.noise * NOISE[name] for name in test.channels},
                  "samples": certificate.samples, "stroke": certificate.stroke},
         "power": certificate.power,
-        "effects": [_effect(row) for row in certificate.effects],
-        "parameters": [{"name": row.name, "nominal": row.nominal, "change": row.change, "unit": row.unit,
-                        "flow": row.flow} for row in certificate.parameters],
+        "effects": [detectable_row(row) for row in certificate.effects],
+        "parameters": [noticeable_row(row) for row in certificate.parameters],
         "remarks": list(certificate.remarks),
     }  # fmt: skip
 
 
-def _effect(row: Detectable) -> dict[str, Any]:
+def detectable_row(row: Detectable) -> dict[str, Any]:
+    """A smallest size as plain JSON types."""
     return {
         "id": row.effect, "parameter": row.parameter, "unit": row.unit, "size": row.size, "flow": row.flow,
         "with_pressures": row.with_pressures, "at": dict(row.shape), "share": row.share,
@@ -48,6 +49,11 @@ def _effect(row: Detectable) -> dict[str, Any]:
         "not_distinguished_from": [{"id": other.effect, "left": other.left, "cosine": other.cosine}
                                    for other in row.confusions],
     }  # fmt: skip
+
+
+def noticeable_row(row: Noticeable) -> dict[str, Any]:
+    """A smallest change of a nominal parameter as plain JSON types."""
+    return {"name": row.name, "nominal": row.nominal, "change": row.change, "unit": row.unit, "flow": row.flow}
 
 
 def as_json(certificate: Certificate) -> str:
@@ -63,7 +69,7 @@ def account(certificate: Certificate) -> str:
     lines += [f"{head}{'of full scale, or leak flow':{_BESIDE}}{'with pressures' if more else ''}".rstrip()]
     for row in certificate.effects:
         lines.append(_line(row, certificate))
-        lines += wrap(_doubts(row), _WIDTH, initial_indent=" " * 6, subsequent_indent=" " * 6)
+        lines += wrap(doubts(row), _WIDTH, initial_indent=" " * 6, subsequent_indent=" " * 6)
     lines += ["", "smallest change of a nominal parameter that is reported with 95 % probability"]
     lines += [f"  {row.name:{_NAME}}{quantity(row.change, row.unit):{_SIZE}}{_relative(row)}".rstrip()
               for row in certificate.parameters]  # fmt: skip
@@ -103,7 +109,7 @@ def _relative(row: Noticeable) -> str:
     return f"{short(100.0 * row.change / row.nominal)} %" if row.nominal else ""
 
 
-def _doubts(row: Detectable) -> str:
+def doubts(row: Detectable) -> str:
     """What an effect cannot be distinguished from, and what compensates for it."""
     found = []
     if row.confusions:

@@ -22,8 +22,10 @@ from eha_core.diagnosis.result import (
     RecordingFit,
     Residual,
     TraceStep,
+    Undetected,
 )
 from eha_core.health import Fault
+from eha_core.report.detectability import detectable_row, noticeable_row
 from eha_core.report.location import location_statement
 
 SCHEMA = "eha.diagnosis/1"
@@ -65,6 +67,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
             "steps": [{"added": step.added, **_residual(step.residual)} for step in diagnosis.steps],
             "without": {name: _residual(residual) for name, residual in diagnosis.without.items()},
             "correlation": _row(diagnosis.correlation, ("names", "matrix")),
+            **_undetected(diagnosis.undetected),
             **_long_records(diagnosis.long_records),
         }
     )
@@ -162,6 +165,20 @@ def _long_records(records: Sequence[LongRecord]) -> dict[str, Any]:
         blocks = _rows(record.blocks, ("start", "end", "fitted", "before", "after"))
         found.append({**row, "duration_s": record.duration, "blocks": blocks})
     return {"long_records": found} if found else {}
+
+
+def _undetected(found: Undetected | None) -> dict[str, Any]:
+    """Smallest sizes by effect, those of an effect's further independent sizes with its first; null if not known."""
+    if found is None:
+        return {"detectable": None, "noticeable": None}
+    sizes: dict[str, dict[str, Any]] = {}
+    for row in found.effects:
+        entry = {"power": found.power, **detectable_row(row)}
+        if row.effect in sizes:
+            sizes[row.effect].setdefault("further", []).append(entry)
+        else:
+            sizes[row.effect] = entry
+    return {"detectable": sizes, "noticeable": [noticeable_row(row) for row in found.parameters]}
 
 
 def _residual(residual: Residual) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from eha_core.effects import SITES, effects
 from eha_core.quantities import bounds, quantity, within
 from eha_core.report.health import faults_told
 from eha_core.report.stage import SURE
+from eha_core.report.undetected import not_missing
 from eha_core.report.wording import (
     VERDICT_TITLES,
     channel_title,
@@ -145,6 +146,7 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
         if changed and not diagnosis.biased
         else "",
         explanation(diagnosis),
+        sentence(not_missing(diagnosis)),
         *(record.statement for record in diagnosis.long_records),
     )
     return tuple(text for text in found if text)

@@ -16,6 +16,7 @@ from eha_core.report.claims import judged
 from eha_core.report.finding import told_parameters
 from eha_core.report.health import faults_told
 from eha_core.report.stage import SURE, Table, errors_told, models_told
+from eha_core.report.undetected import not_missing
 from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, plain, sentence
 
 WIDTH = 96
@@ -66,6 +67,7 @@ def summarise(diagnosis: Diagnosis) -> Summary:
         *(("Health", sentence(plain(fault))) for fault in faults_told(diagnosis)),
         ("Verdict", VERDICT_TITLES[diagnosis.verdict]),
         ("Finding", diagnosis.summary),
+        *(("Not found", text) for text in (not_missing(diagnosis),) if text),
     )
     tables = tuple(table for table in (_effects(diagnosis), _parameters(diagnosis), _errors(diagnosis)) if table.rows)
     return Summary("Diagnosis", facts, tables, tuple(_notes(diagnosis)))

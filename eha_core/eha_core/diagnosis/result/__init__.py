@@ -1,5 +1,6 @@
 """What a diagnosis says: frozen facts that the terminal, diagnosis.json and the report present."""
 
+from eha_core.diagnosis.result.detection import Confusion, Detectable, Noticeable, Undetected
 from eha_core.diagnosis.result.findings import (
     Alternative,
     CommonScale,
@@ -40,7 +41,9 @@ __all__ = [
     "Alternative",
     "ChannelFit",
     "CommonScale",
+    "Confusion",
     "Correlation",
+    "Detectable",
     "Diagnosis",
     "Experiment",
     "Explained",
@@ -51,6 +54,7 @@ __all__ = [
     "LongRecord",
     "NOMINAL",
     "NamedEffect",
+    "Noticeable",
     "Pictures",
     "PredictedRecording",
     "Prediction",
@@ -60,6 +64,7 @@ __all__ = [
     "Residual",
     "Step",
     "TraceStep",
+    "Undetected",
     "UnknownLaw",
     "VERDICTS",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from eha_core.diagnosis.result.detection import Undetected
 from eha_core.diagnosis.result.findings import (
     Alternative,
     CommonScale,
@@ -71,7 +72,8 @@ class Diagnosis:
     search. `health` has the faults of the channels, each with the number of its recording among several (1 of a single
     one). `event`: when the nominal model fails while it is at the noise at all other times [s]. `scale`: the one factor
     by which the changed parameters differ from the nominal ones, if they do. `long_records` has those of which
-    stretches were fitted; what is drawn of them is in the record's time.
+    stretches were fitted; what is drawn of them is in the record's time. `undetected`: how large what was not named
+    may be; None where the model that was found leaves more than noise.
     """
 
     path: str
@@ -110,6 +112,7 @@ class Diagnosis:
     health: tuple[tuple[int, Fault], ...] = ()
     event: tuple[float, float] | None = None
     scale: CommonScale | None = None
+    undetected: Undetected | None = None
 
     @property
     def drawn(self) -> tuple[float, float]:

@@ -112,11 +112,16 @@ def required_of(pool: Pool, member: Member, costs: Mapping[Member, float], at: F
     if costs[member] < by_chance and forms:
         # friction makes the objective rugged, and a refit may stop short: the curvature is believed
         by_chance = member.size * variance * (CHANCE + OF_SAMPLES_BESIDE_A_FORM * count)
+    of_forms = min(left_by_forms(pool, member, costs, at), ratio * (left + NOISE_KNOWN * count))
+    return max(by_chance + of_forms, ratio * max(left - NOISE_KNOWN * count, 0.0))
+
+
+def left_by_forms(pool: Pool, member: Member, costs: Mapping[Member, float], at: Fit) -> float:
+    """Chi^2 that the form of other laws may leave in a member's equation: a share of what they explain."""
     nothing = pool.found.get(NOTHING)
     explained = max(nothing.objective - at.objective, 0.0) if nothing else np.inf
-    of_forms = OF_ITS_FORM * min(sum(costs[other] for other in forms if meet(member, other)), explained)
-    of_forms = min(of_forms, ratio * (left + NOISE_KNOWN * count))
-    return max(by_chance + of_forms, ratio * max(left - NOISE_KNOWN * count, 0.0))
+    forms = (other for other in costs if other != member and other.effect.approximate and meet(member, other))
+    return OF_ITS_FORM * min(sum(costs[other] for other in forms), explained)
 
 
 def meet(member: Member, other: Member) -> bool:

@@ -13,6 +13,7 @@ from eha_core.report.each_recording import recording_tables
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture
 from eha_core.report.series import autocorrelation, pieces, spread
 from eha_core.report.stage import Stage, Table, adds_physics, errors_told, judged_spans, models_told
+from eha_core.report.undetected import undetected_tables
 from eha_core.report.wording import capital, channel_title
 
 MODELS = ("before", "calibrated", "after")
@@ -23,14 +24,27 @@ def stage(diagnosis: Diagnosis) -> Stage:
     """Before, calibrated and after, against the noise floor; and whether the residual is noise."""
     kept = "Parts of the recording were kept from the fit, and the models are judged on them."
     fitted = "The models are judged on the data they were fitted to."
-    sentences = (kept if diagnosis.held_out else fitted, improvement(diagnosis))
+    sentences = (kept if diagnosis.held_out else fitted, improvement(diagnosis), *_of_sizes(diagnosis))
     return Stage(
         "show",
         "Show",
         left_over(diagnosis),
         sentences,
         (_overlays(diagnosis), _whiteness(diagnosis), *_over_input(diagnosis)),
-        (error_table(diagnosis), *recording_tables(diagnosis), *prediction_table(diagnosis)),
+        (
+            error_table(diagnosis), *recording_tables(diagnosis), *prediction_table(diagnosis),
+            *undetected_tables(diagnosis),
+        ),
+    )  # fmt: skip
+
+
+def _of_sizes(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """What the tables of smallest sizes rest on."""
+    if diagnosis.undetected is None:
+        return ()
+    return (
+        "What was not named is absent, or smaller than the last tables say: sizes of one effect at a time, with the"
+        " model and the noise that were found, from the search's quadratic model of this recording.",
     )
 
 

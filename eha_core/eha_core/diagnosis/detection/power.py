@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from eha_core.diagnosis.criteria import ENOUGH, chance_gain, parameter_cost
+from eha_core.diagnosis.criteria import ENOUGH, parameter_cost
 
 POWER = 0.95
 """Probability with which an effect of the stated size is found."""
 
 
-def required_gain(count: int, parameters: int) -> float:
-    """Chi^2 that one effect of so many parameters must gain in `count` samples to be named, where it leaves noise.
+def required_gain(of_a_member: float, parameters: int, count: int, variance: float = 1.0) -> float:
+    """Chi^2 that one more effect of so many parameters must gain in `count` samples to be named.
 
-    It must gain more than chance does, and its score, in which each parameter is paid for, must suffice: the two rules
-    of `diagnosis.criteria` that hold of one effect alone.
+    It must gain what is required of a member, and its score, in which each parameter is paid for, must suffice.
+    `variance`: of the residual, in units of the noise's.
     """
-    return max(chance_gain(count, 1.0), ENOUGH + parameters * parameter_cost(count, 1.0))
+    return max(of_a_member, variance * (ENOUGH + parameters * parameter_cost(count, variance)))
 
 
 @lru_cache(maxsize=256)

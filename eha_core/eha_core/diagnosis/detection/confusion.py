@@ -1,26 +1,13 @@
-"""Which effects a planned test cannot distinguish: those whose responses another explains but for next to nothing."""
+"""Which effects cannot be distinguished: those whose responses another explains but for next to nothing."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
-from eha_core.detectability.linear import Responses
 from eha_core.diagnosis.criteria import TIE
+from eha_core.diagnosis.detection.responses import Responses
+from eha_core.diagnosis.result import Confusion
 from eha_core.diagnosis.search.columns import Column
-
-
-@dataclass(frozen=True)
-class Confusion:
-    """Another effect that explains a response.
-
-    `effect`: its id. `left`: chi^2 that it leaves of the response at its detectable size; below TIE the two cannot be
-    distinguished. `cosine`: of the angle between the two beside the nominal parameters, 1 where they are the same.
-    """
-
-    effect: str
-    left: float
-    cosine: float
 
 
 def confusions(columns: Sequence[Column], seen: Responses) -> list[tuple[Confusion, ...]]:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from tested_rig import at
 
-from eha_core.detectability.certificate import middle_shapes
-from eha_core.detectability.linear import responses
-from eha_core.detectability.planned import Linearised
-from eha_core.detectability.sizes import CLOSE, next_guess, smallest, trials
+from eha_core.detectability.planned import RigAsModelled
+from eha_core.diagnosis.detection.responses import responses
+from eha_core.diagnosis.detection.rows import middle_shapes
+from eha_core.diagnosis.detection.sizes import CLOSE, next_guess, smallest, trials
 
 
 def found(energy, wanted: float, highest: float, passes: int = 10) -> float:
@@ -50,11 +50,11 @@ def test_what_never_shows_ends_at_the_highest_size() -> None:
 
 
 @pytest.fixture(scope="module")
-def rig() -> Linearised:
+def rig() -> RigAsModelled:
     return at()
 
 
-def test_every_size_has_the_energy_that_is_asked_for(rig: Linearised) -> None:
+def test_every_size_has_the_energy_that_is_asked_for(rig: RigAsModelled) -> None:
     tried = trials(rig)
     factors = smallest(rig, tried)
     known = [k for k, factor in enumerate(factors) if np.isfinite(factor)]
@@ -70,7 +70,7 @@ def test_every_size_has_the_energy_that_is_asked_for(rig: Linearised) -> None:
     assert np.median(shares) == pytest.approx(1.0, abs=0.04)
 
 
-def test_more_noise_asks_for_as_much_more_of_a_linear_effect(rig: Linearised) -> None:
+def test_more_noise_asks_for_as_much_more_of_a_linear_effect(rig: RigAsModelled) -> None:
     """Three times the noise: three times the load that is found, but for what priors then hold of the parameters."""
     sizes = []
     for each in (rig, at(noise=3.0)):
@@ -80,7 +80,7 @@ def test_more_noise_asks_for_as_much_more_of_a_linear_effect(rig: Linearised) ->
     assert sizes[1] == pytest.approx(3.0 * sizes[0], rel=0.1)
 
 
-def test_of_two_signs_the_weaker_and_of_three_shapes_the_middle_one_is_certified(rig: Linearised) -> None:
+def test_of_two_signs_the_weaker_and_of_three_shapes_the_middle_one_is_certified(rig: RigAsModelled) -> None:
     tried = [trial for trial in trials(rig) if trial.column.effect.id in ("constant_load", "bore_wear_leakage")]
     factors = [float(k + 1) for k in range(len(tried))]
     chosen, chosen_factors = middle_shapes(tried, factors)

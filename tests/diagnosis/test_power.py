@@ -7,8 +7,8 @@ from math import log
 import numpy as np
 import pytest
 
-from eha_core.detectability.power import POWER, energy_needed, probability_of, required_gain
-from eha_core.diagnosis.criteria import CHANCE, ENOUGH, OF_SAMPLES
+from eha_core.diagnosis.criteria import ENOUGH
+from eha_core.diagnosis.detection.power import POWER, energy_needed, probability_of, required_gain
 
 
 @pytest.mark.parametrize("parameters", [1, 2, 5])
@@ -29,5 +29,6 @@ def test_half_the_size_is_found_seldom() -> None:
 
 
 def test_the_gain_that_is_required_is_the_stricter_of_two_rules() -> None:
-    assert required_gain(20_000, 1) == CHANCE + OF_SAMPLES * 20_000
-    assert required_gain(1_000, 3) == ENOUGH + 3 * log(1_000)
+    assert required_gain(45.0, 1, 20_000) == 45.0
+    assert required_gain(26.0, 3, 1_000) == ENOUGH + 3 * log(1_000)
+    assert required_gain(26.0, 3, 1_000, variance=1.04) == 1.04 * (ENOUGH + 3 * log(1_000))

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from eha_core.detectability.planned import NOISE, Linearised, PlannedTest, linearised
+from eha_core.detectability.planned import NOISE, PlannedTest, RigAsModelled, linearised
 from eha_core.diagnosis.search.columns import Column, columns_of
 from eha_core.effects import effect
 from eha_core.identification.problem import Problem
@@ -22,7 +22,7 @@ def planned(channels: tuple[str, ...] = tuple(NOISE), noise: float = 1.0, durati
     return PlannedTest(times, voltages, duration, channels, noise)
 
 
-def at(**how: object) -> Linearised:
+def at(**how: object) -> RigAsModelled:
     return linearised(nominal_of({}), planned(**how))
 
 

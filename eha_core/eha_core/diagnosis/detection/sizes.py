@@ -1,23 +1,25 @@
-"""The smallest size of each effect that a planned test shows: a few secants, each nearer to the size that is asked for.
+"""The smallest size of each effect that shows: a few secants, each nearer to the size that is asked for.
 
 What an effect does is seldom in proportion to its size, so its response is simulated at the size itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from math import exp, inf, log
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.detectability.linear import responses
-from eha_core.detectability.planned import Linearised
-from eha_core.detectability.power import energy_needed, required_gain
-from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.criteria import chance_gain
+from eha_core.diagnosis.detection.power import energy_needed, required_gain
+from eha_core.diagnosis.detection.responses import FittedModel, responses
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
+from eha_core.diagnosis.hypothesis import Member
 from eha_core.diagnosis.search.columns import SIZES, Column, applicable_effects, columns_of
+from eha_core.diagnosis.search.finish import left_by_forms, predicted_costs, required_of
+from eha_core.effects import Effect
 
 Array = NDArray[np.float64]
 
@@ -62,26 +64,49 @@ class Trial:
         return {name: value for name, value in self.column.values.items() if name in rows and not rows[name].switches}
 
 
-def trials(at: Linearised) -> list[Trial]:
+def trials(at: FittedModel, without: Collection[str] = ()) -> list[Trial]:
     """One trial for each independent size of each effect in each of the shapes that the search tries, and two where the
-    size may have either sign: the nominal parameters' bounds make them differ."""
-    scales = characteristic_scales([at.observation], at.pool.problem.shooting, at.fit)
-    count, found = at.fit.count, dict[tuple[object, ...], Trial]()
-    for effect in applicable_effects([at.observation]):
-        for column in columns_of(effect, scales):
+    size may have either sign: the nominal parameters' bounds make them differ.
+
+    No trial of effects `without`, of what is in the set already, and of other forms of that; nor of a size that differs
+    between recordings, which none of them would show alone.
+    """
+    marked = at.pool.problem.shooting.per_recording
+    found = dict[tuple[object, ...], Trial]()
+    for effect, of_a_member in required_of_one_more(at).items():
+        if effect.id in without or set(marked) & set(effect.parameter_names()):
+            continue
+        for column in columns_of(effect, at.scales):
             if column.most != SIZES[1.0]:
                 continue  # the same guess at another share of its size
             parameters = len(free_effect_parameters(effect, column.values))
-            gain = required_gain(count, parameters)
+            gain = required_gain(of_a_member, parameters, at.fit.count, at.variance)
+            energy = at.variance * energy_needed(gain / at.variance, parameters)
             least, most = replace(column, most=inf).factors()
             for sign, farthest in ((1.0, most), (-1.0, -least)):
                 if farthest > 0.0:
-                    trial = Trial(column, sign, parameters, gain, energy_needed(gain, parameters), farthest)
+                    trial = Trial(column, sign, parameters, gain, energy, farthest)
                     found.setdefault((column.sizes, sign, *sorted(trial.shape.items())), trial)
     return list(found.values())
 
 
-def smallest(at: Linearised, tried: Sequence[Trial]) -> Array:
+def required_of_one_more(at: FittedModel) -> dict[Effect, float]:
+    """Chi^2 that the search requires of each effect that could be added to the set.
+
+    What the form of other laws may leave counts in full: that it is no more than is left depends on the noise.
+    """
+    addable = [effect for effect in applicable_effects(at.observations) if at.hypothesis.admits(effect)]
+    costs = predicted_costs(at.pool, at.hypothesis, at.fit) if at.hypothesis.members else {}
+    found = {}
+    for member in (Member(effect.id, effect=effect) for effect in addable):
+        together = {**costs, member: inf}
+        by_chance = chance_gain(at.fit.count, at.variance)
+        beside_forms = by_chance + left_by_forms(at.pool, member, together, at.fit)
+        found[member.effect] = max(beside_forms, required_of(at.pool, member, together, at.fit))
+    return found
+
+
+def smallest(at: FittedModel, tried: Sequence[Trial]) -> Array:
     """Of each trial, the factor on its size at which its response has the energy that is asked for; inf where none up
     to the catalogue's bound has. Ten passes, each of one secant for every trial that is not there yet."""
     seen: list[list[Point]] = [[] for _ in tried]

@@ -1,0 +1,35 @@
+"""Stage 6, show: how large what was not named may be, from the quadratic model about the set that was."""
+
+from __future__ import annotations
+
+from eha_core.diagnosis.calibrate import filtered_channels
+from eha_core.diagnosis.detection.power import POWER
+from eha_core.diagnosis.detection.responses import FittedModel
+from eha_core.diagnosis.detection.rows import effect_rows, middle_shapes, parameter_rows
+from eha_core.diagnosis.detection.sizes import smallest, trials
+from eha_core.diagnosis.evidence import Evidence
+from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.result import Explained, FittedParameter, Undetected
+from eha_core.diagnosis.search.pool import Pool, Trace
+
+
+def undetected(evidence: Evidence, left: Explained, parameters: tuple[FittedParameter, ...]) -> Undetected | None:
+    """The smallest size of each effect not named that would have been found together with those that were, and of each
+    change of a parameter that has not changed; None where more than noise is left, for its cause hides others."""
+    if not (left.complete or left.vague):
+        return None
+    at = fitted_model(evidence)
+    tried = trials(at, [name for entry, _ in evidence.decision.rivals for name in entry.ids])
+    rows = effect_rows(at, *middle_shapes(tried, smallest(at, tried).tolist()))
+    changed = {parameter.name for parameter in parameters if parameter.changed}
+    return Undetected(POWER, rows, tuple(row for row in parameter_rows(at) if row.name not in changed))
+
+
+def fitted_model(evidence: Evidence) -> FittedModel:
+    """The set that was decided on, as the search has fitted it and can add to it."""
+    winner, calibration = evidence.decision.winner, evidence.calibration
+    own = {parameter.name: parameter for parameter in winner.fit.free}
+    plant = tuple(own.get(one.name, one) for one in calibration.fitted.free if "@" not in one.name)
+    nominal = {NOTHING: evidence.comparison.nominal.fit}
+    pool = Pool(calibration.problem, plant, Trace(), nominal, filtered_channels(evidence.observations))
+    return FittedModel(evidence.observations, pool, winner.hypothesis, winner.fit, evidence.scales)
