@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from tested_rig import at, measuring, planned
+from tested_rig import SIGNAL, at, measuring, planned
 
 from eha_core.detectability import Certificate, PlannedTest, certify
+from eha_core.detectability.planned import linearised
 from eha_core.detectability.refit import confirmed, left_by_nominal
 from eha_core.diagnosis.criteria import chance_gain
 from eha_core.diagnosis.detection.power import POWER, required_gain
@@ -71,6 +74,17 @@ def test_a_bias_and_a_scale_of_one_pressure_cannot_be_distinguished(certificate:
 def test_a_scale_of_the_position_is_not_found_at_any_size(certificate: Certificate) -> None:
     entry = row(certificate, "position_sensor_scale")
     assert entry.size is None and entry.compensated_by and entry.share < 1e-5
+
+
+def test_a_command_that_begins_with_a_jump_shows_as_much(certificate: Certificate) -> None:
+    """The test's only noise is the sensors', however its first window begins."""
+    gentle = planned()
+    jump = replace(gentle, voltages=np.asarray(SIGNAL.value(gentle.times)))
+    rig = linearised(nominal_of({}), jump)
+    assert rig.variance == 1.0 and np.any(rig.fit.residuals[0] != 0.0)
+    tried = [trial for trial in trials(rig) if trial.column.effect.id == "coulomb_friction"]
+    force = float(smallest(rig, tried)[0]) * tried[0].column.values["coulomb_friction.force"]
+    assert force == pytest.approx(row(certificate, "coulomb_friction").size, rel=0.3)
 
 
 def test_pressures_find_less_friction_and_what_only_they_show(
