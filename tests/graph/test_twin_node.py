@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import Rig
 from rcl_interfaces.srv import SetParameters
@@ -42,6 +43,24 @@ def test_the_twin_names_the_equation_and_the_stamp(rig: Rig, tmp_path: Path) -> 
     assert warned["message"].startswith("chamber ") and "times the noise since" in warned["message"]
     assert float(warned["departs since: chamber A"]) == pytest.approx(4.0, abs=0.1)
     assert float(warned["window_end"]) == pytest.approx(5.1, abs=0.01)
+
+
+def test_a_sensor_that_freezes_is_reported_as_frozen_and_no_equation_departs(rig: Rig) -> None:
+    """Four seconds of a piston at rest under noise of 20 um; the last repeat one value."""
+    rig.start("twin", "diagnostics_rate:=10.0")
+    rig.client_ready("eha_twin/get_parameters")
+    reports = rig.diagnostics("eha_twin")
+    sensor = rig.node.create_publisher(JointState, "joint_states", 3000)
+    rig.wait(sensor.get_subscription_count, "the twin's subscription")
+    noise = 20e-6 * np.random.default_rng(1).standard_normal(2000)
+    noise[1050:] = noise[1050]
+    for number, position in enumerate(noise.tolist()):
+        message = JointState(name=["piston"], position=[position])
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(2_000_000 * number, 1_000_000_000)
+        sensor.publish(message)
+    rig.wait(lambda: reports and reports[-1].get("windows") == "3", "three windows")
+    assert reports[-1]["message"] == "position is frozen since 2.100 s"
+    assert not any("departs" in name for name in reports[-1])
 
 
 def test_a_model_that_cannot_be_read_ends_in_one_line(rig: Rig) -> None:
