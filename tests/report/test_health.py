@@ -12,7 +12,7 @@ from eha_core.report.account import account
 from eha_core.report.finding import warnings
 from eha_core.report.first_screen import pictures, residual_picture
 from eha_core.report.health import excluded, faults_told
-from eha_core.report.picture import Line, Spans
+from eha_core.report.picture import Band, Line, Spans
 from eha_core.report.stages import read
 from eha_core.report.summary import summarise
 
@@ -52,6 +52,7 @@ def test_the_first_picture_shades_what_was_excluded_and_draws_nothing_there(fric
     of_position, of_pressure = picture.groups[0].panels[0], picture.groups[1].panels[0]
     assert [mark.spans for mark in of_position.marks if isinstance(mark, Spans)] == [((2.0, 3.0), (4.0, 4.5))]
     assert [mark.spans for mark in of_pressure.marks if isinstance(mark, Spans)] == [((4.0, 4.5),)]
+    assert [type(mark) for mark in of_position.marks] == [Band, Spans, Line]
     (line,) = [mark for mark in of_position.marks if isinstance(mark, Line)]
     drawn = line.x[np.isfinite(line.y)]
     assert not np.any((drawn > 2.001) & (drawn < 2.999)) and np.any(drawn > 4.5)
@@ -64,6 +65,12 @@ def test_a_sensors_hole_is_shaded_and_the_page_begins_with_it(friction: Diagnosi
     assert excluded(ill(friction, hole), "pressure_a") == ()
     assert warnings(ill(friction, hole)) == ("Position: no sample for 0.5 s, from 4 s to 4.5 s; record it without"
                                              " interruption.",)  # fmt: skip
+
+
+def test_the_page_names_channels_in_words(friction: Diagnosis) -> None:
+    holes = [replace(HOLE, channel=name) for name in ("voltage_command", "pressure_a")]
+    (line,) = warnings(ill(friction, *holes))
+    assert line.startswith("Voltage command, pressure of chamber A: no sample for 0.5 s")
 
 
 def test_where_a_part_was_excluded_the_first_picture_shows_it(friction: Diagnosis) -> None:

@@ -17,6 +17,7 @@ from eha_core.report.wording import (
     channel_title,
     effect_title,
     listed,
+    plain,
     sentence,
     span,
     words,
@@ -127,7 +128,7 @@ def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
     # of several recordings, a remark begins with the path of its own
     shown = [sentence(remark) if remark.startswith("warning") else f"{remark}." for remark in doubts]
     damaged = f"Warning: the file is damaged, and this rests on what could be read: {diagnosis.damaged}."
-    faults = (sentence(line) for line in faults_told(diagnosis))
+    faults = (sentence(plain(line)) for line in faults_told(diagnosis))
     return (*shown, *([damaged] if diagnosis.damaged else ()), *faults)
 
 

@@ -137,4 +137,4 @@ def _residual(
     scale = scale_for(unit, float(np.abs(residual).max()))
     x, y = drawn_line(time, residual / scale.factor, spans, 1500)
     band = Band(-2.0 * noise / scale.factor, 2.0 * noise / scale.factor, "noise (2 standard deviations)")
-    return Panel((*shaded(spans), band, Line(x, y, role, LABELS[role], 1.0)), "time [s]", scale.unit, title, 84)
+    return Panel((band, *shaded(spans), Line(x, y, role, LABELS[role], 1.0)), "time [s]", scale.unit, title, 84)
