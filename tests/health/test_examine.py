@@ -80,6 +80,7 @@ STEPS = np.repeat(CHANCE.choice((-1.0, 1.0), 80), 50)
 COMMANDS = {
     "a binary sequence": STEPS,
     "a staircase": np.repeat(CHANCE.standard_normal(400), 10),
+    "a staircase of equal steps": np.repeat([0.0, 1.0, 2.0, 3.0], 1000),
     "a triangle": np.abs((TIME * 5.0) % 2.0 - 1.0),
     "a trapezoid": np.clip(2.0 * np.sin(2.0 * np.pi * TIME), -1.0, 1.0).round(1),
     "one step": np.where(TIME > 3.0, 1.0, 0.0),

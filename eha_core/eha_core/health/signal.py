@@ -129,7 +129,10 @@ class Signal:
 
     @cached_property
     def longest_repeat(self) -> int:
-        """Samples of one value in a row that a noisy channel has with the probability FALSE_ALARMS at most."""
+        """Samples of one value in a row that a noisy channel has with the probability FALSE_ALARMS at most; all of them
+        where its noise changes none."""
+        if not self.repeats < 1.0:
+            return len(self.values)
         return max(4, int(np.log(FALSE_ALARMS / len(self.values)) / np.log(self.repeats)) + 2)
 
     @cached_property
