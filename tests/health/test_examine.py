@@ -131,6 +131,19 @@ def pressure(values: np.ndarray) -> Recording:
     return eha.Recording.from_arrays(time=time, pressures="gauge", pressure_a=values)
 
 
+@pytest.mark.parametrize(("creep", "noise"), [(2.5e-5, 3e-6), (2.5e-6, 2e-5)])
+def test_a_sensor_that_changes_between_two_levels_neither_wraps_nor_shows_that_nothing_moves(
+    creep: float, noise: float
+) -> None:
+    """A piston that creeps by a share of its encoder's 0.1 mm about the edge of a level."""
+    command = np.sin(2.0 * np.pi * 0.25 * TIME)
+    moved = 5e-5 + creep * command + noise * np.random.default_rng(3).standard_normal(len(TIME))
+    shown = np.round(moved / 1e-4) * 1e-4
+    recording = eha.Recording.from_arrays(time=TIME, voltage_command=command, position=shown)
+    assert len(np.unique(shown)) == 2
+    assert (*examine(recording).faults, *unsuited(recording, nominal_values(), PAPER)) == ()
+
+
 def test_a_converter_that_shows_two_levels_has_no_spikes() -> None:
     """A pressure that rests by the edge of a level is now and then on the next one."""
     values = np.full(1600, 1.04e7)

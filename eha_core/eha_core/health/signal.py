@@ -94,13 +94,14 @@ class Signal:
 
     @cached_property
     def step(self) -> float:
-        """Quantisation step; 0 where its values are on no grid."""
-        return quantisation(self.values)
+        """Quantisation step; 0 where its values are on no grid. Of a channel that changes between two levels no grid is
+        known, and yet it is quantised by their distance."""
+        two_levels = len(np.unique(self.values)) == 2
+        return float(np.ptp(self.values)) if two_levels else quantisation(self.values)
 
     @cached_property
     def level(self) -> float:
-        """The least that two of its values differ by, where many are alike; 0 where they are not. Of a channel that
-        changes between two levels no grid is known, and yet its noise is that."""
+        """The least that two of its values differ by, where many are alike; `step` where they are not."""
         distinct = np.unique(self.values)
         apart = np.diff(distinct)
         apart = apart[apart > ROUNDING * float(np.max(np.abs(self.values)))]
