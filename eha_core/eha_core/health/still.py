@@ -37,7 +37,8 @@ def still(recording: Recording, nominal: Mapping[str, float], composition: Compo
     spans = 1e6 * float(np.ptp(signal.values))
     fault = Fault(
         signal.name, "still", float(signal.time[0]), float(signal.time[-1]),
-        f"does not move: it spans {spans:.3g} um, all of it noise", "record a test that moves the piston", False, True,
+        f"does not move: it spans {spans:.3g} um, all of it noise",
+        "see whether the piston or its sensor is stuck, and record a test that moves it", False, True,
     )  # fmt: skip
     return (fault,)
 
