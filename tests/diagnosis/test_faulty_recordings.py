@@ -107,6 +107,17 @@ def test_the_result_names_the_fault_and_no_physics(sound: Recording) -> None:
     assert fault["from"] == pytest.approx(3.0, abs=0.01) and fault["to"] == pytest.approx(5.0, abs=0.01)
 
 
+def test_of_a_split_bag_without_its_middle_only_what_is_missing_from_the_model_is_named() -> None:
+    friction = read_recording(BAGS / "rig_coulomb_friction.mcap")
+    split = without(friction, (*EVERY, "velocity"), lambda time: (time >= 4.0) & (time < 8.0))
+    found = document(diagnose(split, nominal_values()))
+    (effect,) = found["effects"]
+    assert effect["id"] == "coulomb_friction" and effect["active"] is None
+    assert effect["parameters"]["force"]["value"] == pytest.approx(250.0, abs=1.0)
+    spans = {fault["channel"]: (fault["from"], fault["to"]) for fault in found["health"]}
+    assert spans == {name: pytest.approx((4.0, 8.0), abs=0.01) for name in EVERY}
+
+
 def interpolated(time: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.interp(time, time[::10], values[::10])
 
