@@ -191,6 +191,17 @@ def test_a_position_that_passes_the_end_of_its_counter_slowly_wraps_all_the_same
     assert len(values) > 0.5 * len(TIME)
 
 
+@pytest.mark.parametrize(("factor", "kinds"), [(1.0, []), (4.0, ["jump"])])
+def test_a_scale_that_leaps_takes_a_coarse_sensors_levels_along(factor: float, kinds: list[str]) -> None:
+    """A pressure in steps of 75 kPa whose oil rings three times as much from 5 s on."""
+    generator = np.random.default_rng(11)
+    rough = 6e4 * np.where(TIME < 5.0, 1.0, 3.0) * generator.standard_normal(len(TIME))
+    shown = np.round((4e6 + 5e5 * np.sin(2.0 * np.pi * 0.5 * TIME) + rough) / 7.5e4) * 7.5e4
+    values = np.where(TIME < 5.0, shown, factor * shown)
+    recording = eha.Recording.from_arrays(time=TIME, pressures="gauge", pressure_a=values)
+    assert [fault.fault for fault in examine(recording).faults] == kinds
+
+
 def test_a_scale_leaps_at_the_moment_of_the_leap_whatever_the_noise_of_blocks_does() -> None:
     """A pressure that turns to kPa at 5.013 s; its noise grows and shrinks slowly by a tenth."""
     generator = np.random.default_rng(9)

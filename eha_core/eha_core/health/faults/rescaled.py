@@ -2,7 +2,8 @@
 
 The noise of a sensor is of one size as long as the sensor is the same. Where the blocks before a moment have less of
 it, or more, than those after it, and it is white on both sides, the scale is another one. Motion makes a channel rough,
-too, but smoothly so.
+too, but smoothly so. Oil that rings is taken for noise where the sensor is coarse; but a scale that leaps takes the
+sensor's levels along, and where these stay as far apart it is the same.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.health.fault import Fault, Found
-from eha_core.health.noise import Integers
+from eha_core.health.noise import Integers, quantisation
 from eha_core.health.signal import SAME_SIZE, Signal, by_differences
 from eha_core.recording.recording import FloatArray
 
@@ -34,7 +35,8 @@ def find(signal: Signal) -> Found | None:
     if not split:
         return None
     moment = _moment(signal, edges, split)
-    if not all(_is_white(part) for part in (signal.values[:moment], signal.values[moment:])):
+    sides = (signal.values[:moment], signal.values[moment:])
+    if not all(_is_white(side) for side in sides) or _have_the_same_levels(*sides):
         return None
     here = np.zeros(len(signal.values), dtype=np.bool_)
     shorter = slice(0, moment) if moment < len(here) / 2 else slice(moment, len(here))
@@ -71,6 +73,11 @@ def _split(sizes: FloatArray) -> tuple[int, float]:
 def _is_white(values: FloatArray) -> bool:
     third, fifth = (by_differences(values, order) for order in (3, 5))
     return SAME_SIZE[0] < third / max(fifth, 1e-300) < SAME_SIZE[1]
+
+
+def _have_the_same_levels(before: FloatArray, after: FloatArray) -> bool:
+    finer, coarser = sorted((quantisation(before), quantisation(after)))
+    return 0.0 < coarser < APART * finer
 
 
 def _moment(signal: Signal, edges: Integers, split: int) -> int:
