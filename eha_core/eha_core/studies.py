@@ -16,16 +16,17 @@ from eha_core.plant.fitted import read_diagnosis
 from eha_core.recording import Recording, read_recording
 
 if TYPE_CHECKING:
-    from eha_core.detectability import Certificate
+    from eha_core.detectability import Certificate, DesignedTest, PlannedTest
     from eha_core.error_budget import Budget, Rig, Task
     from eha_core.report.results import Results
     from eha_core.signals import Signal
 
 Array = NDArray[np.float64]
+Command = str | ArrayLike | tuple[ArrayLike, ArrayLike]
 
 
 def detect(
-    command: str | ArrayLike | tuple[ArrayLike, ArrayLike],
+    command: Command,
     nominal: Nominal = None,
     *,
     duration: float | None = None,
@@ -51,16 +52,57 @@ def detect(
     Raises:
         ParameterError: the command, the channels, the rate or the model do not fit.
     """
-    from eha_core.detectability import PlannedTest, certify
+    from eha_core.detectability import certify
+
+    return certify(given_model(nominal) or nominal_of({}), _planned(command, duration, channels, noise, rate))
+
+
+def design_test(
+    names: Sequence[str],
+    command: Command,
+    nominal: Nominal = None,
+    *,
+    limits: str | Path | None = None,
+    duration: float | None = None,
+    channels: Sequence[str] = ("position", "pressure_a", "pressure_b"),
+    noise: float = 1.0,
+    rate: float = 500.0,
+) -> DesignedTest:
+    """Design the test that shows the smallest sizes of some effects on a rig, and stays within its limits.
+
+    Args:
+        names: effects of the catalogue, or nominal parameters such as internal_leakage.
+        command: what the designed test is compared with, as `detect` takes it; both last as long.
+        nominal: the model of the rig, as `diagnose` takes it.
+        limits: a YAML file of position, speed, pressure, energy and voltage [SI]; by default what the model bears.
+        duration, channels, noise, rate: as `detect` takes them.
+
+    Returns:
+        The signal, what it shows beside the command, and how close rigs within the priors come to each limit;
+        `eha_core.report.designed_test` presents it.
+
+    Raises:
+        EhaError: the rig bears none of the signals within these limits.
+        ParameterError: names, limits, command or model do not fit.
+    """
+    from eha_core.detectability import design, read_limits
+
+    if not names:
+        raise ParameterError("no effect is named; give some of those that `eha effects` lists")
+    model = given_model(nominal) or nominal_of({})
+    return design(model, names, read_limits(limits, model), _planned(command, duration, channels, noise, rate))
+
+
+def _planned(
+    command: Command, duration: float | None, channels: Sequence[str], noise: float, rate: float
+) -> PlannedTest:
+    from eha_core.detectability import PlannedTest
 
     times, voltages, length = _given(command, duration, rate)
-    test = PlannedTest(times, voltages, duration or length, tuple(channels), noise, rate)
-    return certify(given_model(nominal) or nominal_of({}), test)
+    return PlannedTest(times, voltages, duration or length, tuple(channels), noise, rate)
 
 
-def _given(
-    command: str | ArrayLike | tuple[ArrayLike, ArrayLike], duration: float | None, rate: float
-) -> tuple[Array, Array, float]:
+def _given(command: Command, duration: float | None, rate: float) -> tuple[Array, Array, float]:
     """Instants [s] and voltages [V] of a command, and its length [s]."""
     from eha_core.signals import from_text
 

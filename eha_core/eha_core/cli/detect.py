@@ -1,18 +1,23 @@
-"""`eha detect`: say how small an effect a planned test shows, and what it cannot distinguish."""
+"""`eha detect`: say how small an effect a planned test shows, or design the test that shows some effects best."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eha_core.cli._study import check_outputs, present
+from eha_core.errors import EhaError
 
 # what simulates or plots is imported where it is used: the help and a refusal need none of it
 if TYPE_CHECKING:
+    from eha_core.cli._command import Samples
     from eha_core.detectability import Certificate
 
 _FOLDER = Path("out/detect")
+
+USUAL = "multisine:amplitude=0.12,lowest=0.3,highest=8,count=16,period=20,seed=5"
+"""The command of the example recordings, with which a designed test is compared where no other is given."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -27,8 +32,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         " white noise. What else a rig has makes all sizes larger.",
     )
     add = parser.add_argument
-    add("--command", required=True, metavar="RECORDING|FILE.csv|SIGNAL", help="the voltages of a file, or a signal such"
-        " as multisine:amplitude=0.12")  # fmt: skip
+    add("--command", metavar="RECORDING|FILE.csv|SIGNAL", help="the voltages of a file, or a signal such"
+        " as multisine:amplitude=0.12; with --for, what the designed test is compared with")  # fmt: skip
+    add("--for", dest="names", metavar="NAMES", help="design the test that shows these effects or nominal parameters"
+        " best, such as internal_leakage,coulomb_friction")  # fmt: skip
+    add("--within", type=Path, metavar="FILE", help="limits of the designed test in SI units: position, speed,"
+        " pressure, energy, voltage (default: 85 %% of the stroke, 1.2 times the supply pressure, and the voltage at"
+        " which the coil saturates)")  # fmt: skip
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="topics file that says where the voltage is recorded")
     add("--channels", default="position,pressure_a,pressure_b", metavar="NAMES", help="what is to be recorded"
@@ -43,19 +53,42 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb."""
     check_outputs(arguments, _FOLDER)
+    if arguments.names is not None:
+        return _design(arguments)
+    if arguments.command is None or arguments.within is not None:
+        raise EhaError("give a --command, or what a test is to be designed --for; only then --within counts")
     made = _certificate(arguments)
     from eha_core.report.detectability import account, as_json, write_certificate
 
     return present(arguments, _FOLDER, account(made), as_json(made), lambda folder: write_certificate(made, folder))
 
 
+def _design(arguments: argparse.Namespace) -> int:
+    from eha_core.report.designed_test import account, as_json, write_design
+    from eha_core.studies import design_test
+
+    arguments.command = arguments.command or USUAL
+    command, how = _planned(arguments)
+    made = design_test(_listed(arguments.names), command, arguments.nominal, limits=arguments.within, **how)
+    return present(arguments, _FOLDER, account(made), as_json(made), lambda folder: write_design(made, folder))
+
+
 def _certificate(arguments: argparse.Namespace) -> Certificate:
-    from eha_core.cli._command import read_command
     from eha_core.studies import detect
 
+    command, how = _planned(arguments)
+    return detect(command, arguments.nominal, **how)
+
+
+def _planned(arguments: argparse.Namespace) -> tuple[Samples, dict[str, Any]]:
+    """The command, instants and voltages, and how long and how what it does is recorded."""
+    from eha_core.cli._command import read_command
+
     times, voltages, duration = read_command(arguments, "voltage_command")
-    channels = tuple(name.strip() for name in arguments.channels.split(",") if name.strip())
-    return detect(
-        (times, voltages), arguments.nominal, duration=duration, channels=channels, noise=arguments.noise,
-        rate=arguments.rate,
-    )  # fmt: skip
+    channels = _listed(arguments.channels)
+    how = {"duration": duration, "channels": channels, "noise": arguments.noise, "rate": arguments.rate}
+    return (times, voltages), how
+
+
+def _listed(text: str) -> tuple[str, ...]:
+    return tuple(name.strip() for name in text.split(",") if name.strip())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from eha_core.diagnosis.result import Diagnosis, Experiment
 
@@ -42,12 +42,16 @@ def experiment_file(diagnosis: Diagnosis, experiment: Experiment) -> str:
         f"It lasts {experiment.duration:g} s. Record {', '.join(channels_to_record(diagnosis, experiment))}.",
         *commands(experiment).splitlines(),
     ]
-    parameters = {**experiment.reference, "duration": float(experiment.duration)}
+    return reference_file(heading, {**experiment.reference, "duration": float(experiment.duration)})
+
+
+def reference_file(heading: Sequence[str], parameters: Mapping[str, object]) -> str:
+    """A parameters file of the reference node: comments for people, then the parameters, as ROS reads them."""
     lines = [f"# {' '.join(line.split())}" for line in heading]
     return "\n".join([*lines, f"{NODE}:", "  ros__parameters:", *_rows(parameters)]) + "\n"
 
 
-def _rows(parameters: dict[str, object]) -> Iterator[str]:
+def _rows(parameters: Mapping[str, object]) -> Iterator[str]:
     for name, value in parameters.items():
         yield f"    {name}: {_scalar(value)}"
 

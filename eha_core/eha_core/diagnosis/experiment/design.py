@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eha_core.diagnosis.experiment.command_signal import CommandSignal
 from eha_core.diagnosis.experiment.discrimination import STEP, separation
 from eha_core.diagnosis.result import Experiment
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
-from eha_core.quantities import quantity
-from eha_core.signals import make_signal, signals
 
 DURATIONS = (10.0, 20.0, 40.0, 60.0)
 """s; how long a test may last. All trials are compared at the first, and LASTING of them, where that is too short, at
@@ -47,57 +46,32 @@ Rival = tuple[tuple[str, ...], Fit]
 
 
 @dataclass(frozen=True)
-class Trial:
-    """A signal for the reference generator, by name and parameters."""
-
-    signal: str
-    parameters: Mapping[str, float | str | bool]
-
-    def reference(self) -> dict[str, object]:
-        """As the reference node's parameters."""
-        return {
-            "mode": "voltage",
-            "signal": self.signal,
-            **{f"{self.signal}.{k}": v for k, v in self.parameters.items()},
-        }
-
-    def settings(self) -> str:
-        """Its parameters in words: "amplitude 0.45 V, frequency 2 Hz"."""
-        units = {row.name: row.unit.replace("same", "V") for row in signals()[self.signal].parameters()}
-        shown = {
-            name.replace("_", " "): quantity(value, units[name]) if isinstance(value, float) else value
-            for name, value in self.parameters.items()
-        }
-        return ", ".join(f"{name} {value}" for name, value in shown.items())
-
-    def voltage(self, duration: float) -> Array:
-        """Its voltage [V] for so long [s], one value a STEP."""
-        times = np.arange(round(duration / STEP)) * STEP
-        return np.asarray(make_signal(self.signal, dict(self.parameters)).value(times))
-
-
-@dataclass(frozen=True)
 class Discrimination:
     """A trial of some duration [s], and the chi^2 by which it separates the two rivals that are hardest to tell."""
 
-    trial: Trial
+    trial: CommandSignal
     duration: float
     separation: float
 
 
-def trials(level: float, limit: float) -> Iterator[Trial]:
+def trials(level: float, limit: float) -> Iterator[CommandSignal]:
     """Tests from a gentle share of the voltage used so far up to the limit [V], slow to fast."""
     for exact in np.geomspace(min(GENTLEST * level, limit), limit, LEVELS).tolist():
         amplitude = float(f"{exact:.{DIGITS}g}")
         for frequency in (0.3, 1.0, 3.0, 8.0):
-            yield Trial("sine", {"amplitude": amplitude, "frequency": frequency})
-        yield Trial(
+            yield CommandSignal("sine", {"amplitude": amplitude, "frequency": frequency})
+        yield CommandSignal(
             "chirp", {"amplitude": amplitude, "start_frequency": 0.2, "end_frequency": 12.0, "duration": DURATIONS[0]}
         )
         for period in (0.4, 1.5, 4.0):
-            yield Trial("square", {"amplitude": amplitude, "frequency": 1.0 / period})
-        yield Trial("prbs", {"amplitude": amplitude})
-        yield Trial("multisine", {"amplitude": amplitude})
+            yield CommandSignal("square", {"amplitude": amplitude, "frequency": 1.0 / period})
+        yield CommandSignal("prbs", {"amplitude": amplitude})
+        yield CommandSignal("multisine", {"amplitude": amplitude})
+
+
+def _times(duration: float) -> Array:
+    """When the voltage of a test changes: one instant a STEP [s]."""
+    return np.asarray(np.arange(round(duration / STEP)) * STEP, dtype=np.float64)
 
 
 def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, voltage_limit: float) -> Experiment:
@@ -144,13 +118,13 @@ def _best_discrimination(
     discriminations: list[Discrimination] = []
     while not discriminations and voltage_limit > FAINTEST:
         for trial in trials(level, voltage_limit):
-            separated = separation(trial.voltage(short), rivals, noises)
+            separated = separation(trial.voltage(_times(short)), rivals, noises)
             if separated is not None:
                 discriminations.append(Discrimination(trial, short, separated))
         voltage_limit = min(GENTLEST * level, voltage_limit)  # where the rig bears none of them, fainter ones
         level = GENTLEST * voltage_limit
     if not discriminations:
-        return Discrimination(Trial("sine", {"amplitude": 0.0, "frequency": 1.0}), short, 0.0)
+        return Discrimination(CommandSignal("sine", {"amplitude": 0.0, "frequency": 1.0}), short, 0.0)
     leading = sorted(discriminations, key=lambda discrimination: -discrimination.separation)[:LASTING]
     best = leading[0]
     if best.separation < TELLING:
@@ -163,5 +137,5 @@ def _lasting(discrimination: Discrimination, rivals: Sequence[Fit], noises: Mapp
     """The same trial for as long as it takes, if the rig bears that."""
     per_second = discrimination.separation / discrimination.duration
     duration = next((seconds for seconds in DURATIONS if seconds * per_second > TELLING), DURATIONS[-1])
-    separated = separation(discrimination.trial.voltage(duration), rivals, noises)
+    separated = separation(discrimination.trial.voltage(_times(duration)), rivals, noises)
     return discrimination if separated is None else Discrimination(discrimination.trial, duration, separated)

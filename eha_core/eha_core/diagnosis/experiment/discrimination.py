@@ -10,6 +10,7 @@ from itertools import permutations
 import numpy as np
 
 from eha_core.diagnosis.calibrate import STEPS
+from eha_core.diagnosis.experiment.limits import limits_of
 from eha_core.diagnosis.hypothesis import NOMINAL_NAMES
 from eha_core.identification.fit import SETTLED, Fit
 from eha_core.identification.free_parameters import FreeParameter, coordinates, values_at
@@ -21,12 +22,6 @@ STEP = STEPS[0]
 ROWS_EVERY = 5
 RATE = 1.0 / (STEP * ROWS_EVERY)
 """1/s; of the samples that are compared."""
-
-STROKE_SHARE = 0.85
-"""Of the stroke, that a test may use."""
-
-PRESSURE_SHARE = 1.2
-"""Of the supply pressure, that a chamber may reach in it; and none may fall to a vacuum."""
 
 MOVES = 6
 """How often, at most, a rival's parameters are moved to imitate another's outcome; the residual is linear in them."""
@@ -97,13 +92,8 @@ class _Test:
 
 def _is_bearable(rows: Array, values: Mapping[str, float]) -> bool:
     """Whether the piston stays inside the stroke, and its pressures between a vacuum and what the rig bears."""
-    if not np.all(np.isfinite(rows)):
-        return False
-    position = rows[:, COLUMNS.index("position")]
-    pressures = rows[:, [COLUMNS.index("pressure_a"), COLUMNS.index("pressure_b")]]
-    inside = bool(np.max(np.abs(position)) < STROKE_SHARE * values["actuator_displacement"])
-    most = PRESSURE_SHARE * values["supply_pressure"]
-    return inside and bool(np.min(pressures) > -values["atmospheric_pressure"] and np.max(pressures) < most)
+    shares = limits_of(values).shares(rows, STEP * ROWS_EVERY, values["atmospheric_pressure"])
+    return all(shares[name] < 1.0 for name in ("position", "pressure", "vacuum"))
 
 
 @dataclass(frozen=True)
