@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, log
+from math import exp, inf, log
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from tested_rig import at
 from eha_core.detectability.planned import RigAsModelled
 from eha_core.diagnosis.detection.responses import responses
 from eha_core.diagnosis.detection.rows import middle_shapes
-from eha_core.diagnosis.detection.sizes import CLOSE, next_guess, smallest, trials
+from eha_core.diagnosis.detection.sizes import CLOSE, _reached, next_guess, smallest, trials
 
 
 def found(energy, wanted: float, highest: float, passes: int = 10) -> float:
@@ -47,6 +47,14 @@ def test_an_effect_that_grows_and_levels_off_is_met_where_it_is_small() -> None:
 
 def test_what_never_shows_ends_at_the_highest_size() -> None:
     assert found(lambda _: -inf, log(66.0), log(50.0)) == pytest.approx(log(50.0))
+
+
+def test_a_response_that_is_not_of_its_size_states_nothing(rig: RigAsModelled) -> None:
+    trial = trials(rig)[0]
+    energy = log(trial.energy)
+    assert _reached([(0.0, energy + 9.0), (-7.0, energy + 9.0), (-14.0, energy + 9.0)], trial) == 0.0
+    assert _reached([(0.0, energy + 9.0), (-7.0, energy - 1.0), (-5.0, energy)], trial) == pytest.approx(exp(-5.0))
+    assert middle_shapes([trial], [0.0]) == ([], [])
 
 
 @pytest.fixture(scope="module")

@@ -28,9 +28,12 @@ LEAKS = ("internal_leakage_flow", "external_leakage_flow_a", "external_leakage_f
 
 def middle_shapes(tried: Sequence[Trial], factors: Sequence[float]) -> tuple[list[Trial], list[float]]:
     """Of each size of each effect the trial that is stated, and its factor: of the two signs the one that needs more,
-    and of the shapes that the search tries the one that needs the middle factor (the lower of two)."""
+    and of the shapes that the search tries the one that needs the middle factor (the lower of two). A trial whose
+    response is not of its size says nothing of it."""
     groups: dict[tuple[str, ...], dict[tuple[tuple[str, float], ...], int]] = {}
     for place, trial in enumerate(tried):
+        if factors[place] == 0.0:
+            continue
         shapes = groups.setdefault(trial.column.sizes, {})
         shape = tuple(sorted(trial.shape.items()))
         if shape not in shapes or factors[place] > factors[shapes[shape]]:

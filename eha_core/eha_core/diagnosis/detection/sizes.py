@@ -36,6 +36,10 @@ a stop, which only large motions meet, grows faster."""
 FARTHEST = 7.0
 """Logarithm of a factor by which a guess goes on from the last one at most: a thousand."""
 
+LEAST = -2.0 * FARTHEST
+"""Logarithm of the least factor that is tried: a response that is large enough at a millionth of the usual size is not
+of the size. An onset of leakage that takes the place of one which was moved on purpose shows by its instant."""
+
 
 @dataclass(frozen=True)
 class Trial:
@@ -108,7 +112,8 @@ def required_of_one_more(at: FittedModel) -> dict[Effect, float]:
 
 def smallest(at: FittedModel, tried: Sequence[Trial]) -> Array:
     """Of each trial, the factor on its size at which its response has the energy that is asked for; inf where none up
-    to the catalogue's bound has. Ten passes, each of one secant for every trial that is not there yet."""
+    to the catalogue's bound has, 0 where the response is no smaller for a smaller size. Ten passes, each of one secant
+    for every trial that is not there yet."""
     seen: list[list[Point]] = [[] for _ in tried]
     guesses = [min(0.0, log(trial.most)) for trial in tried]
     for _ in range(PASSES):
@@ -146,7 +151,9 @@ def next_guess(seen: Sequence[Point], wanted: float, highest: float) -> float:
 
 
 def _is_done(seen: Sequence[Point], trial: Trial) -> bool:
-    return bool(seen) and (abs(seen[-1][1] - log(trial.energy)) < CLOSE or _is_at_the_end(seen, trial))
+    return bool(seen) and (
+        abs(seen[-1][1] - log(trial.energy)) < CLOSE or _is_at_the_end(seen, trial) or seen[-1][0] <= LEAST
+    )
 
 
 def _is_at_the_end(seen: Sequence[Point], trial: Trial) -> bool:
@@ -157,4 +164,5 @@ def _is_at_the_end(seen: Sequence[Point], trial: Trial) -> bool:
 def _reached(seen: Sequence[Point], trial: Trial) -> float:
     """The factor that came nearest from above: what is claimed has to be found."""
     enough = [x for x, y in seen if y > log(trial.energy) - CLOSE]
-    return exp(min(enough)) if enough else inf
+    least = min(enough, default=inf)
+    return 0.0 if least <= LEAST else exp(least)
