@@ -71,39 +71,7 @@ EXPORT int fmi2DoStep(instance *made, double from, double size, int no_earlier_s
     return answer(made, unit_step(&made->unit, from, size));
 }
 
-EXPORT int fmi2GetFMUstate(instance *made, void **state) {
-    if (*state) memcpy(*state, &made->unit, sizeof(unit_state));
-    else *state = unit_copy(&made->unit);
-    return *state ? OK : ERROR;
-}
-
-EXPORT int fmi2SetFMUstate(instance *made, const void *state) {
-    memcpy(&made->unit, state, sizeof(unit_state));
-    return OK;
-}
-
-EXPORT int fmi2FreeFMUstate(instance *made, void **state) {
-    free(*state);
-    *state = 0;
-    return OK;
-}
-
-EXPORT int fmi2SerializedFMUstateSize(instance *made, const void *state, size_t *size) {
-    *size = sizeof(unit_state);
-    return OK;
-}
-
-EXPORT int fmi2SerializeFMUstate(instance *made, const void *state, char *bytes, size_t size) {
-    if (size < sizeof(unit_state)) return ERROR;
-    memcpy(bytes, state, sizeof(unit_state));
-    return OK;
-}
-
-EXPORT int fmi2DeSerializeFMUstate(instance *made, const char *bytes, size_t size, void **state) {
-    if (size != sizeof(unit_state)) return ERROR;
-    *state = unit_copy(bytes);
-    return *state ? OK : ERROR;
-}
+STATES(fmi2, FMUstate, DeSerialize, char)
 
 /* there are no variables of these types, and a request for none of them is granted */
 #define OTHER_TYPE(NAME) \

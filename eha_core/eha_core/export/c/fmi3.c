@@ -73,39 +73,7 @@ EXPORT int fmi3DoStep(instance *made, double from, double size, bool no_earlier_
     return answer(made, unit_step(&made->unit, from, size));
 }
 
-EXPORT int fmi3GetFMUState(instance *made, void **state) {
-    if (*state) memcpy(*state, &made->unit, sizeof(unit_state));
-    else *state = unit_copy(&made->unit);
-    return *state ? OK : ERROR;
-}
-
-EXPORT int fmi3SetFMUState(instance *made, const void *state) {
-    memcpy(&made->unit, state, sizeof(unit_state));
-    return OK;
-}
-
-EXPORT int fmi3FreeFMUState(instance *made, void **state) {
-    free(*state);
-    *state = 0;
-    return OK;
-}
-
-EXPORT int fmi3SerializedFMUStateSize(instance *made, const void *state, size_t *size) {
-    *size = sizeof(unit_state);
-    return OK;
-}
-
-EXPORT int fmi3SerializeFMUState(instance *made, const void *state, unsigned char *bytes, size_t size) {
-    if (size < sizeof(unit_state)) return ERROR;
-    memcpy(bytes, state, sizeof(unit_state));
-    return OK;
-}
-
-EXPORT int fmi3DeserializeFMUState(instance *made, const unsigned char *bytes, size_t size, void **state) {
-    if (size != sizeof(unit_state)) return ERROR;
-    *state = unit_copy(bytes);
-    return *state ? OK : ERROR;
-}
+STATES(fmi3, FMUState, Deserialize, unsigned char)
 
 /* there are no variables of these types, and a request for none of them is granted */
 #define OTHER_TYPE(NAME) \

@@ -84,9 +84,42 @@ static inline const char *unit_step(unit_state *unit, double from, double size) 
     return complaint(eha_advance(&unit->plant, unit->voltage, (int64_t)target - unit->plant.steps));
 }
 
-static inline void *unit_copy(const void *source) {
-    void *made = malloc(sizeof(unit_state));
-    return made ? memcpy(made, source, sizeof(unit_state)) : made;
+/* An FMU state is the same in both versions of FMI; these return FMI's status. */
+static inline int state_read(const void *bytes, void **state) {
+    if (!*state) *state = malloc(sizeof(unit_state));
+    if (*state) memcpy(*state, bytes, sizeof(unit_state));
+    return *state ? OK : ERROR;
 }
+
+static inline int state_write(const void *state, size_t size, void *bytes) {
+    if (size < sizeof(unit_state)) return ERROR;
+    memcpy(bytes, state, sizeof(unit_state));
+    return OK;
+}
+
+static inline int state_free(void **state) {
+    free(*state);
+    *state = 0;
+    return OK;
+}
+
+/* of FMI X, with `STATE` as it spells it in names and the type of its bytes */
+#define STATES(X, STATE, DESERIALIZE, BYTE) \
+    EXPORT int X##Get##STATE(instance *made, void **state) { return state_read(&made->unit, state); } \
+    EXPORT int X##Set##STATE(instance *made, const void *state) { \
+        return state_write(state, sizeof made->unit, &made->unit); \
+    } \
+    EXPORT int X##Free##STATE(instance *made, void **state) { return state_free(state); } \
+    EXPORT int X##Serialized##STATE##Size(instance *made, const void *state, size_t *size) { \
+        *size = sizeof(unit_state); \
+        return OK; \
+    } \
+    EXPORT int X##Serialize##STATE(instance *made, const void *state, BYTE *bytes, size_t size) { \
+        return state_write(state, size, bytes); \
+    } \
+    EXPORT int X##DESERIALIZE##STATE(instance *made, const BYTE *bytes, size_t size, void **state) { \
+        *state = 0; \
+        return size == sizeof(unit_state) ? state_read(bytes, state) : ERROR; \
+    }
 
 #endif
