@@ -43,7 +43,7 @@ contract: env  ## the contract tests on a real rclpy from PyPI (x86_64; PYTHON_O
 	    .venv-rclpy/bin/pip install --quiet setuptools==79.0.1 && \
 	    .venv-rclpy/bin/pip install --quiet --requirement requirements/rclpy.txt; }
 	$(WITH_PATH) .venv-rclpy/bin/python -m pytest rclpy_dds/tests/contract -rs -p no:launch_testing \
-	    -p no:cacheprovider -W ignore::DeprecationWarning
+	    --timeout=120 --timeout-method=thread -p no:cacheprovider -W ignore::DeprecationWarning
 	$(WITH_PATH) $(RUN)/python -m pytest rclpy_dds/tests/peers
 
 demo: env  ## the paper's experiment over DDS, then a rig with concealed physics diagnosed; all in out/demo/

@@ -125,7 +125,8 @@ def _live_and_die(context: rclpy.Context) -> None:
 
 @pytest.mark.parametrize(("own", "allowed"), [(False, 150_000), (True, 900_000)], ids=["one context", "own contexts"])
 def test_nodes_that_come_and_go_leave_nothing(graph: Graph, own: bool, allowed: int) -> None:
-    observer, cycles = graph.node("observer"), 150
+    observer = graph.node("observer")
+    cycles = 150 if IS_LAYER else 30  # ROS 2's own once hung for good among contexts that come and go
     # a node that was killed before, in another test, is missed when its lease has run out
     assert graph.spin_until(lambda: "/numbers" not in dict(observer.get_topic_names_and_types()), LEASE)
     for cycle in range(cycles):
