@@ -86,7 +86,7 @@ def test_what_the_model_has_is_not_raised() -> None:
 def test_a_departure_that_ends_is_forgotten() -> None:
     changes = [(2.0, "internal_leakage", 1e-10), (3.0, "internal_leakage", 1e-12)]
     found = beside(rig(7.0, changes=changes), Twin())
-    assert set(found[1][1].departs) == CHAMBERS
+    assert set(found[2][1].departs) == CHAMBERS
     assert not found[-1][1].departs
 
 
@@ -124,7 +124,7 @@ def test_the_drives_timeout_and_limit_are_the_twins_too() -> None:
     record = simulate(Experiment(times, voltages, 4.0, noise=1.0))  # a rig that holds its last voltage
     holding = beside(record, Twin(settings=Settings(command_timeout=0.0)))
     assert not any(comparison.departs for _, comparison in holding)
-    assert beside(record, Twin(settings=Settings(command_timeout=0.5)))[0][1].departs
+    assert beside(record, Twin(settings=Settings(command_timeout=0.5)))[1][1].departs  # from 1.0 s on
     assert beside(record, Twin(settings=Settings(command_timeout=0.0, command_limit=0.02)))[0][1].departs
 
 

@@ -34,7 +34,9 @@ OWN_ROWS = (
         fixed=True),
     Row("step_size", 1e-4, "step of the model [s]", 1e-6, 1e-3, fixed=True),
     Row("window", 1.0, "time after which the model is put back to the measured state [s]", 0.2, 3600.0, fixed=True),
-    Row("threshold", 5.0, "how many times the noise an equation may be off [-]", 1.0, 1e6, fixed=True),
+    Row("threshold", 1.5, "how many times the noise an equation may be off [-]", 1.0, 1e6, fixed=True),
+    Row("false_alarm_hours", 10_000.0, "mean time until an equation seems to be off by chance [h]", 1.0, 1e9,
+        fixed=True),
     Row("position_noise", 10e-6, "least noise of the position that is reckoned with [m]", 1e-12, 1.0, fixed=True),
     Row("pressure_noise", 1e4, "least noise of the pressures that is reckoned with [Pa]", 1e-3, 1e8, fixed=True),
     Row("command_timeout", 0.5, "time without a command until the rig's drive falls to zero [s]; 0: never",
@@ -42,7 +44,9 @@ OWN_ROWS = (
     Row("command_limit", 10.0, "largest voltage that the rig's drive takes, either sign [V]", 0.0, 1000.0, fixed=True),
     Row("diagnostics_rate", 1.0, "rate of /diagnostics, in wall-clock time [Hz]", 0.1, 100.0, fixed=True),
 )  # fmt: skip
-_SETTINGS = ("window", "threshold", "position_noise", "pressure_noise", "command_timeout", "command_limit")
+_SETTINGS = (
+    "window", "threshold", "false_alarm_hours", "position_noise", "pressure_noise", "command_timeout", "command_limit",
+)  # fmt: skip
 
 
 class TwinNode(rclpy.node.Node):

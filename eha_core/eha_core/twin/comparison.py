@@ -19,13 +19,15 @@ class Settings:
     Attributes:
         window: time after which the model is put back to the measured state [s].
         threshold: how many times the noise an equation, or the position, may be off.
+        false_alarm_hours: mean time until one of them seems to be off by more by chance [h].
         position_noise, pressure_noise: least noise reckoned with [m], [Pa]; more is read off the data.
         command_timeout: time without a command after which the drive's voltage is zero [s]; 0: never.
         command_limit: largest voltage the drive takes [V].
     """
 
     window: float = 1.0
-    threshold: float = 5.0
+    threshold: float = 1.5
+    false_alarm_hours: float = 10_000.0
     position_noise: float = 10e-6
     pressure_noise: float = 1e4
     command_timeout: float = 0.5

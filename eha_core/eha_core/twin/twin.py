@@ -13,14 +13,17 @@ from eha_core.health.noise import residual_noise
 from eha_core.plant import Plant, Trajectory
 from eha_core.realtime import NANOSECONDS
 from eha_core.twin.comparison import DRIFT, Comparison, Settings
+from eha_core.twin.evidence import Detector, log_e_value
 from eha_core.twin.samples import Array, Samples, nanoseconds
 from eha_core.twin.soundness import Soundness
 from eha_core.weak_form.model_errors import CHANNELS, EQUATIONS, equation_residuals
+from eha_core.weak_form.weighting import weighting
 
 _LEAD = 0.1  # s of command that coil and spool see before the first window
 _REACH = 0.02  # s to either side of a window's start from which its state is estimated
 _LATE = 0.1  # s that commands and samples may come after the position of their time
 _DEAD = 0.5  # s after which a channel that brings nothing is done without
+_SEEN_AT_ONCE = 3.0  # times what is allowed, beyond which a sample shows by itself when a departure began
 _GAP = 0.1  # s without position: what happened meanwhile is not known, and the model starts anew
 
 
@@ -43,6 +46,9 @@ class Twin:
         self._channels = {name: Samples() for name in CHANNELS}
         self._commands = Samples()
         self._applied = Samples()
+        windows = 3600.0 * self._settings.false_alarm_hours / self._settings.window
+        names = (DRIFT, *EQUATIONS)
+        self._detectors = {name: Detector(len(names) * windows) for name in names}
         self._since: dict[str, int] = {}
         self._soundness = Soundness()
         self._start: int | None = None  # of the window to come [ns]; None before there are samples enough
@@ -197,8 +203,9 @@ class Twin:
             period = self._every * self._plant.step_size
             residuals |= equation_residuals(errors, noises, model, self._plant.parameters, period)
         ratios = {name: _rms(residual) for name, residual in residuals.items()}
-        self._note(residuals, ratios, stamps)
-        departing = [name for name in EQUATIONS if name in self._since] or list(self._since)
+        self._note(residuals, stamps)
+        alarmed = [name for name, detector in self._detectors.items() if detector.is_alarmed and name in ratios]
+        departing = [name for name in EQUATIONS if name in alarmed] or alarmed
         departing.sort(key=lambda name: -ratios[name])
         return Comparison(
             start,
@@ -209,14 +216,18 @@ class Twin:
             unsound,
         )
 
-    def _note(self, residuals: Mapping[str, Array], ratios: Mapping[str, float], stamps: NDArray[np.int64]) -> None:
-        """Keep since when each equation departs, and forget those that no longer do."""
-        threshold = self._settings.threshold
+    def _note(self, residuals: Mapping[str, Array], stamps: NDArray[np.int64]) -> None:
+        """Weigh what each equation leaves, and keep since when one is suspicious."""
+        allowed = self._settings.threshold
+        apart = len(weighting(self._every * self._plant.step_size).weight)  # so that noise is independent
         for name, residual in residuals.items():
-            if ratios[name] > threshold and name not in self._since:
-                first = int(np.argmax(np.abs(residual) > threshold))
-                self._since[name] = int(stamps[first + (len(stamps) - len(residual)) // 2])
-        self._since = {name: since for name, since in self._since.items() if ratios.get(name, 0.0) > threshold}
+            detector = self._detectors[name]
+            detector.weigh(float(log_e_value(residual[::apart], allowed)))
+            if not detector.is_suspicious:
+                self._since.pop(name, None)
+            elif name not in self._since:
+                large = np.abs(residual) > _SEEN_AT_ONCE * allowed
+                self._since[name] = int(stamps[int(np.argmax(large)) + (len(stamps) - len(residual)) // 2])
 
 
 def _rms(values: Array) -> float:
