@@ -19,9 +19,12 @@ def definitions(kind: str) -> list[str]:
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version="0.2.0",
     description="Messages and services of the electro-hydraulic actuator simulator",
     license="Apache-2.0",
+    author="EHA simulator maintainers",
+    author_email="maintainers@eha-sim.example",
+    url="https://eha-sim.example",
     packages=[],
     data_files=[
         ("share/ament_index/resource_index/packages", [MARKER.as_posix()]),

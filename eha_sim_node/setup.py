@@ -14,11 +14,14 @@ def files(folder: str) -> list[str]:
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version="0.2.0",
     description="Nodes of the electro-hydraulic actuator simulator",
     license="Apache-2.0",
+    author="EHA simulator maintainers",
+    author_email="maintainers@eha-sim.example",
+    url="https://eha-sim.example",
     packages=[NAME, f"{NAME}.live"],
-    package_data={f"{NAME}.live": ["page.html"]},
+    package_data={NAME: ["py.typed"], f"{NAME}.live": ["page.html"]},
     package_dir={"": "."},  # so that an editable install wins over this folder when Python starts beside it
     python_requires=">=3.10",
     install_requires=["eha_core"],

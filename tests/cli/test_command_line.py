@@ -29,6 +29,8 @@ def test_the_actuator_s_packages_bear_one_version() -> None:
         assert f"<version>{here}</version>" in path.read_text(), path
     for path in ("eha_sim_node/setup.py", "eha_interfaces/setup.py"):  # rclpy_dds is released on its own
         assert re.search(rf'^\s*version ?= ?"{re.escape(here)}"', (ROOT / path).read_text(), re.MULTILINE), path
+    assert f"\nversion: {here}\n" in (ROOT / "CITATION.cff").read_text()
+    assert re.findall(r"^## (\S+?),? ", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[0] == here
 
 
 def test_the_exam_s_help_has_each_tier_as_a_word(capsys: pytest.CaptureFixture[str]) -> None:
