@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import venv
+import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -38,6 +39,7 @@ def main() -> int:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     wheels = build(folder)
+    check_contents(wheels)
     python = install(folder / "environment", wheels)
     use(python, folder / "elsewhere")
     print(f"wheels: {', '.join(wheel.name for wheel in wheels)} install and work")
@@ -51,10 +53,20 @@ def build(folder: Path) -> list[Path]:
         copy = folder / "sources" / name
         ignored = shutil.ignore_patterns("*.egg-info", "build", "__pycache__")
         sources.append(shutil.copytree(ROOT / name, copy, ignore=ignored))
+        shutil.copy(ROOT / "LICENSE", copy)
     command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
     subprocess.run([*command, "--wheel-dir", folder, *sources], check=True)
     shutil.rmtree(folder / "sources")
     return sorted(folder.glob("*.whl"))
+
+
+def check_contents(wheels: list[Path]) -> None:
+    """Every wheel carries the licence, and one with Python code the mark that says it is typed."""
+    for wheel in wheels:
+        names = zipfile.ZipFile(wheel).namelist()
+        wanted = ["LICENSE"] + ["py.typed"] * any(name.endswith(".py") for name in names)
+        if lacking := [file for file in wanted if not any(name.endswith(f"/{file}") for name in names)]:
+            raise SystemExit(f"{wheel.name} lacks {' and '.join(lacking)}")
 
 
 def install(folder: Path, wheels: list[Path]) -> Path:
