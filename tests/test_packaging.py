@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import configparser
 import json
+import re
+import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
+import pytest
+import yaml
 from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+from tools.make_env import PYTHONS  # noqa: E402 - a tool, which no package holds
+
 OF_ANOTHER_NUMPY = {"pysindy", "scikit-learn"}
 
 
@@ -56,3 +64,29 @@ def test_what_is_optional_allows_what_is_tested() -> None:
 def test_the_container_makes_the_environment() -> None:
     settings = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
     assert settings["postCreateCommand"].startswith("make ")
+
+
+def test_continuous_integration_runs_every_python_by_the_makefile() -> None:
+    jobs = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())["jobs"]
+    assert jobs["test"]["strategy"]["matrix"]["python"] == [f"{major}.{minor}" for major, minor in PYTHONS]
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    commands = [step["run"].split() for job in jobs.values() for step in job["steps"] if "run" in step]
+    assert commands
+    for words in commands:
+        assert words[0] == "make"
+        assert {word for word in words[1:] if "=" not in word} <= targets, words
+
+
+@pytest.mark.parametrize("name", ["eha_core", "eha_sim_node", "rclpy_dds"])
+def test_python_packages_are_marked_as_typed(name: str) -> None:
+    assert (ROOT / name / name / "py.typed").is_file()  # that wheels carry it is seen by `make wheels`
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("*/package.xml")), ids=lambda path: path.parent.name)
+def test_ros_packages_say_what_a_release_asks_for(path: Path) -> None:
+    package = ElementTree.parse(path).getroot()
+    for tag in ("description", "license", "author", "maintainer", "export/build_type"):
+        assert package.findtext(tag), tag
+    assert package.find("maintainer").get("email")
+    assert {url.get("type") for url in package.findall("url")} == {"website", "repository", "bugtracker"}
+    assert (path.parent / "CHANGELOG.rst").read_text().splitlines()[1].endswith(package.findtext("name"))
