@@ -16,7 +16,7 @@ from eha_core.cli import main, verbs
 from eha_core.effects import effects
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").glob("*.md"))]
 MADE = re.compile(r"catalogue/\w+\.md")
 """Pages that are made when the site is."""
 
