@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from eha_core.errors import EhaError, ParameterError, RecordingError
+from eha_core.nominal import load_nominal
 from eha_core.parameters import load_parameters
 from eha_core.recording import load_topics_file, read_recording
 from eha_core.yaml_file import load_yaml
@@ -22,6 +25,7 @@ HOSTILE = {
     "sixties": ("channels: {position: {scale: " + "1:" * 5000 + "1}}", "a number of more than 30 digits"),
     "a date that is none": ("channels: {position: {scale: 2024-99-99}}", "holds a value that is none"),
     "a Python object": ("channels: !!python/object/apply:os.system [true]", "could not determine a constructor"),
+    "a key twice": ("a: {}\nchannels: {}\nchannels: {}\n", "line 3: channels is already in line 2"),
     "size": ("# " + "x" * 2**20 + "\nchannels: {}\n", "is larger than 1 MB"),
 }
 
@@ -53,6 +57,33 @@ def test_what_is_read_is_what_the_safe_loader_reads(tmp_path: Path) -> None:
     assert load_yaml(path, EhaError, "file") == {
         "a": 1, "b": [1e-3, "two", None, True], "c": {"d": "12345678901234567890123456789012345"},
     }  # fmt: skip
+
+
+def test_numbers_are_those_of_ros_2_s_own_reader(tmp_path: Path) -> None:
+    """No sixties, and no point where there is an exponent."""
+    path = tmp_path / "file.yaml"
+    path.write_text("[1:30:00, -1:30.5, 1e-10, -2.5E3, .inf, 0x1F, 7, 0.0, 1e5x, +.5]")
+    assert load_yaml(path, EhaError, "file") == [
+        "1:30:00", "-1:30.5", 1e-10, -2500.0, float("inf"), 31, 7, 0.0, "1e5x", 0.5,
+    ]  # fmt: skip
+
+
+def test_a_nominal_file_of_sixty_thousand_unknown_keys_is_refused_in_linear_time(tmp_path: Path) -> None:
+    def seconds(count: int) -> float:
+        path = tmp_path / f"{count}.yaml"
+        path.write_text("eha_sim:\n  ros__parameters:\n" + "".join(f"    k{k}: 1\n" for k in range(count)))
+        started = time.process_time()
+        with pytest.raises(ParameterError, match=r"there is no parameter named k0;"):
+            load_nominal(path)
+        return time.process_time() - started
+
+    assert seconds(60_000) < max(20.0 * seconds(6_000), 1.0)
+
+
+def test_both_packages_read_by_the_same_file() -> None:
+    """A link: neither may import the other, and nothing is written twice."""
+    of_layer, of_library = (find_spec(f"{package}.bounded_yaml") for package in ("rclpy_dds", "eha_core"))
+    assert of_layer and of_library and Path(str(of_layer.origin)).samefile(str(of_library.origin))
 
 
 def test_messages_hold_no_escape_sequence_and_end(tmp_path: Path) -> None:

@@ -7,9 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import yaml
-
-from rclpy_dds import ros_yaml
+from rclpy_dds import bounded_yaml
 
 
 class UnknownRosArguments(ValueError):
@@ -127,9 +125,9 @@ def _parameter(text: str) -> ParameterRule:
     if not separator or not name:
         raise ValueError(f"Couldn't parse parameter override rule '-p {text}': write name:=value")
     try:
-        loaded = ros_yaml.load(value)
-    except yaml.YAMLError as error:
-        raise ValueError(f"Couldn't parse parameter override rule '-p {text}': the value is no YAML") from error
+        loaded = bounded_yaml.load(value)
+    except bounded_yaml.YamlError as error:
+        raise ValueError(f"Couldn't parse parameter override rule '-p {text}': {error}") from error
     return ParameterRule(f"/**/{node}" if node else "/**", name, check_value(name, loaded))
 
 
@@ -159,10 +157,9 @@ def read_parameter_file(path: str) -> list[ParameterRule]:
         ValueError: the file cannot be read or is none.
     """
     try:
-        with open(path, encoding="utf-8") as file:
-            content = ros_yaml.load(file)
-    except (OSError, yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ValueError(f"Couldn't parse params file {path!r}: {' '.join(str(error).split())}") from error
+        content = bounded_yaml.load_file(path)
+    except (OSError, bounded_yaml.YamlError) as error:
+        raise ValueError(f"Couldn't parse params file {path!r}: {error}") from error
     if not isinstance(content, dict):
         raise ValueError(f"Couldn't parse params file {path!r}: it must map node names to ros__parameters")
     rules: list[ParameterRule] = []

@@ -38,14 +38,33 @@ def test_a_parameters_file_that_is_refused(rig: Rig, text: str, named: str) -> N
     assert "Traceback" not in process.output
 
 
-@pytest.mark.parametrize("content", [None, "eha_sim: [unclosed"], ids=["missing", "no YAML"])
-def test_a_parameters_file_that_cannot_be_read(rig: Rig, content: str | None) -> None:
+ALIASES = "/**:\n  ros__parameters:\n    a: &a {x: 1.0, y: 2.0}\n" + "".join(
+    f"    {new}: &{new} {{{', '.join(f'k{k}: *{old}' for k in range(9))}}}\n"
+    for old, new in zip("abcdefgh", "bcdefghi", strict=True)
+)
+"""Nine to the eighth values in less than a kilobyte."""
+TWICE = "/**:\n  ros__parameters:\n    moving_mass: 9.0\n    moving_mass: 90.0\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [
+        (None, "No such file"),
+        ("eha_sim: [unclosed", "this is not YAML"),
+        (ALIASES, "line 4: aliases are not read"),
+        (TWICE, "line 4: moving_mass is already in line 3"),
+        ("/**: {ros__parameters: {moving_mass: 1:30:00}}", "moving_mass"),
+    ],
+    ids=["missing", "no YAML", "aliases", "a key twice", "sixties"],
+)
+def test_a_parameters_file_that_cannot_be_read(rig: Rig, content: str | None, named: str) -> None:
     path = rig.folder / "bad.yaml"
     if content is not None:
         path.write_text(content)
     process = rig.start("sim", "--params-file", str(path))
     assert process.wait() == 2
-    assert "bad.yaml" in process.output
+    lines = [line for line in process.output.splitlines() if line.startswith("eha_sim:")]
+    assert len(lines) == 1 and named in lines[0]
     assert "Traceback" not in process.output
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 import yaml
 
-from rclpy_dds import ros_yaml
+from rclpy_dds import bounded_yaml
 from rclpy_dds.errors import CommandError
 from rclpy_dds.interfaces.message import Message, interface_class, message_class
 
@@ -36,16 +36,16 @@ def load_class(name: str, kind: str) -> Any:
         ) from None
 
 
-def load_values(text: str, what: str = "value") -> dict[str, Any]:
+def load_values(text: str) -> dict[str, Any]:
     """Return the dictionary a YAML text holds.
 
     Raises:
         CommandError: it holds none.
     """
     try:
-        values = ros_yaml.load(text)
-    except yaml.YAMLError as error:
-        raise CommandError(f"The passed value is no YAML: {' '.join(str(error).split())}") from None
+        values = bounded_yaml.load(text)
+    except bounded_yaml.YamlError as error:
+        raise CommandError(f"The passed value: {error}") from None
     if values is None:
         return {}
     if not isinstance(values, dict):

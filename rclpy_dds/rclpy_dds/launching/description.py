@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 from ament_index_python.packages import get_package_prefix, get_package_share_directory
 
-from rclpy_dds import ros_yaml
+from rclpy_dds import bounded_yaml
 from rclpy_dds.errors import CommandError
 from rclpy_dds.executables import find_executable
 
@@ -83,10 +83,9 @@ def declared_arguments(path: str) -> list[tuple[str, str | None, str]]:
 
 def _load(path: str) -> list[Any]:
     try:
-        with open(path, encoding="utf-8") as file:
-            content = ros_yaml.load(file)
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise LaunchError(f"{path}: cannot read the launch file: {' '.join(str(error).split())}") from None
+        content = bounded_yaml.load_file(path)
+    except (OSError, bounded_yaml.YamlError) as error:
+        raise LaunchError(f"{path}: cannot read the launch file: {error}") from None
     if not isinstance(content, dict) or not isinstance(content.get("launch"), list):
         raise LaunchError(f"{path}: a launch file holds a list under 'launch:'")
     return content["launch"]
@@ -220,7 +219,7 @@ def _parameter(entry: dict[str, Any], scope: _Scope, prefix: str) -> list[str]:
 def _substituted(value: Any, scope: _Scope) -> Any:
     if isinstance(value, list):
         return [_substituted(item, scope) for item in value]
-    return ros_yaml.load(_text(value, scope)) if isinstance(value, str) and "$(" in value else value
+    return bounded_yaml.load(_text(value, scope)) if isinstance(value, str) and "$(" in value else value
 
 
 def _executable(attributes: dict[str, Any], scope: _Scope) -> None:

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-import yaml
 from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader, make_reader
 from mcap.records import Channel, Message, Schema
+
+from rclpy_dds import bounded_yaml
 
 
 class RecordingError(ValueError):
@@ -74,10 +75,9 @@ def _metadata(path: str) -> dict[str, Any]:
     if not os.path.isfile(file_name):
         return {}
     try:
-        with open(file_name, encoding="utf-8") as file:
-            return dict(yaml.safe_load(file)["rosbag2_bagfile_information"])
-    except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError) as error:
-        raise RecordingError(f"{file_name} is no metadata of rosbag2: {' '.join(str(error).split())}") from None
+        return dict(bounded_yaml.load_file(file_name)["rosbag2_bagfile_information"])
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        raise RecordingError(f"{file_name} is no metadata of rosbag2: {error}") from None
 
 
 def summarise(path: str) -> Recording:

@@ -7,12 +7,12 @@ import time
 from typing import Any
 
 import rclpy
-import yaml
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
+from rclpy_dds import bounded_yaml
 from rclpy_dds.commands.bag import pattern
 from rclpy_dds.commands.common import command_node
 from rclpy_dds.errors import CommandError
@@ -151,11 +151,11 @@ class _Player:
 def _offered(metadata: dict[str, str]) -> QoSProfile:
     """Return a profile that serves every subscription the recorded publishers served."""
     try:
-        profiles = yaml.safe_load(metadata.get("offered_qos_profiles", "")) or []
+        profiles = bounded_yaml.load(metadata.get("offered_qos_profiles", "")) or []
         reliable = all(str(p.get("reliability")) in ("reliable", "1", "system_default", "0") for p in profiles)
         latched = bool(profiles) and all(str(p.get("durability")) in ("transient_local", "1") for p in profiles)
         depth = max([10, *(int(p.get("depth") or 0) for p in profiles)])
-    except (yaml.YAMLError, AttributeError, TypeError, ValueError):
+    except (AttributeError, TypeError, ValueError):
         return QoSProfile(depth=10)
     return QoSProfile(
         depth=min(depth, 1000),

@@ -6,11 +6,10 @@ import array
 from enum import Enum
 from typing import Any
 
-import yaml
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType, ParameterValue
 
-from rclpy_dds import ros_yaml
+from rclpy_dds import bounded_yaml
 
 PARAMETER_SEPARATOR_STRING = "."
 _LISTS = (list, tuple, array.array)
@@ -129,8 +128,8 @@ def get_parameter_value(string_value: str) -> Any:
     Unlike PyYAML, `1e-10` is a number here, as it is in parameters files read by ROS 2 itself.
     """
     try:
-        loaded = ros_yaml.load(string_value)
-    except yaml.YAMLError:
+        loaded = bounded_yaml.load(string_value)
+    except bounded_yaml.YamlError:
         loaded = string_value
     if isinstance(loaded, list) and loaded:
         try:
@@ -176,8 +175,7 @@ def parameter_dict_from_yaml_file(
     Raises:
         RuntimeError: a node is not in the file, or the file is no parameters file.
     """
-    with open(parameter_file, encoding="utf-8") as file:
-        content = ros_yaml.load(file)
+    content = bounded_yaml.load_file(parameter_file)
     keys = ["/**"] if use_wildcard and "/**" in content else []
     for node in target_nodes or ():
         if node not in content:

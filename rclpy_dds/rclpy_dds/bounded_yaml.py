@@ -1,0 +1,1 @@
+../../eha_core/eha_core/bounded_yaml.py
