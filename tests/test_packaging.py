@@ -5,6 +5,7 @@ from __future__ import annotations
 import configparser
 import json
 import re
+import subprocess
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -90,3 +91,11 @@ def test_ros_packages_say_what_a_release_asks_for(path: Path) -> None:
     assert package.find("maintainer").get("email")
     assert {url.get("type") for url in package.findall("url")} == {"website", "repository", "bugtracker"}
     assert (path.parent / "CHANGELOG.rst").read_text().splitlines()[1].endswith(package.findtext("name"))
+
+
+def test_help_is_printed_and_makes_no_environment(tmp_path: Path) -> None:
+    command = [sys.executable, ROOT / "tools" / "make_env.py"]
+    for option, status in (("--help", 0), ("-h", 0), ("--fresh", 2)):
+        done = subprocess.run([*command, option], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == status and "usage: python3 tools/make_env.py FOLDER" in done.stdout + done.stderr
+    assert not list(tmp_path.iterdir())

@@ -25,6 +25,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PYTHONS = [(3, minor) for minor in (10, 11, 12, 13)]
 PIP_WHEEL = "pip-26.3-py3-none-any.whl"
 PIP_SHA256 = "f3b60b20ffaadd4415ed7957212a38ac63fa4c5fa375bd0f4a797777940fad13"
+USAGE = "usage: python3 tools/make_env.py FOLDER"
 DEFAULT_INDEX = "https://pypi.org/simple"
 EDITABLE = ("eha_core", "eha_sim_node", "rclpy_dds")
 DEFINITIONS = "eha_interfaces"
@@ -50,12 +51,16 @@ class CannotMake(Exception):
 
 def main() -> int:
     """Make the environment that the command line names, unless it is up to date."""
-    if len(sys.argv) != 2:
-        print("usage: python3 tools/make_env.py FOLDER", file=sys.stderr)
+    arguments = sys.argv[1:]
+    if {"-h", "--help"} & set(arguments):
+        print(f"{USAGE}\n\n{__doc__}")
+        return 0
+    if len(arguments) != 1 or arguments[0].startswith("-"):
+        print(USAGE, file=sys.stderr)
         return 2
     if sys.version_info[:2] not in PYTHONS:
         return run_by_another_python()
-    folder = Path(sys.argv[1]).absolute()
+    folder = Path(arguments[0]).absolute()
     stamp = folder / "made-from"
     wanted = fingerprint()
     if stamp.is_file() and stamp.read_text() == wanted and python_of(folder).exists():
