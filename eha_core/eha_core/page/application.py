@@ -70,7 +70,7 @@ class _Pages:
     async def file(self, request: Request) -> Response:
         name = plain_name(request.query_params.get("name", ""))
         length = request.headers.get("content-length", "")
-        if length.isdigit() and int(length) > self._most:
+        if length.isdecimal() and int(length) > self._most:
             raise too_large(name, self._most)
         # a folder of its own, so that a name cannot be taken
         path = Path(mkdtemp(dir=self._uploads)) / name
@@ -101,7 +101,7 @@ class _Pages:
 
     async def progress(self, request: Request) -> Response:
         start = request.query_params.get("from", "0")
-        return JSONResponse(self._session.progress(int(start) if start.isdigit() else 0))
+        return JSONResponse(self._session.progress(int(start) if start.isdecimal() else 0))
 
     async def stop(self, request: Request) -> Response:
         await run_in_threadpool(self._session.stop)
@@ -149,7 +149,7 @@ async def _json(request: Request) -> dict[str, Any]:
             raise TooLarge("the page sent more than it has to say")
     try:
         given = json.loads(body)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise EhaError("the page sent no JSON; load it again") from error
     if not isinstance(given, dict):
         raise EhaError("the page sent no object; load it again")
