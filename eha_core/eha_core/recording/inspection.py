@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from math import inf, nan
 from pathlib import Path
 
@@ -25,6 +26,8 @@ from eha_core.recording.time_units import repeats, unwrapped, usual_step
 from eha_core.recording.topic_columns import BLOCK, TopicColumns
 from eha_core.tables import Table, is_table, read_table
 
+MOST_TOPICS = 1000
+"""Topics of a recording that are listed; a robot has some hundred (assumed)."""
 MOST_FIELDS = 200
 """Numbers of a topic, or columns of a table, that are listed."""
 LONGEST_ARRAY = 12
@@ -152,10 +155,13 @@ def _column(name: str, values: NDArray[np.generic], table: Table) -> Field:
 
 
 def _of_bag(path: Path) -> Inspection:
-    topics = bag_topics(path)
+    found = bag_topics(path)
+    topics = dict(islice(found.items(), MOST_TOPICS))
     watches = {name: _Watch(topic, value_names(path, topics, name)) for name, topic in topics.items()}
     raw = read_bag(path, watches)
     remarks = [remark for watch in watches.values() for remark in watch.remarks]
+    if len(found) > MOST_TOPICS:
+        remarks.append(f"{len(found) - MOST_TOPICS} topics more are not listed; a topics file can name them")
     damaged = printable("; ".join(raw.damage)) if raw.damage else None
     types = {name: topic.type_name for name, topic in topics.items()}
     fields = [field for watch in watches.values() for field in watch.fields()]

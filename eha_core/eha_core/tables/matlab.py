@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from io import BytesIO
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from eha_core.errors import RecordingError
 from eha_core.tables.mat5_elements import unpacked
 from eha_core.tables.optional import required
 from eha_core.tables.own_times import by_length
-from eha_core.tables.table import LARGEST, MOST_CELLS, MOST_COLUMNS, Column, Table, as_column, distinct
+from eha_core.tables.table import LARGEST, MOST_COLUMNS, Column, Table, as_column, distinct, refuse_large
 
 DEEPEST = 8
 """Levels of structures in structures; a logged Simulink data set has four."""
@@ -71,15 +72,14 @@ class _Gathered:
         self._texts: list[tuple[str, list[str]]] = []
         self._matrices: dict[str, int] = {}
         self._cells = 0
+        self._longest = 0
         self._elements = 0
 
-    def count(self, cells: int) -> None:
-        """Count numbers before they are read. Raises RecordingError where they are too many."""
-        self._cells += cells
-        if self._cells > MOST_CELLS or len(self.columns) > MOST_COLUMNS:
-            raise RecordingError(
-                f"{self._where}: has more than {MOST_CELLS} numbers or {MOST_COLUMNS} columns; keep fewer"
-            )
+    def count(self, shape: Sequence[int]) -> None:
+        """Count an array's numbers before they are read or copied. Raises RecordingError where they are too many."""
+        self._cells += prod(shape)
+        self._longest = max(self._longest, *shape, 1)
+        refuse_large(self._where, self._cells, len(self.columns), self._longest)
 
     def element(self) -> None:
         """Count an element of a structure or cell array."""
@@ -93,7 +93,7 @@ class _Gathered:
         column = as_column(array)
         if column is None or array.ndim not in (1, 2) or max(array.shape) < 2:
             return
-        self.count(array.size)
+        self.count(array.shape)
         if array.ndim == 1:
             self.columns.append((path, column))
             return
@@ -235,7 +235,7 @@ def _value_73(h5py: Any, item: Any, gathered: _Gathered) -> Any:
     # What lies outside of the file, or is put together from elsewhere, is none of its data.
     if item.external or item.is_virtual or "MATLAB_empty" in item.attrs:
         return None
-    gathered.count(item.size)
+    gathered.count(item.shape or ())
     if item.dtype == h5py.ref_dtype:
         for _ in range(item.size):
             gathered.element()

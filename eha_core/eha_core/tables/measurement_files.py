@@ -11,7 +11,7 @@ import numpy as np
 from eha_core.errors import RecordingError
 from eha_core.tables.optional import required
 from eha_core.tables.own_times import columns_with_times
-from eha_core.tables.table import LARGEST, MOST_CELLS, MOST_COLUMNS, Column, Table, as_column
+from eha_core.tables.table import LARGEST, Column, Table, as_column, refuse_large
 
 Signal = tuple[str, str, Column, "Column | None", str]
 """A signal's name, unit, values, times where it has some, and those times' unit."""
@@ -109,14 +109,11 @@ def _table(path: Path, kind: str, signals: Any) -> Table:
         if path.stat().st_size > LARGEST:
             raise RecordingError(f"{path}: is larger than {LARGEST / 1e9:.1f} GB; cut it, or convert it to MCAP")
         found: list[Signal] = []
-        cells = 0
+        cells = longest = 0
         for signal in signals():
-            cells += len(signal[2])
-            if cells > MOST_CELLS or len(found) >= MOST_COLUMNS:
-                raise RecordingError(
-                    f"{path}: has more than {MOST_CELLS} numbers or {MOST_COLUMNS} columns; keep fewer"
-                )
+            cells, longest = cells + len(signal[2]), max(longest, len(signal[2]))
             found.append(signal)
+            refuse_large(path, cells, len(found), longest)
     except RecordingError:
         raise
     except Exception as error:  # damaged bytes lead the libraries to whatever Python can raise

@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.errors import RecordingError
 from eha_core.tables.optional import required
-from eha_core.tables.table import MOST_CELLS, MOST_COLUMNS, Column, Table, as_column
+from eha_core.tables.table import Column, Table, as_column, refuse_large
 
 
 def read_parquet_table(path: Path) -> Table:
@@ -25,13 +25,14 @@ def read_parquet_table(path: Path) -> Table:
             schema = file.schema_arrow
             wanted = [k for k, field in enumerate(schema) if _is_numeric(arrow, field.type)]
             rows, groups = file.metadata.num_rows, file.metadata.num_row_groups
-            if rows * max(len(wanted), 1) > MOST_CELLS or len(wanted) > MOST_COLUMNS or groups > rows:
-                raise RecordingError(
-                    f"{path}: has more than {MOST_CELLS} numbers or {MOST_COLUMNS} columns; keep fewer"
-                )
+            if groups > rows:
+                raise RecordingError(f"{path}: has more groups of rows than rows; write it anew")
+            refuse_large(path, rows * len(wanted), len(wanted), rows)
             names = [schema.names[k] for k in wanted]
-            table = file.read(columns=names, use_threads=False)
-            columns = {name: _column(arrow, table.column(name)) for name in names}
+            # One column after the other: Arrow's form of the whole would be a second table in memory.
+            columns = {
+                name: _column(arrow, file.read(columns=[name], use_threads=False).column(name)) for name in names
+            }
             units = {name: unit for name in names if (unit := _unit(arrow, schema.field(name)))}
     except (arrow.ArrowException, OSError, ValueError, KeyError, TypeError, OverflowError, MemoryError) as error:
         raise RecordingError(f"{path}: cannot be read as a Parquet file ({error})") from error

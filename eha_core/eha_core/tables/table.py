@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eha_core.errors import RecordingError
+
 Column = NDArray[Any]
 """One dimension, of float64; or of int64 where every value is a whole number that float64 may not hold."""
 
@@ -16,6 +18,11 @@ MOST_COLUMNS = 1000
 """No logger of a rig writes more; a table grows with columns times rows, whatever the file's size."""
 MOST_CELLS = 2**27
 """Numbers of a table, which take 1 GB: three hours of ten channels at 1 kHz."""
+MOST_MEMORY = 3 * 2**29
+"""Bytes that reading a table, and listing what is in it, may take at its peak: half of what a small laptop has free
+(assumed). The longest table that fits is still one of three hours of ten channels at 1 kHz."""
+COPIES = 5
+"""Copies of one column that are in memory at once while it is converted and outlined."""
 LONGEST_QUOTE = 40
 """Characters of a cell that are quoted."""
 LARGEST = 2**30
@@ -85,6 +92,25 @@ class Table:
     rate: float | None = None
     losses: Mapping[str, Loss] = field(default_factory=dict)
     other_orders: Mapping[str, OtherOrder] = field(default_factory=dict)
+
+
+def refuse_large(where: object, cells: int, columns: int, longest: int) -> None:
+    """Raise RecordingError for a table that takes too much memory, before it is read.
+
+    Args:
+        where: the file.
+        cells: numbers of all columns together.
+        columns: how many columns.
+        longest: numbers of the longest column.
+    """
+    needed = 8 * (cells + COPIES * longest)
+    if cells > MOST_CELLS or columns > MOST_COLUMNS:
+        raise RecordingError(f"{where}: has more than {MOST_CELLS} numbers or {MOST_COLUMNS} columns; keep fewer")
+    if needed > MOST_MEMORY:
+        raise RecordingError(
+            f"{where}: takes {needed / 1e9:.1f} GB to read, more than {MOST_MEMORY / 1e9:.1f} GB; keep fewer numbers, "
+            "or convert it to MCAP"
+        )
 
 
 def as_column(values: Any) -> Column | None:
