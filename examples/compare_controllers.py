@@ -128,7 +128,7 @@ def compare(fitted: Path, logs: Path) -> list[dict[str, Any]]:
     processes, conductor, rows = Processes(logs), None, []
     signal = ("mode:=position", "lockstep:=true", f"sine.amplitude:={AMPLITUDE}", f"sine.frequency:={FREQUENCY}")
     try:
-        processes.start("sim", "-p", "time_mode:=lockstep", "-p", "start_paused:=true")
+        processes.start("sim", "-p", "time_mode:=lockstep", "-p", "lockstep_patience:=0.0", "-p", "start_paused:=true")
         processes.start("reference", *(word for given in signal for word in ("-p", given)))
         conductor = Comparison(processes)
         conductor.await_nodes(())

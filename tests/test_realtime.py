@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from eha_core.realtime import NANOSECONDS, CommandInput, LockstepGate, Pacer
+from eha_core.realtime import NANOSECONDS, STEADY_ANSWERS, CommandInput, LockstepGate, Pacer
 
 MILLISECOND = 1_000_000
 
@@ -299,3 +299,24 @@ def test_a_command_that_does_not_come_is_waited_for_as_long_as_patience_lasts(ha
     assert not gate.give_up(1)
     hand.move(110)
     assert gate.give_up(1) and gate.uncommanded == 2
+
+
+def test_a_controller_that_answers_no_tick_is_waited_for_once_and_one_that_does_again(hand: Hand) -> None:
+    gate = LockstepGate(patience=0.01, first_answer=5.0, clock=lambda: hand.now / NANOSECONDS)
+    gate.tick_wanted(1, 1)
+    hand.move(300)
+    assert gate.tick_wanted(1, 1)
+    hand.move(4990)
+    assert not gate.give_up(1) and gate.waited(1) == pytest.approx(4.99) and gate.waited(0) == 0.0
+    hand.move(20)
+    assert gate.give_up(1) and gate.on_clock
+    hand.move(11)
+    assert gate.give_up(1)
+    for _ in range(STEADY_ANSWERS):
+        assert gate.on_clock
+        gate.command_arrived()
+        assert gate.take()
+    hand.move(4990)
+    assert not gate.on_clock and not gate.give_up(1)
+    hand.move(20)
+    assert gate.give_up(1) and gate.uncommanded == 3

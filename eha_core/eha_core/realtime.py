@@ -16,6 +16,14 @@ import numpy as np
 NANOSECONDS = 1_000_000_000
 
 
+LONG_WAIT = 1.0
+"""Wall-clock seconds in lockstep after which a command that does not come, with somebody there to send it, is reported:
+assumed, more than a controller's step takes."""
+FIRST_ANSWER = 5.0
+"""Wall-clock seconds until a controller that answers no tick is taken for one on the simulated clock, which waits for
+time to pass: assumed, as long as a controller needs to load and compile."""
+STEADY_ANSWERS = 50
+"""Ticks answered one after the other by which a controller is known to answer each: assumed."""
 OVERRUN_SHARE = 0.05
 """Share of late ticks from which a controller sees another rig than the one simulated: assumed, one in twenty."""
 
@@ -222,15 +230,24 @@ class LockstepGate:
     been still for `settle` seconds after a change, until a command shows that somebody hears it. A new commander starts
     this again; a recorder that joins while a controller is thinking does not.
 
-    A controller that is itself driven by the simulated clock may need time to pass before its first command. With a
-    `patience` [s], a period whose command does not come within it after its tick may be taken all the same;
-    `uncommanded` counts those.
+    A controller that is itself driven by the simulated clock needs time to pass before it commands. With a `patience`
+    [s], the first period whose command does not come within `first_answer` [s] (`patience`, where that is longer) may
+    be taken all the same, and from then on each whose command does not come within `patience`, until `STEADY_ANSWERS`
+    ticks in a row were answered. `uncommanded` counts the periods without a command.
     """
 
-    def __init__(self, settle: float = 0.2, patience: float = 0.0, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        settle: float = 0.2,
+        patience: float = 0.0,
+        clock: Callable[[], float] = time.monotonic,
+        first_answer: float = 0.0,
+    ) -> None:
         self._settle = settle
         self._patience = patience
+        self._first_answer = max(first_answer, patience)
         self._clock = clock
+        self._answers = STEADY_ANSWERS  # ticks answered since the latest that was not
         self._ticked_at: float | None = None
         self._peers: tuple[int, int] = (0, 0)
         self._changed_at: float | None = None
@@ -254,6 +271,17 @@ class LockstepGate:
     def paused(self) -> bool:
         """Whether no further period may pass."""
         return self._allowance == 0
+
+    @property
+    def on_clock(self) -> bool:
+        """Whether the controller lets ticks pass unanswered, as one on the simulated clock does."""
+        return self._answers < STEADY_ANSWERS
+
+    def waited(self, commanders: int) -> float:
+        """How long the command of this tick has not come, though somebody is there to send it [s]; 0 while paused."""
+        if self.paused or self._pending or not commanders or self._ticked_at is None:
+            return 0.0
+        return self._clock() - self._ticked_at
 
     def pause(self) -> None:
         """Let no period pass until `resume` or `allow`."""
@@ -284,16 +312,17 @@ class LockstepGate:
         if not self._pending or self._allowance == 0:
             return False
         self._pending = False
+        self._answers += 1
         self._use_period()
         return True
 
     def give_up(self, commanders: int) -> bool:
         """Return whether the period may pass without its command, which the matched commanders have kept for too
         long."""
-        if self.paused or self._pending or not self._patience or not commanders or self._ticked_at is None:
+        longest = self._patience if self.on_clock else self._first_answer
+        if not self._patience or self.waited(commanders) < longest:
             return False
-        if self._clock() - self._ticked_at < self._patience:
-            return False
+        self._answers = 0
         self._use_period()
         self.uncommanded += 1
         return True

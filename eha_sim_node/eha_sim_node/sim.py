@@ -51,9 +51,9 @@ OWN_ROWS = (
     Row("command_limit", 10.0, "largest voltage that the drive takes, either sign [V]; assumed", 0.0, 1000.0),
     Row(
         "lockstep_patience",
-        0.0,
+        0.01,  # a period of 2 ms at a fifth of the wall clock's pace; a timer's command comes within a few ms (assumed)
         "wall-clock time that a period in time_mode lockstep waits for its command before it is taken with the voltage"
-        " in force [s]; 0: for ever",
+        " in force [s], once the controller has left a tick unanswered for 5 s; 0: for ever",
         0.0,
         3600.0,
         fixed=True,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 from rclpy.clock import Clock, ClockType
 
 from eha_core.errors import EhaError
-from eha_core.realtime import NANOSECONDS, LockstepGate, Pacer
+from eha_core.realtime import FIRST_ANSWER, LONG_WAIT, NANOSECONDS, LockstepGate, Pacer
 from eha_sim_node.parameters import Value
 
 if TYPE_CHECKING:
@@ -186,12 +186,15 @@ class Lockstep:
 
     def __init__(self, node: SimNode, settings: Mapping[str, Value]) -> None:
         self._node = node
-        self._gate = LockstepGate(patience=settings["lockstep_patience"])
+        self._patience = settings["lockstep_patience"]
+        self._gate = LockstepGate(patience=self._patience, first_answer=FIRST_ANSWER)
         if settings["start_paused"]:
             self._gate.pause()
         self._tick_published = False
         self._told_uncommanded = 0
-        check = min(_PEER_CHECK, settings["lockstep_patience"] or _PEER_CHECK)
+        self._told_waiting = False
+        self._reported = (time.monotonic(), 0)
+        check = min(_PEER_CHECK, self._patience / 2 or _PEER_CHECK)
         self._timer = node.create_timer(check, self._check_peers, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _check_peers(self) -> None:
@@ -199,7 +202,29 @@ class Lockstep:
         if self._gate.tick_wanted(commanders, listeners):
             self._publish_tick()
         elif self._gate.give_up(commanders):
+            if self._gate.uncommanded == 1:
+                self._node.get_logger().warning(
+                    f"time now moves without commands, a period of {self._node.period:g} s every {self._patience:g} s"
+                    " of the wall clock or slower, as a controller on a timer with use_sim_time:=true needs it"
+                )
             self._node.advance()
+        self._tell_waiting(commanders)
+
+    def _tell_waiting(self, commanders: int) -> None:
+        waiting = self._waiting(commanders)
+        if waiting and not self._told_waiting:
+            self._node.get_logger().warning(waiting)
+        self._told_waiting = bool(waiting)
+
+    def _waiting(self, commanders: int) -> str:
+        """What to do where a command is awaited for long, with somebody there to send it; empty where none is."""
+        if self._gate.waited(commanders) < LONG_WAIT:
+            return ""
+        what = f"no command for {LONG_WAIT:g} s, though a publisher is there: answer each joint_states with one command"
+        if not self._patience:
+            return f"{what}, or set lockstep_patience above 0 for a controller on a timer with use_sim_time:=true"
+        longest = max(FIRST_ANSWER, self._patience)
+        return f"{what}; after {longest:g} s time moves without one (lockstep_patience:=0.0: never)"
 
     def _publish_tick(self) -> None:
         self._tick_published = True
@@ -261,12 +286,18 @@ class Lockstep:
         """Nothing to do: commands set the pace."""
 
     def report(self) -> tuple[dict[str, object], list[str]]:
-        """Whether a command is awaited, and commands that came twice for a step."""
+        """Whether a command is awaited, how fast time runs, and commands that came twice for a step or not at all."""
+        (reported_at, elapsed), now = self._reported, time.monotonic()
+        self._reported = (now, self._node.elapsed)
+        simulated = (self._node.elapsed - elapsed) / NANOSECONDS
         values: dict[str, object] = {
             "paused": self._gate.paused,
             "waiting": self._gate.waiting,
+            "real_time_factor": simulated / (now - reported_at) if now > reported_at else 0.0,
             "surplus_commands": self._gate.surplus,
             "periods_without_command": self._gate.uncommanded,
         }
         missed, self._told_uncommanded = self._gate.uncommanded - self._told_uncommanded, self._gate.uncommanded
-        return values, [f"{missed} periods taken without a command"] if missed else []
+        waiting = self._waiting(self._node.peers[0])
+        troubles = [waiting] if waiting else []
+        return values, troubles + ([f"{missed} periods taken without a command"] if missed else [])

@@ -151,9 +151,9 @@ class _Handler(BaseHTTPRequestHandler):
     def _number(self) -> float:
         length = self.headers.get("Content-Length", "")
         try:
-            value = json.loads(self.rfile.read(int(length))) if 0 < int(length) <= LARGEST_REQUEST else None
-            usable = isinstance(value, (int, float)) and not isinstance(value, bool)
-            if usable and isfinite(value) and value >= 0.0:
+            value: Any = json.loads(self.rfile.read(int(length))) if 0 < int(length) <= LARGEST_REQUEST else None
+            number = isinstance(value, (int, float)) and not isinstance(value, bool)
+            if number and isfinite(value) and value >= 0.0:
                 return float(value)
         except (ValueError, OverflowError, RecursionError):
             pass
