@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from typing import Any
 
 import rclpy
+import rclpy.parameter
+from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -22,11 +24,14 @@ from rclpy.qos import (
     ReliabilityPolicy,
 )
 from rclpy.task import Future
+from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
+from rclpy_dds.commands.values import load_class
 from rclpy_dds.errors import CommandError
 
 HIDDEN_NODE_PREFIX = "_"
 _POLL = 0.02
+_STEADY = ClockType.STEADY_TIME
 # What a participant that was discovered may take to tell its endpoints and nodes: Fast DDS' heartbeats come every 3 s.
 _SLOWEST_DISCOVERY = 5.0
 
@@ -186,3 +191,43 @@ def offered_qos(node: Node, topic: str) -> QoSProfile:
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
     )
+
+
+def add_watched(parser: argparse.ArgumentParser, window: int) -> None:
+    """Add a topic to watch, and how many of its last messages count."""
+    add_spin_time(parser)
+    parser.add_argument("topic_name", help="Name of the ROS topic to listen to (e.g. '/chatter')")
+    parser.add_argument(
+        "--window", "-w", type=int, default=window, help="window size, in # of messages (default: %(default)s)"
+    )
+
+
+def watch(
+    args: argparse.Namespace, add: Callable[[Any, Node], None], summary: Callable[[], str], raw: bool = True
+) -> None:
+    """Give every message of a topic to `add`, and print what `summary` says once a second, until Ctrl-C."""
+    sim_time = [rclpy.parameter.Parameter("use_sim_time", value=True)] if args.use_sim_time else []
+    with command_node(parameter_overrides=sim_time) as node:
+        name = topic_type(node, args.topic_name, None)
+        assert name is not None
+        qos = offered_qos(node, args.topic_name)
+        node.create_subscription(load_class(name, "msg"), args.topic_name, lambda m: add(m, node), qos, raw=raw)
+        node.create_timer(1.0, lambda: print(summary(), end="", flush=True), clock=Clock(clock_type=_STEADY))
+        spin(node)
+
+
+def add_found(parser: argparse.ArgumentParser, kind: str) -> None:
+    """Add the type that topics or services are looked for by."""
+    add_spin_time(parser)
+    parser.add_argument(f"{kind}_type", metavar=f"{kind}_type", help=f"Name of the ROS {kind} type to filter for")
+    parser.add_argument("-c", f"--count-{kind}s", dest="count", action="store_true", help="Only display the number")
+    parser.add_argument(f"--include-hidden-{kind}s", dest="hidden", action="store_true", help="Consider hidden ones")
+
+
+def print_found(args: argparse.Namespace, wanted: str, query: Callable[[Node], list[tuple[str, list[str]]]]) -> None:
+    """Print what is of a type, or how many."""
+    with command_node() as node:
+        discover(node, args)
+        names = [name for name, types in query(node) if wanted in types]
+    shown = [name for name in names if args.hidden or not topic_or_service_is_hidden(name)]
+    print(len(shown) if args.count else "\n".join(shown), end="\n" if shown or args.count else "")

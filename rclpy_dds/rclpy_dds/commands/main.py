@@ -13,10 +13,21 @@ from typing import Any
 from rclpy_dds import commands
 from rclpy_dds.errors import CommandError
 
+_ROS_2 = "install ROS 2 for it (https://docs.ros.org)"
 _NOT_OFFERED = {
-    "action": "actions", "component": "components", "lifecycle": "lifecycle nodes", "daemon": "the daemon",
-    "doctor": "doctor", "multicast": "multicast tests", "pkg": "package tools", "security": "security", "wtf": "doctor",
+    "action": ("actions", _ROS_2), "lifecycle": ("lifecycle nodes", _ROS_2), "security": ("security", _ROS_2),
+    "component": ("components", "start each node with `ros2 run`"),
+    "daemon": ("a daemon", "a command finds the nodes by itself; `--spin-time` says for how long it looks"),
+    "multicast": ("multicast tests", "`ros2 doctor` reports settings, topics and what does not match"),
+    "wtf": ("wtf", "use `ros2 doctor`"),
 }  # fmt: skip
+"""Commands of ROS 2 that are missing, and what to do in their place."""
+_INSTEAD = {
+    "bag reindex": "bag info", "interface package": "interface list", "interface packages": "interface list",
+    "interface proto": "interface show", "pkg list": "pkg executables", "service info": "service type",
+}  # fmt: skip
+"""Verbs of ROS 2 that are missing, and those that say the like."""
+_HELPERS = ("main", "common", "values", "param_common")
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -26,12 +37,11 @@ def main(argv: list[str] | None = None) -> int:
     if real_rclpy_present() and importlib.util.find_spec("ros2cli") is not None:
         return int(importlib.import_module("ros2cli.cli").main(argv=argv) or 0)
     arguments = sys.argv[1:] if argv is None else argv
-    if arguments and arguments[0] in _NOT_OFFERED:
-        print(
-            f"ros2: rclpy_dds does not offer {_NOT_OFFERED[arguments[0]]}; install ROS 2 for it (https://docs.ros.org)",
-            file=sys.stderr,
-        )
+    if missing := _missing(arguments):
+        print(missing, file=sys.stderr)
         return 1
+    if not arguments or (len(arguments) == 1 and _verbs(arguments[0])):
+        arguments = [*arguments, "--help"]
     try:
         args = _parser(arguments).parse_args(arguments)
         result = args.run(args)
@@ -55,26 +65,49 @@ def _one_line(error: Exception) -> str:
     return text if isinstance(error, CommandError) or "\n" not in text else " ".join(text.split())
 
 
+def _commands() -> list[str]:
+    return [info.name for info in pkgutil.iter_modules(commands.__path__) if info.name not in _HELPERS]
+
+
+def _verbs(name: str) -> list[str]:
+    """The verbs of a command; none where it has none, or there is no such command."""
+    folders = [os.path.join(path, name) for path in commands.__path__]
+    return [info.name for info in pkgutil.iter_modules(folders)] if name in _commands() else []
+
+
+def _missing(arguments: list[str]) -> str:
+    """What to do in place of a command or verb that is missing; empty where it is there."""
+    name, verb = [*arguments[:2], "", ""][:2]
+    if name in _NOT_OFFERED:
+        what, instead = _NOT_OFFERED[name]
+        return f"ros2: rclpy_dds does not offer {what}; {instead}"
+    if name and not name.startswith("-") and name not in _commands():
+        return f"ros2: there is no command {name!r}; it has {', '.join(_commands())}"
+    verbs = _verbs(name)
+    if verbs and verb and not verb.startswith("-") and verb not in verbs:
+        like = _INSTEAD.get(f"{name} {verb}")
+        instead = f"`ros2 {like}` says the like" if like else f"it has {', '.join(verbs)}; {_ROS_2}"
+        return f"ros2 {name}: rclpy_dds does not offer {verb!r}; {instead}"
+    return ""
+
+
 def _parser(arguments: list[str]) -> argparse.ArgumentParser:
     """Return the parser with the modules the arguments need loaded: start-up time counts on a command line."""
     parser = argparse.ArgumentParser(prog="ros2", description="ros2 is an extensible command-line tool for ROS 2.")
     subparsers = parser.add_subparsers(metavar="Call `ros2 <command> -h` for more detailed usage.", required=True)
-    for info in pkgutil.iter_modules(commands.__path__):
-        if info.name in ("main", "common", "values", "param_common"):
+    for name in _commands():
+        if arguments[0] != name and not arguments[0].startswith("-"):
+            subparsers.add_parser(name)
             continue
-        if not arguments or arguments[0] != info.name:
-            subparsers.add_parser(info.name)
+        module, verbs = importlib.import_module(f"{commands.__name__}.{name}"), _verbs(name)
+        if not verbs:
+            _add(subparsers, name, module)
             continue
-        module = importlib.import_module(f"{commands.__name__}.{info.name}")
-        if not info.ispkg:
-            _add(subparsers, info.name, module)
-            continue
-        command = subparsers.add_parser(info.name, help=module.__doc__, description=module.__doc__)
-        verbs = command.add_subparsers(
-            metavar=f"Call `ros2 {info.name} <verb> -h` for more detailed usage.", required=True
-        )
-        for verb in pkgutil.iter_modules(module.__path__):
-            _add(verbs, verb.name.rstrip("_"), importlib.import_module(f"{module.__name__}.{verb.name}"))
+        about = (module.__doc__ or "").partition(": ")[2].strip(".\n")
+        command = subparsers.add_parser(name, help=f"{about}: {', '.join(verbs)}", description=module.__doc__)
+        inner = command.add_subparsers(metavar=f"Call `ros2 {name} <verb> -h` for more detailed usage.", required=True)
+        for verb in verbs if arguments[0] == name else ():
+            _add(inner, verb, importlib.import_module(f"{module.__name__}.{verb}"))
     return parser
 
 

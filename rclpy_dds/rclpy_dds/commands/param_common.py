@@ -6,10 +6,10 @@ import argparse
 from typing import Any
 
 from rcl_interfaces.msg import ParameterType
-from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 from rclpy.node import Node
 
-from rclpy_dds.commands.common import add_spin_time, call, full_node_names, wait_in_graph
+from rclpy_dds.commands.common import add_spin_time, call, command_node, full_node_names, wait_in_graph
 from rclpy_dds.errors import CommandError
 
 TYPE_NAMES = {
@@ -65,3 +65,16 @@ def list_names(node: Node, target: str, prefixes: list[str], timeout: float) -> 
     """Return the names of a node's parameters, sorted."""
     request = ListParameters.Request(prefixes=prefixes)
     return sorted(call(node, ListParameters, f"{target}/list_parameters", request, timeout).result.names)
+
+
+def set_one(args: argparse.Namespace, parameter: Any, done: str, failed: str) -> str | None:
+    """Set one parameter of the node asked for; print what was done, or return what failed, with the node's reason."""
+    with command_node() as node:
+        target = find_node(node, args)
+        request = SetParameters.Request(parameters=[parameter])
+        result = call(node, SetParameters, f"{target}/set_parameters", request, args.timeout).results[0]
+    reason = f": {result.reason}" if result.reason else ""
+    if not result.successful:
+        return f"{failed}{reason}"
+    print(f"{done}{reason}")
+    return None

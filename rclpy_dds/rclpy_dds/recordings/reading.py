@@ -76,6 +76,8 @@ def _metadata(path: str) -> dict[str, Any]:
         return {}
     try:
         return dict(bounded_yaml.load_file(file_name)["rosbag2_bagfile_information"])
+    except bounded_yaml.YamlError:
+        return {}  # its files are found by their names; this layer's recorder once wrote aliases
     except (OSError, KeyError, TypeError, ValueError) as error:
         raise RecordingError(f"{file_name} is no metadata of rosbag2: {error}") from None
 

@@ -83,8 +83,12 @@ class RecordingWriter:
             yaml.safe_dump({"rosbag2_bagfile_information": information}, file, sort_keys=False)
 
     def _information(self) -> dict[str, Any]:
-        duration = {"nanoseconds": self._end - self._start}
-        start = {"nanoseconds_since_epoch": self._start}
+        def times() -> dict[str, Any]:  # one object in two places would be an alias, which careful readers refuse
+            return {
+                "duration": {"nanoseconds": self._end - self._start},
+                "starting_time": {"nanoseconds_since_epoch": self._start},
+            }
+
         topics = [
             {
                 "topic_metadata": {
@@ -101,16 +105,13 @@ class RecordingWriter:
         return {
             "version": _METADATA_VERSION,
             "storage_identifier": "mcap",
-            "duration": duration,
-            "starting_time": start,
+            **times(),
             "message_count": self.count,
             "topics_with_message_count": topics,
             "compression_format": "",
             "compression_mode": "",
             "relative_file_paths": [self.file_name],
-            "files": [
-                {"path": self.file_name, "starting_time": start, "duration": duration, "message_count": self.count}
-            ],
+            "files": [{"path": self.file_name, **times(), "message_count": self.count}],
             "custom_data": None,
             "ros_distro": DISTRIBUTION,
         }

@@ -123,6 +123,7 @@ def test_a_recording_is_made_described_and_played(graph: Graph, tmp_path: Path) 
         graph.spin_until(lambda: time.monotonic() > end)
         recorder.interrupt()
         assert recorder.result()[0] == 0
+    assert ": &" not in (bag / "metadata.yaml").read_text()  # aliases, which careful readers refuse
     information = _run(None, "bag", "info", str(bag))[1]
     assert f"Topic: /x | Type: std_msgs/msg/Float64 | Count: {len(sent)} | Serialization Format: cdr" in information
     received: list[float] = []

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from contract.commands import run as _run
 from contract.conftest import Graph
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Float64
 
 from rclpy_dds.commands import main as command
 
@@ -34,7 +36,13 @@ def test_a_dump_of_a_group_called_like_a_parameter_is_a_parameters_file(graph: G
         (["topic", "echo", "/nothing"], "Could not determine the type"),
         (["bag", "info", "/nothing.mcap"], "does not exist"),
         (["launch", "no_package", "x.launch.yaml"], "not found"),
-        (["action", "list"], "does not offer actions"),
+        (["action", "list"], "does not offer actions; install ROS 2"),
+        (["daemon", "start"], "a command finds the nodes by itself"),
+        (["topics"], "there is no command 'topics'; it has bag, doctor"),
+        (["topic", "rate", "/x"], "does not offer 'rate'; it has bw, delay, echo, find, hz"),
+        (["pkg", "list"], "`ros2 pkg executables` says the like"),
+        (["pkg", "executables", "no_package"], "Package 'no_package' not found"),
+        (["topic", "pub", "-1", "/x", "std_msgs/msg/Float64", "{data: 1, data: 2}"], "data is already in line 1"),
     ],
 )
 def test_what_cannot_be_done_is_one_line_and_a_status(arguments: list[str], expected: str) -> None:
@@ -51,6 +59,27 @@ def test_an_unusable_launch_file_is_one_line(tmp_path: Path, text: str) -> None:
     file.write_text(text)
     status, _, errors = _run(None, "launch", str(file))
     assert status == 1 and str(file) in errors and len(errors.strip().splitlines()) == 1
+
+
+def test_help_lists_commands_with_their_verbs() -> None:
+    for arguments in ([], ["--help"]):
+        status, output, _ = _run(None, *arguments)
+        shown = " ".join(output.split())
+        assert status == 0 and "topics: bw, delay, echo, find, hz, info, list, pub, type" in shown
+        assert "run Run a package specific executable." in shown and "packages: executables" in shown
+    status, output, _ = _run(None, "param")
+    assert status == 0 and "delete Delete parameter." in " ".join(output.split())
+
+
+def test_doctor_reports_settings_topics_and_what_does_not_match(graph: Graph) -> None:
+    node = graph.node("speaker")
+    node.create_publisher(Float64, "x", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
+    node.create_subscription(Float64, "x", lambda message: None, 10)
+    status, output, errors = _run(graph, "doctor", "--report", "--spin-time", "2")
+    assert status == 0, errors
+    report = " ".join(output.split())
+    assert "/x : 1 publishers, 1 subscribers" in report and "ROS_DOMAIN_ID : " in report
+    assert "/x : speaker to speaker: " in report.partition("QOS COMPATIBILITY LIST")[2]
 
 
 def test_ctrl_c_while_it_starts_ends_it_without_a_traceback(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,62 +6,62 @@ import argparse
 import statistics
 import time
 from collections import deque
+from collections.abc import Callable
 
-from rclpy_dds.commands.common import add_spin_time, command_node, offered_qos, spin, topic_type
-from rclpy_dds.commands.values import load_class
+from rclpy_dds.commands.common import add_watched, watch
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this verb's options."""
-    add_spin_time(parser)
-    parser.add_argument("topic_name", help="Name of the ROS topic to listen to (e.g. '/chatter')")
-    parser.add_argument(
-        "--window", "-w", type=int, default=10000, help="window size, in # of messages (default: 10000)"
-    )
+    add_watched(parser, 10000)
     parser.add_argument("--wall-time", action="store_true", help="calculates rate using wall time, as is done anyway")
 
 
-def main(args: argparse.Namespace) -> str | None:
+def main(args: argparse.Namespace) -> None:
     """Print the rate once a second."""
-    with command_node() as node:
-        name = topic_type(node, args.topic_name, None)
-        assert name is not None
-        rates = Rates(args.window)
-        node.create_subscription(
-            load_class(name, "msg"),
-            args.topic_name,
-            lambda _: rates.add(time.monotonic()),
-            offered_qos(node, args.topic_name),
-            raw=True,
+    rates = Rates(args.window)
+    watch(args, lambda *_: rates.add(time.monotonic()), rates.summary)
+
+
+class Spread:
+    """The last of some times [s], and what ros2 prints of them."""
+
+    def __init__(self, window: int) -> None:
+        self._values: deque[float] = deque(maxlen=max(1, window))
+
+    def note(self, value: float) -> None:
+        """Take one more."""
+        self._values.append(value)
+
+    def lines(self, head: Callable[[float], str], more: int = 0) -> str:
+        """Return a line about their mean, and one about how they spread; `more` messages than times were needed."""
+        if not self._values:
+            return ""
+        return (
+            f"{head(statistics.fmean(self._values))}\n"
+            f"\tmin: {min(self._values):.3f}s max: {max(self._values):.3f}s "
+            f"std dev: {statistics.pstdev(self._values):.5f}s window: {len(self._values) + more}\n"
         )
-        node.create_timer(1.0, lambda: print(rates.summary(), end="", flush=True))
-        spin(node)
-    return None
 
 
-class Rates:
+class Rates(Spread):
     """The times between the last messages."""
 
     def __init__(self, window: int) -> None:
-        self._deltas: deque[float] = deque(maxlen=max(1, window))
+        super().__init__(window)
         self._last: float | None = None
         self._fresh = False
 
     def add(self, now: float) -> None:
         """Note a message at a time in seconds."""
         if self._last is not None:
-            self._deltas.append(now - self._last)
+            self.note(now - self._last)
         self._last = now
         self._fresh = True
 
     def summary(self) -> str:
         """Return what `ros2 topic hz` prints; nothing when no message came since the last time."""
-        if not self._fresh or not self._deltas:
+        if not self._fresh:
             return ""
         self._fresh = False
-        mean = statistics.fmean(self._deltas)
-        rate = 1.0 / mean if mean > 0.0 else 0.0
-        return (
-            f"average rate: {rate:.3f}\n\tmin: {min(self._deltas):.3f}s max: {max(self._deltas):.3f}s "
-            f"std dev: {statistics.pstdev(self._deltas):.5f}s window: {len(self._deltas) + 1}\n"
-        )
+        return self.lines(lambda mean: f"average rate: {1.0 / mean if mean > 0.0 else 0.0:.3f}", 1)
