@@ -227,6 +227,7 @@ def test_files_come_by_their_numbers_and_the_one_without_first(tmp_path: Path) -
         ("[../bag_0.mcap]", r"lists \.\./bag_0.mcap, which is not in its folder"),
         ("[bag_0.mcap, /tmp/bag_0.mcap]", "lists /tmp/bag_0.mcap, which is not in its folder"),
         ("7", "lists no files; remove it"),
+        ("[bag_0.mcap], files: [&a 1, *a]", "aliases are not read; .*; remove it"),
     ],
 )
 def test_a_list_of_files_that_leads_elsewhere_is_refused(tmp_path: Path, listed: str, message: str) -> None:

@@ -109,13 +109,12 @@ def _files_of(folder: Path) -> list[Path]:
     """The files of a rosbag2 folder in order: those metadata.yaml lists; without it, those that differ by number."""
     description = folder / "metadata.yaml"
     if description.is_file():
-        content: Any = load_yaml(description, RecordingError, str(description))
         try:
+            content: Any = load_yaml(description, RecordingError, str(description))
             listed = [str(name) for name in content["rosbag2_bagfile_information"]["relative_file_paths"]]
-        except (KeyError, TypeError):
-            raise RecordingError(
-                f"{description}: lists no files; remove it to read the folder's .mcap files by their names"
-            ) from None
+        except (KeyError, TypeError, RecordingError) as error:
+            what = str(error) if isinstance(error, RecordingError) else f"{description}: lists no files"
+            raise RecordingError(f"{what}; remove it to read the folder's .mcap files by their names") from None
         outside = next((name for name in listed if Path(name).is_absolute() or ".." in Path(name).parts), None)
         if outside is not None:
             raise RecordingError(f"{description}: lists {outside}, which is not in its folder; name the file itself")

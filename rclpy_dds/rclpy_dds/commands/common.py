@@ -31,7 +31,6 @@ from rclpy_dds.errors import CommandError
 
 HIDDEN_NODE_PREFIX = "_"
 _POLL = 0.02
-_STEADY = ClockType.STEADY_TIME
 # What a participant that was discovered may take to tell its endpoints and nodes: Fast DDS' heartbeats come every 3 s.
 _SLOWEST_DISCOVERY = 5.0
 
@@ -212,7 +211,8 @@ def watch(
         assert name is not None
         qos = offered_qos(node, args.topic_name)
         node.create_subscription(load_class(name, "msg"), args.topic_name, lambda m: add(m, node), qos, raw=raw)
-        node.create_timer(1.0, lambda: print(summary(), end="", flush=True), clock=Clock(clock_type=_STEADY))
+        wall = Clock(clock_type=ClockType.STEADY_TIME)
+        node.create_timer(1.0, lambda: print(summary(), end="", flush=True), clock=wall)
         spin(node)
 
 
