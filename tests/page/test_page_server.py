@@ -173,8 +173,9 @@ def test_more_than_the_ceiling_is_not_kept(tmp_path: Path) -> None:
 
 
 def test_what_the_page_does_not_send_is_refused(server: Server) -> None:
-    for body in ("{", "[]", "7"):
+    for body in ("{", "[]", "7", "[" * 100_000):
         assert server.ask("topics", "POST", body)[0] == 400
+    assert server.ask(f"diagnosis?from={quote(chr(0xB2))}")[0] == 404  # none was begun; a power of two is no number
     assert server.ask("topics", "POST", "x" * 2**21)[0] == 413
     assert server.ask("nominal", "POST", json.dumps({"source": "a windmill", "lines": {}}))[0] == 400
     status, answer, _ = server.ask("nominal", "POST", json.dumps({"source": "servo_valve", "lines": {"bore": "40"}}))
