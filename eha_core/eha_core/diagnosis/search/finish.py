@@ -149,7 +149,10 @@ def rivals(
         values, states = model.start(proposal.options)
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
     for hypothesis, values in in_a_members_place(pool, best, columns, at.objective + within):
-        _compare(pool, "in its place", hypothesis, values, at.states, at.objective + within, progress)
+        if hypothesis not in pool.found and has_simpler_form(hypothesis, best):
+            pool.try_set("in its place", hypothesis, values, at.states, FURTHER)  # what it lacks may be one more effect
+        else:
+            _compare(pool, "in its place", hypothesis, values, at.states, at.objective + within, progress)
     for base in of_simpler_form(pool, best):
         beside = _about(pool, base, columns)
         more: dict[Hypothesis, Proposal] = {}
@@ -205,18 +208,18 @@ def _set_of(proposal: Proposal) -> Hypothesis:
 def of_simpler_form(pool: Pool, best: Hypothesis) -> list[Hypothesis]:
     """The sets that were fitted with a form of fewer parameters of a member's law, and explain less: what the other
     parameters take up may be one more effect beside it."""
-    at, found = pool.found[best], []
+    at = pool.found[best]
     enough = at.objective + chance_gain(at.count, at.data / at.count)
-    for member in best.members:
-        rest = set(best.without(member).members)
-        for hypothesis, result in pool:
-            others = set(hypothesis.members) - rest
-            if len(hypothesis.members) != len(best.members) or len(others) != 1 or result.objective < enough:
-                continue
-            effect = others.pop().effect
-            if effect.kind and effect.kind == member.effect.kind:
-                found += [hypothesis] if len(effect.parameters) < len(member.effect.parameters) else []
-    return found
+    return [one for one, result in pool if result.objective >= enough and has_simpler_form(one, best)]
+
+
+def has_simpler_form(hypothesis: Hypothesis, best: Hypothesis) -> bool:
+    """Whether a set is the best one with a form of fewer parameters in the place of one member's law."""
+    own, replaced = (set(one.members) - set(other.members) for one, other in ((hypothesis, best), (best, hypothesis)))
+    if len(own) != 1 or len(replaced) != 1:
+        return False
+    form, law = own.pop().effect, replaced.pop().effect
+    return bool(form.kind) and form.kind == law.kind and len(form.parameters) < len(law.parameters)
 
 
 def _compare(
