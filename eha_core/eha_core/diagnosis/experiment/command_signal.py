@@ -19,6 +19,14 @@ class CommandSignal:
     signal: str
     parameters: Mapping[str, float | str | bool]
 
+    @classmethod
+    def of(cls, reference: Mapping[str, object]) -> CommandSignal:
+        """The signal that the reference node's parameters name."""
+        signal = str(reference.get("signal"))
+        prefix = f"{signal}."
+        given = {name.removeprefix(prefix): value for name, value in reference.items() if name.startswith(prefix)}
+        return cls(signal, given)  # type: ignore[arg-type]
+
     def reference(self) -> dict[str, object]:
         """As the reference node's parameters."""
         return {
