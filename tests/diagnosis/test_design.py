@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from made import explanation
 
+from eha_core.diagnosis.experiment.command_signal import CommandSignal
 from eha_core.diagnosis.experiment.design import propose
+from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant
@@ -95,3 +97,18 @@ def test_the_rig_can_bear_the_test():
     for pressure in (rows.pressure_a, rows.pressure_b):
         assert pressure.min() > -101325.0
         assert pressure.max() < 1.2 * 7e6
+
+
+def test_limits_that_are_given_hold_in_place_of_the_model_s():
+    limits = Limits(position=0.004, speed=0.05, pressure=12e6, energy=400.0, voltage=0.3)
+    rivals = [(("constant_load",), explanation(LOAD)), (("flow_gain_asymmetry",), explanation(ASYMMETRY))]
+    experiment = propose(rivals, NOISE, 0.1, 0.3, limits)
+    for changes in (LOAD, ASYMMETRY):
+        rows = driven(changes, experiment)
+        assert max(limits.shares(rows.values, SAMPLE, 101325.0).values()) < 1.01
+    assert experiment.expected == pytest.approx(deviations(experiment) ** 2, rel=0.02)
+
+
+def test_a_proposed_signal_is_read_back_from_the_reference_node_s_parameters():
+    signal = CommandSignal("square", {"amplitude": 0.2, "frequency": 0.25})
+    assert CommandSignal.of({**signal.reference(), "duration": 10.0}) == signal

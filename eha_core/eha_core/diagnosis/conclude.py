@@ -15,6 +15,7 @@ from eha_core.diagnosis.event import event
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.design import not_proposed, propose
 from eha_core.diagnosis.experiment.discrimination import RATE
+from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.diagnosis.explained import explained, predictions
 from eha_core.diagnosis.fitted_values import changed_values, fitted_parameters, named_effects
 from eha_core.diagnosis.ladder import correlation, ladder
@@ -58,8 +59,12 @@ def conclude(
     evidence: Evidence,
     progress: Callable[[str], None] = lambda _: None,
     tests: Sequence[Recording] = (),
+    limits: Limits | None = None,
 ) -> Diagnosis:
-    """Polish the winner, measure what it is worth on data it was not fitted to, and put everything into words."""
+    """Polish the winner, measure what it is worth on data it was not fitted to, and put everything into words.
+
+    `limits`: what the next experiment has to stay within, by default what the model bears.
+    """
     progress("polishing the winner and its intervals")
     unknown = _unknown(evidence)
     decision = supported(evidence, _without_another_curve(evidence, unknown))
@@ -70,7 +75,7 @@ def conclude(
     left = explained(evidence, final, held_out)
     recording = recordings[evidence.lead - 1]
     shown = evidence.shown_fit(evidence.calibration.shooting, final)
-    found = _findings(recording, evidence, final, None if decision.as_given else unknown, left)
+    found = _findings(recording, evidence, final, None if decision.as_given else unknown, left, limits)
     return replace(
         found,
         damaged=next((record.damaged for record in recordings if record.damaged), None),
@@ -86,8 +91,9 @@ def conclude(
 
 
 def _findings(
-    recording: Recording, evidence: Evidence, final: Fit, unknown: UnknownLaw | None, left: Explained
-) -> Diagnosis:
+    recording: Recording, evidence: Evidence, final: Fit, unknown: UnknownLaw | None, left: Explained,
+    limits: Limits | None,
+) -> Diagnosis:  # fmt: skip
     """What is missing, where, and what speaks for it, of the recording that is drawn."""
     decision, comparison, composition = evidence.decision, evidence.comparison, evidence.observation.composition
     winner, before = decision.winner, evidence.calibration.nominal
@@ -111,7 +117,7 @@ def _findings(
         effects=effects,
         alternatives=tuple(Alternative(entry.ids, gap) for entry, gap in decision.rivals),
         unknown=unknown,
-        next_experiment=_experiment(evidence, decision) if decision.verdict == "ambiguous" else None,
+        next_experiment=_experiment(evidence, decision, limits) if decision.verdict == "ambiguous" else None,
         rivals=tuple((entry.ids, entry.score) for entry in comparison.entries),
         whiteness=dict(zip(evidence.calibration.shooting.names, whiteness(winner.fit.residuals), strict=True)),
         fitted_values=changed_values(final, composition),
@@ -275,7 +281,7 @@ def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, 
     return (Location(law.site, law.r_squared, where, when, law.function_of), *others)
 
 
-def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
+def _experiment(evidence: Evidence, decision: Decision, limits: Limits | None) -> Experiment:
     """The test that would tell the rivals apart; of a source that no voltage drives, why there is none."""
     source = evidence.observation.composition.source
     if source.valve != "coil":
@@ -287,6 +293,8 @@ def _experiment(evidence: Evidence, decision: Decision) -> Experiment:
         for name, sampling in zip(shooting.names, shooting.samplings, strict=True)
     }
     limit = values["saturation_current"] * values["coil_resistance"]
+    if limits is not None:
+        limit = min(limit, limits.voltage)
     used = float(np.std(shooting.inputs[0])) if evidence.observation.drive == "voltage" else 0.0
     rivals = [(entry.ids, entry.fit) for entry in contenders(decision.winner, evidence.comparison)]
-    return propose(rivals, noises, used or 0.1 * limit, limit)
+    return propose(rivals, noises, used or 0.1 * limit, limit, limits)

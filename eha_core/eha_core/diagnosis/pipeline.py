@@ -11,6 +11,7 @@ from eha_core.diagnosis.calibrate import Calibration, calibrate_but_for_the_ends
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.evidence import Evidence, telling_most
+from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.search.columns import applicable_effects
 from eha_core.diagnosis.search.course import find_sets
@@ -84,6 +85,7 @@ def diagnose_together(
     progress: Progress = lambda _: None,
     jobs: int = 2,
     tests: Sequence[Recording] = (),
+    limits: Limits | None = None,
 ) -> Diagnosis:
     """The verdict on recordings of one rig, fitted with one set of parameters and effects.
 
@@ -93,6 +95,7 @@ def diagnose_together(
         progress: receives each stage as it begins.
         jobs: threads that simulate side by side.
         tests: recordings that nothing is fitted to; the result says how well they are predicted.
+        limits: what the test that is proposed has to stay within; by default what the model bears.
 
     Raises:
         RecordingError: a recording cannot be used, or they are driven by different channels.
@@ -101,4 +104,4 @@ def diagnose_together(
     with threadpool_limits(1), side_by_side(jobs):
         model = nominal if isinstance(nominal, NominalModel) else NominalModel(nominal)
         evidence = examine(recordings, model, progress)
-        return conclude(recordings, evidence, progress, tests)
+        return conclude(recordings, evidence, progress, tests, limits)

@@ -129,9 +129,16 @@ def _parameters(effects: Sequence[Effect]) -> int:
 
 
 def contenders(winner: Entry, comparison: ModelComparison) -> tuple[Entry, ...]:
-    """The winner and whatever comes within CONTENDING of it: what a further test has to tell apart."""
-    near = (entry for entry in comparison.entries if not bounded(entry) and _is_rival(winner, entry, CONTENDING))
-    return winner, *near
+    """The winner and whatever comes within CONTENDING of it: what a further test has to tell apart.
+
+    A set that merely adds to a better one is left out: it can imitate that one's outcome of any test.
+    """
+    found = [winner]
+    for entry in comparison.entries:
+        adds = any(set(better.ids) <= set(entry.ids) for better in found)
+        if not adds and not bounded(entry) and _is_rival(winner, entry, CONTENDING):
+            found.append(entry)
+    return tuple(found)
 
 
 def _is_rival(winner: Entry, entry: Entry, within: float = TIE) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.experiment.command_signal import CommandSignal
 from eha_core.diagnosis.experiment.discrimination import STEP, separation
+from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.diagnosis.result import Experiment
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
@@ -74,21 +75,24 @@ def _times(duration: float) -> Array:
     return np.asarray(np.arange(round(duration / STEP)) * STEP, dtype=np.float64)
 
 
-def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, voltage_limit: float) -> Experiment:
+def propose(
+    rivals: Sequence[Rival], noises: Mapping[str, float], level: float, voltage_limit: float,
+    limits: Limits | None = None,
+) -> Experiment:  # fmt: skip
     """The shortest trial that separates every two of the rivals, inside the rig's stroke, pressures and voltage; or the
     one that comes nearest to it.
 
     Where no voltage separates them in the channels there are, the pressures are asked for too. `noises` are the
     channels' [their unit] at RATE samples a second, `level` is the voltage used so far and `voltage_limit` the largest
-    [V].
+    [V]. `limits` are what the rig bears, by default what a rig with a rival's values does.
     """
     names = [ids for ids, _ in rivals[: MOST_RIVALS + 1]]
     fits = [result for _, result in rivals[: MOST_RIVALS + 1]]
     record: tuple[str, ...] = ()
-    best = _best_discrimination(fits, noises, level, voltage_limit)
+    best = _best_discrimination(fits, noises, level, voltage_limit, limits)
     if best.separation < TELLING and not set(PRESSURES) <= set(noises):
         record = tuple(name for name in PRESSURES if name not in noises)
-        best = _best_discrimination(fits, {**PRESSURES, **noises}, level, voltage_limit)
+        best = _best_discrimination(fits, {**PRESSURES, **noises}, level, voltage_limit, limits)
     beside = ", with the chambers' pressures recorded too," if record else ""
     verb = "should tell" if best.separation > TELLING else "may tell" if best.separation > PERHAPS else "hardly tells"
     statement = (
@@ -97,7 +101,7 @@ def propose(rivals: Sequence[Rival], noises: Mapping[str, float], level: float, 
         f" (expected: {np.sqrt(best.separation):.0f} deviations of noise)"
     )
     separates = tuple(dict.fromkeys(name for ids in names for name in ids))
-    return Experiment(statement, separates, best.trial.reference(), record, best.duration)
+    return Experiment(statement, separates, best.trial.reference(), record, best.duration, best.separation)
 
 
 def not_proposed(names: Sequence[tuple[str, ...]], driving: Sequence[str], source: str) -> Experiment:
@@ -111,14 +115,14 @@ def not_proposed(names: Sequence[tuple[str, ...]], driving: Sequence[str], sourc
 
 
 def _best_discrimination(
-    rivals: Sequence[Fit], noises: Mapping[str, float], level: float, voltage_limit: float
+    rivals: Sequence[Fit], noises: Mapping[str, float], level: float, voltage_limit: float, limits: Limits | None
 ) -> Discrimination:
     """The shortest trial that separates the rivals, or else the one that separates them most."""
     short = DURATIONS[0]
     discriminations: list[Discrimination] = []
     while not discriminations and voltage_limit > FAINTEST:
         for trial in trials(level, voltage_limit):
-            separated = separation(trial.voltage(_times(short)), rivals, noises)
+            separated = separation(trial.voltage(_times(short)), rivals, noises, limits)
             if separated is not None:
                 discriminations.append(Discrimination(trial, short, separated))
         voltage_limit = min(GENTLEST * level, voltage_limit)  # where the rig bears none of them, fainter ones
@@ -128,14 +132,16 @@ def _best_discrimination(
     leading = sorted(discriminations, key=lambda discrimination: -discrimination.separation)[:LASTING]
     best = leading[0]
     if best.separation < TELLING:
-        lasting = [_lasting(discrimination, rivals, noises) for discrimination in leading]
+        lasting = [_lasting(discrimination, rivals, noises, limits) for discrimination in leading]
         best = max([best, *lasting], key=lambda discrimination: discrimination.separation)
     return best
 
 
-def _lasting(discrimination: Discrimination, rivals: Sequence[Fit], noises: Mapping[str, float]) -> Discrimination:
+def _lasting(
+    discrimination: Discrimination, rivals: Sequence[Fit], noises: Mapping[str, float], limits: Limits | None
+) -> Discrimination:
     """The same trial for as long as it takes, if the rig bears that."""
     per_second = discrimination.separation / discrimination.duration
     duration = next((seconds for seconds in DURATIONS if seconds * per_second > TELLING), DURATIONS[-1])
-    separated = separation(discrimination.trial.voltage(_times(duration)), rivals, noises)
+    separated = separation(discrimination.trial.voltage(_times(duration)), rivals, noises, limits)
     return discrimination if separated is None else Discrimination(discrimination.trial, duration, separated)

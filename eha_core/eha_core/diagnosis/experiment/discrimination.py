@@ -10,7 +10,7 @@ from itertools import permutations
 import numpy as np
 
 from eha_core.diagnosis.calibrate import STEPS
-from eha_core.diagnosis.experiment.limits import limits_of
+from eha_core.diagnosis.experiment.limits import Limits, limits_of
 from eha_core.diagnosis.hypothesis import NOMINAL_NAMES
 from eha_core.identification.fit import SETTLED, Fit
 from eha_core.identification.free_parameters import FreeParameter, coordinates, values_at
@@ -30,15 +30,18 @@ NUDGE = 1e-3
 """Of a parameter's coordinate, to see what it changes."""
 
 
-def separation(voltage: Array, rivals: Sequence[Fit], noises: Mapping[str, float]) -> float | None:
+def separation(
+    voltage: Array, rivals: Sequence[Fit], noises: Mapping[str, float], limits: Limits | None = None
+) -> float | None:
     """Least chi^2 between any two rivals' outcomes of a test, when their parameters have imitated what they can.
 
     The voltage [V] is one value a STEP, for whole seconds; `noises` are the channels' [their unit] at RATE samples a
-    second. None where the rig would not bear the test, whichever of the rivals it is.
+    second. None where the rig would not bear the test, whichever of the rivals it is: `limits`, or else what a rig
+    with the rival's values bears.
     """
     test = _Test(voltage, noises)
     responses = [test.respond(rival.values) for rival in rivals]
-    if not all(_is_bearable(rows, rival.values) for rows, rival in zip(responses, rivals, strict=True)):
+    if not all(_is_bearable(rows, rival.values, limits) for rows, rival in zip(responses, rivals, strict=True)):
         return None
     outcomes = [test.measured(rows) for rows in responses]
     first = rivals[0]
@@ -90,10 +93,11 @@ class _Test:
         return slopes
 
 
-def _is_bearable(rows: Array, values: Mapping[str, float]) -> bool:
-    """Whether the piston stays inside the stroke, and its pressures between a vacuum and what the rig bears."""
-    shares = limits_of(values).shares(rows, STEP * ROWS_EVERY, values["atmospheric_pressure"])
-    return all(shares[name] < 1.0 for name in ("position", "pressure", "vacuum"))
+def _is_bearable(rows: Array, values: Mapping[str, float], limits: Limits | None) -> bool:
+    """Whether motion and pressures stay within what the rig bears; no trial has a voltage beyond that anyway."""
+    bears = limits_of(values) if limits is None else limits
+    shares = bears.shares(rows, STEP * ROWS_EVERY, values["atmospheric_pressure"])
+    return all(share < 1.0 for name, share in shares.items() if name != "voltage")
 
 
 @dataclass(frozen=True)

@@ -120,7 +120,8 @@ class Experiment:
 
     `record`: channels that have to be recorded beside those of the recording, where no voltage alone would tell.
     `duration` [s]: how long the test has to last. `reference` is empty where no such test was made: then `statement`
-    says why, and what to record.
+    says why, and what to record. `expected`: chi^2 by which its outcome separates the two rivals that are hardest to
+    tell apart.
     """
 
     statement: str
@@ -128,3 +129,4 @@ class Experiment:
     reference: Mapping[str, object]
     record: tuple[str, ...] = ()
     duration: float = 10.0
+    expected: float = 0.0
