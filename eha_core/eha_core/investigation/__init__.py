@@ -1,0 +1,24 @@
+"""A rig that interrogates itself: test after test, each chosen by what the diagnosis of all before left open."""
+
+from eha_core.investigation.ending import ENDINGS, Ending
+from eha_core.investigation.loop import MARGIN, Bounds, Investigation, Step, investigate
+from eha_core.investigation.motion import Motion, MotionStopped, Rig, from_mid_stroke
+from eha_core.investigation.voltage_test import VoltageTest, first_test
+from eha_core.investigation.watch import Watch
+
+__all__ = [
+    "ENDINGS",
+    "MARGIN",
+    "Bounds",
+    "Ending",
+    "Investigation",
+    "Motion",
+    "MotionStopped",
+    "Rig",
+    "Step",
+    "VoltageTest",
+    "Watch",
+    "first_test",
+    "from_mid_stroke",
+    "investigate",
+]
