@@ -40,6 +40,7 @@ setup(
             "twin = eha_sim_node.twin:main",
             "controller = eha_sim_node.controller:main",
             "live_page = eha_sim_node.live_page:main",
+            "investigate = eha_sim_node.investigate:main",
         ]
     },
 )

@@ -78,12 +78,13 @@ class Recorder:
         """The topics subscribed."""
         return self._types.keys()
 
-    def start(self) -> Path:
-        """Open a new recording; raise RecordingError where one is open or the file cannot be made."""
+    def start(self, name: str = "") -> Path:
+        """Open a new recording, under another name where one is given; raise RecordingError where one is open or the
+        file cannot be made."""
         if self._writer:
             raise RecordingError(f"{self._writer.path} is being recorded already; stop or split it first")
         try:
-            self._writer = RecordingWriter(self._free_path(), self._parameters)
+            self._writer = RecordingWriter(self._free_path(name or self._name), self._parameters)
         except RecordingError as error:
             self.failure = str(error)
             raise
@@ -246,8 +247,8 @@ class Recorder:
             raise RecordingError(f"nothing is being recorded{f': {self.failure}' if self.failure else ''}")
         return self._writer
 
-    def _free_path(self) -> Path:
-        stem = self._name or f"eha_{datetime.now():%Y_%m_%d-%H_%M_%S}"
+    def _free_path(self, name: str) -> Path:
+        stem = name or f"eha_{datetime.now():%Y_%m_%d-%H_%M_%S}"
         path = self._directory / f"{stem}.mcap"
         count = 0
         while path.exists():

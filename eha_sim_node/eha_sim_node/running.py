@@ -31,7 +31,7 @@ class StartError(EhaError):
 def run(
     make_node: Callable[[], Node], name: str, rows: Sequence[Row] = (), prepare: Callable[[], None] | None = None
 ) -> int:
-    """Run a node until a signal ends it and return the exit status.
+    """Run a node until a signal ends it and return the exit status: its `status` where it has one.
 
     `rows` are what `--help` tells of. `prepare` does what takes long before the node appears in the graph, where it
     would have to answer.
@@ -65,7 +65,7 @@ def run(
                 node.close()
             node.destroy_node()
         rclpy.try_shutdown()
-    return 0
+    return int(getattr(node, "status", 0))
 
 
 def compile_plant() -> None:
