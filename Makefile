@@ -46,9 +46,10 @@ contract: env  ## the contract tests on a real rclpy from PyPI (x86_64; PYTHON_O
 	    --timeout=120 --timeout-method=thread -p no:cacheprovider -W ignore::DeprecationWarning
 	$(WITH_PATH) $(RUN)/python -m pytest rclpy_dds/tests/peers
 
-demo: env  ## the paper's experiment over DDS, then a rig with concealed physics diagnosed; all in out/demo/
+demo: env  ## the paper's experiment over DDS, a concealed rig diagnosed, one that interrogates itself; in out/demo/
 	$(WITH_PATH) $(RUN)/python examples/paper_demo.py
 	$(WITH_PATH) $(RUN)/python examples/concealed_demo.py
+	$(WITH_PATH) $(RUN)/python examples/investigation_demo.py
 
 demo-realtime: env  ## the same against the wall clock
 	$(WITH_PATH) $(RUN)/python examples/paper_demo.py --realtime

@@ -11,6 +11,7 @@ import hashlib
 import json
 import secrets
 import zlib
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -19,12 +20,21 @@ import numpy as np
 NUMBER = 3
 """How many of EFFECTS are concealed."""
 
-EFFECTS: dict[str, dict[str, tuple[float, float]]] = {
+Ranges = dict[str, dict[str, tuple[float, float]]]
+"""Of each effect's parameters, between what they are drawn."""
+
+EFFECTS: Ranges = {
     "coulomb_friction": {"force": (180.0, 320.0)},
     "valve_deadband": {"half_width": (1.0e-4, 2.0e-4)},
     "constant_load": {"force": (200.0, 500.0)},
 }
 """The ranges that sizes are drawn from: seals that rub, lands that overlap, a load that hangs on the rod."""
+
+SMALL: Ranges = {
+    "flow_gain_asymmetry": {"ratio": (0.01, 0.02)},
+    "valve_null_offset": {"offset": (1.5e-6, 3e-6)},
+}
+"""Of these one is concealed where a rig is to be interrogated: under a square wave each looks like the other."""
 
 PLANT: dict[str, tuple[float, float]] = {
     "moving_mass": (10.0, 12.5),
@@ -49,12 +59,21 @@ class Answer:
 
 def draw(seed: int | None = None) -> Answer:
     """A rig; without a seed, another one each time."""
+    return _drawn(seed, lambda generator: dict(list(EFFECTS.items())[:NUMBER]))
+
+
+def draw_small(seed: int | None = None) -> Answer:
+    """A rig with one effect, and that a small one; without a seed, another one each time."""
+    return _drawn(seed, lambda generator: dict([list(SMALL.items())[generator.integers(len(SMALL))]]))
+
+
+def _drawn(seed: int | None, chosen: Callable[[np.random.Generator], Ranges]) -> Answer:
     seed = secrets.randbelow(2**32) if seed is None else seed
     generator = np.random.default_rng(seed)
     plant = {name: float(generator.uniform(*span)) for name, span in PLANT.items()}
     effects = {
-        effect: {name: float(generator.uniform(*span)) for name, span in EFFECTS[effect].items()}
-        for effect in list(EFFECTS)[:NUMBER]
+        effect: {name: float(generator.uniform(*span)) for name, span in spans.items()}
+        for effect, spans in chosen(generator).items()
     }
     return Answer(seed, plant, effects, NOISES)
 

@@ -92,7 +92,12 @@ class Processes:
 
 
 class Conductor:
-    """Steps a simulator, or a rig that is one, and watches the graph, with an ordinary node's means."""
+    """Steps a simulator, or a rig that is one, and watches the graph, with an ordinary node's means.
+
+    `recorder` is the node that has to listen to every topic before anything moves.
+    """
+
+    recorder = "eha_monitor"
 
     def __init__(self, processes: Processes, simulator: str = "eha_sim", step_size: float = 1e-4) -> None:
         rclpy.init()
@@ -115,10 +120,10 @@ class Conductor:
     def await_nodes(self, recorded: Iterable[str] = SIMULATOR_TOPICS) -> None:
         """Wait until the services answer and the monitor has subscribed to all that it is to record."""
         self.wait(lambda: all(client.service_is_ready() for client in self._clients), _START, "the nodes' services")
-        self.wait(lambda: all(map(self._is_recorded, recorded)), 30, "the monitor to subscribe to every topic")
+        self.wait(lambda: all(map(self._is_recorded, recorded)), 30, f"{self.recorder} to subscribe to every topic")
 
     def _is_recorded(self, topic: str) -> bool:
-        return any(info.node_name == "eha_monitor" for info in self._node.get_subscriptions_info_by_topic(topic))
+        return any(info.node_name == self.recorder for info in self._node.get_subscriptions_info_by_topic(topic))
 
     def _call(self, client: Any, request: Any) -> Any:
         future = client.call_async(request)

@@ -99,12 +99,31 @@ def test_a_seal_holds_and_no_effect_can_be_read_through_it(tmp_path: Path) -> No
     assert concealment.draw().seed != concealment.draw().seed
 
 
-def test_a_demonstration_that_fails_says_so_in_one_line(tmp_path: Path) -> None:
+@pytest.mark.timeout(1200)
+def test_a_rig_that_interrogates_itself_finds_what_a_first_test_left_open(tmp_path: Path) -> None:
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(int(os.environ["ROS_DOMAIN_ID"]) - 1)}
+    command = [sys.executable, str(EXAMPLES / "investigation_demo.py"), "--seed", "1", "--out", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1190, env=environment, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    answer, _ = concealment.unseal(tmp_path / "small_answer.sealed")
+    found = json.loads((tmp_path / "investigation" / "investigation.json").read_text())
+    first, *further = found["steps"]
+    assert len(first["sets"]) > 1 and further
+    assert found["ending"]["kind"] == "resolved"
+    assert [one["effects"] for one in further[-1]["sets"]] == [list(answer.effects)]
+    budget = json.loads((tmp_path / "budget" / "budget.json").read_text())
+    shares = sum(row["share"]["value"] for row in budget["shares"]) + budget["modelled"]["value"]
+    assert shares == pytest.approx(budget["today"]["value"], rel=1e-9)
+    assert set(answer.effects) <= {row["name"] for row in budget["shares"]}
+
+
+@pytest.mark.parametrize("name", ["concealed_demo", "investigation_demo"])
+def test_a_demonstration_that_fails_says_so_in_one_line(tmp_path: Path, name: str) -> None:
     (tmp_path / "out").write_text("in the way")
-    command = [sys.executable, str(EXAMPLES / "concealed_demo.py"), "--out", str(tmp_path / "out")]
+    command = [sys.executable, str(EXAMPLES / f"{name}.py"), "--out", str(tmp_path / "out")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1
-    assert done.stderr.startswith("concealed_demo: ") and done.stderr.count("\n") == 1
+    assert done.stderr.startswith(f"{name}: ") and done.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,123 @@
+"""A rig with concealed physics interrogates itself, and what was found is charged with the tracking error it costs.
+
+The rig is the exam's second plant, as in concealed_demo.py. What it conceals is small and sealed in a file. The
+investigate node drives it over DDS with a first test, which leaves more than one explanation, diagnoses, and goes on
+with the tests that the diagnoses propose until one is left. Then the sealed file is opened, and the error budget of
+what was found is printed. Leaves investigation/ and budget/ under out/demo/.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+from shutil import rmtree
+
+from concealment import Answer, draw_small, seal, unseal
+from conductor import INSTRUMENTS, Conductor, DemoError, Processes, perform
+
+from eha_core.report.budget import account, write_budget
+from eha_core.studies import budget
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+LIMITS = HERE / "limits.yaml"
+FIRST = ("square:amplitude=0.03,frequency=1.0", 4.0)
+"""The first test, and its length [s]."""
+
+CONTROLLER, REFERENCE = "cascade", "sine:amplitude=0.01,frequency=1"
+"""What the rig is to do when it is understood."""
+
+FREE = 10**9  # samples that the rig may take: more than any investigation needs
+PATIENCE = 1200.0  # s for the whole investigation: a minute on an idle machine, and a busy one is no failure
+
+
+class RigStarter(Conductor):
+    """Lets a rig answer every voltage, once the investigate node listens."""
+
+    recorder = "eha_investigate"
+
+    def __init__(self, processes: Processes) -> None:
+        super().__init__(processes, "eha_rig", step_size=1.0)
+        self._clients = [self._step]
+
+    def start(self) -> None:
+        """Let it run."""
+        self.await_nodes(INSTRUMENTS)
+        self.step(FREE)
+
+
+def investigate(out: Path, sealed: Path) -> Path:
+    """Let the node interrogate the rig of a sealed answer; return its diagnosis of all tests."""
+    folder = out / "investigation"
+    rmtree(folder, ignore_errors=True)
+    processes = Processes(out / "logs" / "investigation")
+    command, seconds = FIRST
+    parameters = {"lockstep": "true", "limits": LIMITS, "directory": folder, "command": command,
+                  "command_duration": seconds, "feedback_timeout": 60.0}  # fmt: skip
+    words = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
+    shown = f"-p lockstep:=true -p limits:={os.path.relpath(LIMITS)} -p command:={command} ..."
+    print(f"\n$ ros2 run eha_sim_node investigate --ros-args {shown}", flush=True)
+    starter = None
+    with (out / "logs" / "investigation" / "investigate.log").open("wb") as log:
+        node = subprocess.Popen([sys.executable, "-m", "eha_sim_node.investigate", "--ros-args", *words],
+                                stdin=subprocess.DEVNULL, stderr=log)  # fmt: skip
+        try:
+            processes.start_program("concealed_rig", str(HERE / "concealed_rig.py"), str(sealed))
+            starter = RigStarter(processes)
+            starter.start()
+            starter.wait(lambda: node.poll() is not None, PATIENCE, "the end of the investigation")
+        finally:
+            node.terminate()
+            with suppress(subprocess.TimeoutExpired):
+                node.wait(timeout=60.0)
+            processes.stop()
+            if starter:
+                starter.close()
+    if node.returncode:
+        raise DemoError(f"the investigate node ended with status {node.returncode}; see {log.name}")
+    return folder / "diagnosis" / "diagnosis.json"
+
+
+def demonstrate(out: Path, seed: int | None) -> None:
+    """Conceal, interrogate, open the answer, and say what the findings cost."""
+    began = time.monotonic()
+    out.mkdir(parents=True, exist_ok=True)
+    sealed = out / "small_answer.sealed"
+    digest = seal(draw_small(seed), sealed)
+    print("\nA rig that interrogates itself: each test is chosen by what those before left open")
+    print(f"  what it conceals is sealed in {os.path.relpath(sealed)}, SHA-256 {digest[:16]}...", flush=True)
+    found = investigate(out, sealed)
+    answer, opened = unseal(sealed)
+    if opened != digest:
+        raise DemoError(f"{sealed} is not the answer that was sealed")
+    show(answer, opened)
+    print(f"\n$ eha budget {os.path.relpath(found)} --controller {CONTROLLER} --reference {REFERENCE}")
+    made = budget(found, REFERENCE, CONTROLLER)
+    write_budget(made, out / "budget")
+    print(account(made))
+    print(f"{time.monotonic() - began:.0f} s; open {os.path.relpath(out / 'investigation' / 'investigation.html')}")
+
+
+def show(answer: Answer, opened: str) -> None:
+    """The sealed answer."""
+    print(f"\nThe sealed answer, opened (SHA-256 {opened[:16]}..., seed {answer.seed}):")
+    for effect, values in answer.effects.items():
+        print(f"  {effect}: " + ", ".join(f"{name} {value:.4g}" for name, value in values.items()))
+
+
+def main() -> int:
+    """Run the demonstration and return the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo", help="folder for all that is written")
+    parser.add_argument("--seed", type=int, help="conceal what this seed draws (default: another each time)")
+    arguments = parser.parse_args()
+    return perform("investigation_demo", lambda: demonstrate(arguments.out.resolve(), arguments.seed))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
