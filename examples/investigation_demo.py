@@ -29,8 +29,8 @@ LIMITS = HERE / "limits.yaml"
 FIRST = ("square:amplitude=0.03,frequency=1.0", 4.0)
 """The first test, and its length [s]."""
 
-CONTROLLER, REFERENCE = "cascade", "sine:amplitude=0.01,frequency=1"
-"""What the rig is to do when it is understood."""
+TASK = "sine:amplitude=8.4e-3,frequency=1"
+"""The motion whose error is accounted for: the paper's voltage, in open loop."""
 
 FREE = 10**9  # samples that the rig may take: more than any investigation needs
 PATIENCE = 1200.0  # s for the whole investigation: a minute on an idle machine, and a busy one is no failure
@@ -96,8 +96,8 @@ def demonstrate(out: Path, seed: int | None) -> None:
     if opened != digest:
         raise DemoError(f"{sealed} is not the answer that was sealed")
     show(answer, opened)
-    print(f"\n$ eha budget {os.path.relpath(found)} --controller {CONTROLLER} --reference {REFERENCE}")
-    made = budget(found, REFERENCE, CONTROLLER)
+    print(f"\n$ eha budget {os.path.relpath(found)} --command {TASK}")
+    made = budget(found, TASK, controller="")
     write_budget(made, out / "budget")
     print(account(made))
     print(f"{time.monotonic() - began:.0f} s; open {os.path.relpath(out / 'investigation' / 'investigation.html')}")
