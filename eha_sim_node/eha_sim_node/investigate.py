@@ -108,7 +108,7 @@ class InvestigateNode(rclpy.node.Node):
 
     def _tell(self, state: Investigation) -> None:
         write_investigation(state, self._folder)
-        if state.ending is None or state.ending.kind != "stopped":
+        if state.ending is None or state.ending.kind not in ("stopped", "failed"):
             print(step_account(state), flush=True)
 
     def _progress(self, message: str) -> None:

@@ -155,6 +155,8 @@ class TopicRig:
             self._look_at_motion(now)
         elif self._recorder.path is None:
             self._begin_recording(task, now)
+        elif now - task.asked > _PRESENT:
+            self.stop(f"nothing comes on {' or '.join(self._feedback)} for {_PRESENT:g} s; start the rig")
         else:
             self._answer()  # a lockstep waits with the latest joint_states
 
@@ -232,8 +234,13 @@ class TopicRig:
             self._command(stamp)
 
     def _on_timer(self) -> None:
-        if self._is_moving:
+        if self._is_moving and self._is_fed(time.monotonic()):
             self._command(self._clock.now().nanoseconds)
+
+    def _is_fed(self, now: float) -> bool:
+        """Whether every feedback is younger than the bound; where one is not, `_look` stops what moves."""
+        oldest = now - self._settings.feedback_timeout
+        return all(self._heard.get(topic, oldest) > oldest for topic in self._feedback)
 
     def _command(self, now: int) -> None:
         """Send the motion's voltage of this time [ns]; at its end zero."""

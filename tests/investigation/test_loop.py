@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,7 @@ from simulated_rig import SimulatedRig
 from test_ending import diagnosis
 
 from eha_core.diagnosis.experiment.limits import Limits
-from eha_core.errors import ParameterError
+from eha_core.errors import ParameterError, RecordingError
 from eha_core.investigation import Bounds, Investigation, first_test, investigate
 from eha_core.investigation.loop import _ending
 from eha_core.nominal import nominal_of
@@ -57,6 +58,20 @@ def test_who_stops_the_rig_does_not_wait_for_the_end_of_a_diagnosis() -> None:
     state = investigate(rig, MODEL, LIMITS, FIRST, Bounds(), progress=progress)
     assert state.ending.kind == "stopped" and state.ending.statement == "a key was pressed"
     assert len(heard) == 2
+
+
+def test_a_recording_that_cannot_be_right_is_an_error_that_the_page_shows() -> None:
+    class Reversed(SimulatedRig):
+        def run(self, motion, name):
+            recording = super().run(motion, name)
+            position = recording.channels["position"]
+            flipped = replace(position, values=-position.values)
+            return replace(recording, channels={**recording.channels, "position": flipped})
+
+    told: list[Investigation] = []
+    with pytest.raises(RecordingError):
+        investigate(Reversed({}, LIMITS), MODEL, LIMITS, FIRST, Bounds(), told.append)
+    assert [state.ending.kind for state in told] == ["failed"]
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ ENDINGS = {
     "limit_of_tests": "the limit of tests is reached",
     "limit_of_time": "the limit of time is reached",
     "stopped": "the motion was stopped",
+    "failed": "what was recorded cannot be used",
 }
 """How an investigation can end."""
 
@@ -39,11 +40,13 @@ def settled(diagnoses: Sequence[Diagnosis]) -> Ending | None:
     last = diagnoses[-1]
     if last.verdict == "unknown_physics":
         return Ending("nothing_more", f"no set of effects of the catalogue explains the tests. {last.summary}")
-    if last.verdict != "ambiguous" or len(sets_of(last)) == 1:
+    if len(sets_of(last)) == 1:
         return Ending("resolved", last.summary)
     test = last.next_experiment
-    if test is None or not test.reference:
-        return Ending("nothing_more", test.statement if test else "no test is proposed")
+    if test is None:
+        return Ending("nothing_more", f"{last.summary} No test is proposed between the sets that are left.")
+    if not test.reference:
+        return Ending("nothing_more", test.statement)
     if test.record:
         channels = " and ".join(test.record)
         return Ending("nothing_more", f"{channels} would have to be recorded too. {test.statement}")

@@ -10,6 +10,7 @@ from eha_core.control.linear_model import velocity_gain
 from eha_core.diagnosis import diagnose_together
 from eha_core.diagnosis.experiment.limits import REACHED, Limits
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.errors import EhaError
 from eha_core.investigation.ending import Ending, settled
 from eha_core.investigation.motion import MotionStopped, Rig, from_mid_stroke
 from eha_core.investigation.voltage_test import VoltageTest
@@ -95,6 +96,9 @@ def investigate(
     except MotionStopped as stopped:
         state = replace(state, ending=Ending("stopped", str(stopped)))
         told(state)
+    except EhaError as error:
+        told(replace(state, ending=Ending("failed", str(error))))
+        raise
     return state
 
 
