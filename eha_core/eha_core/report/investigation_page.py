@@ -22,6 +22,7 @@ _STYLE = """
 section svg { display: block; width: 100%; max-width: 760px; height: 92px; margin: 2px 0 10px; }
 section svg { background: var(--ground); }
 section small { color: var(--quiet); font-size: 13px; }
+section a { color: var(--accent); }
 table { min-width: min(100%, 760px); } td { white-space: normal; }
 .out td { color: var(--quiet); text-decoration: line-through; } .out td:last-child { text-decoration: none; }
 """
