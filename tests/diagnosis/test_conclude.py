@@ -15,6 +15,7 @@ from eha_core.diagnosis.conclude import _led_by, _ordered, _unknown
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.discrimination import RATE
+from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import ChannelFit, Correlation, Explained, Location, UnknownLaw
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison
@@ -187,7 +188,7 @@ def test_remarks_name_their_recording_where_there_are_several_and_the_units_of_w
     assert late == "late" and "ended at its limit" in cut
 
 
-def proposed(monkeypatch, observation: Observation):
+def proposed(monkeypatch, observation: Observation, limits: Limits | None = None):
     """What `propose` is given of two rivals in this recording."""
     monkeypatch.setattr(conclude, "propose", lambda *given: given)
     shooting = cut(observation, nominal_values())
@@ -199,16 +200,19 @@ def proposed(monkeypatch, observation: Observation):
         observation=observation, comparison=comparison, calibration=SimpleNamespace(shooting=shooting),
         shown=lambda windows: windows,
     )  # fmt: skip
-    return conclude._experiment(evidence, Decision("ambiguous", best, (), None, None)), shooting
+    return conclude._experiment(evidence, Decision("ambiguous", best, (), None, None), limits), shooting
 
 
 def test_the_next_experiment_is_made_for_the_rigs_valve_its_noise_and_the_voltage_it_has_seen(monkeypatch):
-    (rivals, noises, used, limit), shooting = proposed(monkeypatch, observed(rate=2.0 * RATE))
+    (rivals, noises, used, limit, within), shooting = proposed(monkeypatch, observed(rate=2.0 * RATE))
     assert {ids for ids, _ in rivals} == {("constant_load",), ("coulomb_friction",)}
     # as many samples a second as the experiment has would have to be better, each, by the root of the ratio
     share = len(shooting.samplings[0].values) / (3.0 * 2.0 * RATE)
     assert noises == {"position": pytest.approx(1e-5 / np.sqrt(2.0 * share))}
     assert (used, limit) == (pytest.approx(0.5), pytest.approx(2.0))  # 20 mA through 100 ohm
+    assert within is None
+    gentle = Limits(voltage=0.7)
+    assert proposed(monkeypatch, observed(), gentle)[0][3:] == (0.7, gentle)
     time = np.arange(1500) / 500.0
     still = observed(inputs=((time, np.zeros(1500)),))
     assert proposed(monkeypatch, still)[0][2] == pytest.approx(0.2)
@@ -224,7 +228,7 @@ def test_no_experiment_is_proposed_for_a_source_that_no_voltage_drives():
         observation=observed(composition=spool, driving=("spool",)),
         comparison=ModelComparison(Entry(NOTHING, explanation({}), 0.0), (best,), 1.0),
     )
-    experiment = conclude._experiment(evidence, Decision("ambiguous", best, (), None, None))
+    experiment = conclude._experiment(evidence, Decision("ambiguous", best, (), None, None), None)
     assert experiment.reference == {} and "spool of measured_spool come from the rig" in experiment.statement
 
 
