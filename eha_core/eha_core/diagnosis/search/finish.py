@@ -21,6 +21,7 @@ from eha_core.diagnosis.criteria import (
     OF_ITS_FORM,
     OF_SAMPLES,
     OF_SAMPLES_BESIDE_A_FORM,
+    UNLIKELY,
     chance_gain,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
@@ -54,6 +55,7 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
     """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of them;
     and what each that stays gains over what is required."""
     converge(pool, hypothesis)
+    from_nominal_values(pool, hypothesis)
     shift_instants(pool, hypothesis, CONVERGED, TO_THE_STEP)
     at, gains = pool.found[hypothesis], dict[Member, float]()
     while len(gains) < len(hypothesis.members):
@@ -74,6 +76,20 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
             near = hypothesis.members and simpler.data < FAR_FROM_NOISE * simpler.count
             at = converge(pool, hypothesis) if near else simpler
     return hypothesis, gains
+
+
+def from_nominal_values(pool: Pool, hypothesis: Hypothesis) -> None:
+    """Fit a set that was fitted to its end once more from the plant's nominal values, where one has gone unlikely far:
+    it may rest in a minimum to which another set led."""
+    at = pool.found[hypothesis]
+    names = {one.name for one in pool.plant}
+    plant = [one for one in at.free if base_name(one.name) in names]
+    if not any(abs(one.coordinate(at.values[one.name])) > UNLIKELY * one.prior_deviation for one in plant):
+        return
+    values = {**at.values, **{one.name: one.reference for one in plant}}
+    states = fit(pool.problem, values, (), at.states, iterations=FURTHER).states
+    pool.try_set("from nominal values", hypothesis, values, states, CONVERGED, at.free, 2)
+    converge(pool, hypothesis)
 
 
 def predicted_costs(pool: Pool, hypothesis: Hypothesis, at: Fit) -> dict[Member, float]:
