@@ -165,6 +165,8 @@ def test_what_lasts_in_a_residual_is_not_noise(rig, pool):
     averaged = power * (np.sin(0.025 * BLOCK) / (0.025 * BLOCK)) ** 2
     assert of_sine == pytest.approx(((1.0 + averaged * BLOCK) / (1.0 + power) - 1.0) * np.sqrt(blocks / 2.0), rel=0.2)
     assert lasting(pool.problem, replace(at, residuals=slow), pool.problem.shooting.names) == 0.0
+    faint = tuple(0.01 * row for row in slow)  # what is far below the noise is as good as none
+    assert lasting(pool.problem, replace(at, residuals=faint)) < 0.0
     pool.found[both] = replace(at, residuals=slow, data=1.01 * at.count)
     assert not pool.leaves_noise(both)
     pool.found[both] = replace(at, residuals=white, data=at.count)

@@ -228,8 +228,9 @@ class Pool:
 
 
 def lasting(problem: Problem, result: Fit, filtered: Collection[str] = ()) -> float:
-    """By how many standard deviations the squared block averages of a residual exceed those of white noise of its size,
-    over the windows in use; not of channels that are `filtered`, whose noise lasts, too."""
+    """By how many standard deviations the squared block averages of a residual exceed those of white noise of its size
+    (of the channel's, where that is larger), over the windows in use; not of channels that are `filtered`, whose noise
+    lasts, too."""
     used, excess, count = problem.used(), 0.0, 0
     shooting = problem.shooting
     for name, sampling, residual in zip(shooting.names, shooting.samplings, result.residuals, strict=True):
@@ -238,7 +239,7 @@ def lasting(problem: Problem, result: Fit, filtered: Collection[str] = ()) -> fl
         if blocks == 0 or name in filtered:
             continue
         means = left[: blocks * BLOCK].reshape(blocks, BLOCK).mean(axis=1)
-        excess += float(means @ means) * BLOCK / float(np.mean(left**2)) - blocks
+        excess += float(means @ means) * BLOCK / max(1.0, float(np.mean(left**2))) - blocks
         count += blocks
     return excess / np.sqrt(2.0 * count) if count else 0.0
 
