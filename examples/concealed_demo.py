@@ -9,7 +9,6 @@ sealed file is opened. Leaves the recordings, diagnosis/ and before_after.json u
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import subprocess
@@ -20,8 +19,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from concealment import Answer, draw, seal, unseal
-from conductor import INSTRUMENTS, SIMULATOR_TOPICS, DemoError, Processes, RigConductor, perform
+from concealment import NOISES, Answer, conceal, draw, reveal
+from conductor import INSTRUMENTS, SIMULATOR_TOPICS, DemoError, Processes, RigConductor, perform_on_a_rig
 
 from eha_core.recording import read_recording
 
@@ -142,19 +141,15 @@ def demonstrate(out: Path, seed: int | None) -> None:
     began = time.monotonic()
     out.mkdir(parents=True, exist_ok=True)
     sealed = out / "answer.sealed"
-    digest = seal(draw(seed), sealed)
     print("\nA rig that the model does not follow: driven, recorded over DDS, diagnosed, simulated again")
-    print(f"  what it conceals is sealed in {os.path.relpath(sealed)}, SHA-256 {digest[:16]}...", flush=True)
+    digest = conceal(draw(seed), sealed)
     rig = record_rig(out, sealed)
     document = diagnose(rig, out / "diagnosis")
     print("\nThe simulator under the same command:")
     before = departures(rig, record_simulator(out, "nominal", NOMINAL))
     after = departures(rig, record_simulator(out, "fitted", out / "diagnosis" / "fitted.yaml"))
-    answer, opened = unseal(sealed)
-    if opened != digest:
-        raise DemoError(f"{sealed} is not the answer that was sealed")
-    show_departures(before, after, answer.noises)
-    print(f"\nThe sealed answer, opened (SHA-256 {opened[:16]}..., seed {answer.seed}):")
+    show_departures(before, after, NOISES)
+    answer = reveal(sealed, digest)
     errors = {"nominal": before, "fitted": after, "noise": answer.noises}
     account = {**errors, "seed": answer.seed, **compare(answer, document)}
     (out / "before_after.json").write_text(json.dumps(account, indent=2) + "\n")
@@ -163,11 +158,7 @@ def demonstrate(out: Path, seed: int | None) -> None:
 
 def main() -> int:
     """Run the demonstration and return the exit status."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo", help="folder for all that is written")
-    parser.add_argument("--seed", type=int, help="conceal what this seed draws (default: another each time)")
-    arguments = parser.parse_args()
-    return perform("concealed_demo", lambda: demonstrate(arguments.out, arguments.seed))
+    return perform_on_a_rig("concealed_demo", __doc__.splitlines()[0], demonstrate)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import os
 import secrets
 import zlib
 from collections.abc import Callable
@@ -16,6 +17,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
+
+from eha_core.errors import EhaError
 
 NUMBER = 3
 """How many of EFFECTS are concealed."""
@@ -76,6 +79,22 @@ def _drawn(seed: int | None, chosen: Callable[[np.random.Generator], Ranges]) ->
         for effect, spans in chosen(generator).items()
     }
     return Answer(seed, plant, effects, NOISES)
+
+
+def conceal(answer: Answer, path: Path) -> str:
+    """Seal an answer, say where, and return its seal."""
+    digest = seal(answer, path)
+    print(f"  what it conceals is sealed in {os.path.relpath(path)}, SHA-256 {digest[:16]}...", flush=True)
+    return digest
+
+
+def reveal(path: Path, digest: str) -> Answer:
+    """Open a sealed answer and say so. Raises EhaError where it is not the one that was sealed."""
+    answer, opened = unseal(path)
+    if opened != digest:
+        raise EhaError(f"{path} is not the answer that was sealed")
+    print(f"\nThe sealed answer, opened (SHA-256 {opened[:16]}..., seed {answer.seed}):")
+    return answer
 
 
 def seal(answer: Answer, path: Path) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import signal
 import subprocess
@@ -23,6 +24,7 @@ from eha_core.errors import EhaError
 from eha_interfaces.msg import TrackingError
 from eha_interfaces.srv import Step
 
+OUT = Path(__file__).resolve().parents[1] / "out" / "demo"
 _HALF_PERIOD = 1e-3  # s, of the samples
 INSTRUMENTS = ("voltage_command", "joint_states", "chamber_a/pressure", "chamber_b/pressure")
 SIMULATOR_TOPICS = (*INSTRUMENTS, "state")
@@ -50,6 +52,16 @@ def perform(name: str, demonstrate: Callable[[], None]) -> int:
     except KeyboardInterrupt:
         return 130
     return 0
+
+
+def perform_on_a_rig(name: str, description: str, demonstrate: Callable[[Path, int | None], None]) -> int:
+    """Run a demonstration on a rig whose faults a seed draws, in a folder, as the command line says; return its exit
+    status."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--out", type=Path, default=OUT, help="folder for all that is written")
+    parser.add_argument("--seed", type=int, help="conceal what this seed draws (default: another each time)")
+    arguments = parser.parse_args()
+    return perform(name, lambda: demonstrate(arguments.out.resolve(), arguments.seed))
 
 
 class Processes:

@@ -8,7 +8,6 @@ what was found is printed. Leaves investigation/ and budget/ under out/demo/.
 
 from __future__ import annotations
 
-import argparse
 import os
 import subprocess
 import sys
@@ -17,14 +16,13 @@ from contextlib import suppress
 from pathlib import Path
 from shutil import rmtree
 
-from concealment import Answer, draw_small, seal, unseal
-from conductor import INSTRUMENTS, Conductor, DemoError, Processes, perform
+from concealment import conceal, draw_small, reveal
+from conductor import INSTRUMENTS, Conductor, DemoError, Processes, perform_on_a_rig
 
 from eha_core.report.budget import account, write_budget
 from eha_core.studies import budget
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent
 LIMITS = HERE / "limits.yaml"
 FIRST = ("square:amplitude=0.03,frequency=1.0", 4.0)
 """The first test, and its length [s]."""
@@ -88,14 +86,11 @@ def demonstrate(out: Path, seed: int | None) -> None:
     began = time.monotonic()
     out.mkdir(parents=True, exist_ok=True)
     sealed = out / "small_answer.sealed"
-    digest = seal(draw_small(seed), sealed)
     print("\nA rig that interrogates itself: each test is chosen by what those before left open")
-    print(f"  what it conceals is sealed in {os.path.relpath(sealed)}, SHA-256 {digest[:16]}...", flush=True)
+    digest = conceal(draw_small(seed), sealed)
     found = investigate(out, sealed)
-    answer, opened = unseal(sealed)
-    if opened != digest:
-        raise DemoError(f"{sealed} is not the answer that was sealed")
-    show(answer, opened)
+    for effect, values in reveal(sealed, digest).effects.items():
+        print(f"  {effect}: " + ", ".join(f"{name} {value:.4g}" for name, value in values.items()))
     print(f"\n$ eha budget {os.path.relpath(found)} --command {TASK}")
     made = budget(found, TASK, controller="")
     write_budget(made, out / "budget")
@@ -103,20 +98,9 @@ def demonstrate(out: Path, seed: int | None) -> None:
     print(f"{time.monotonic() - began:.0f} s; open {os.path.relpath(out / 'investigation' / 'investigation.html')}")
 
 
-def show(answer: Answer, opened: str) -> None:
-    """The sealed answer."""
-    print(f"\nThe sealed answer, opened (SHA-256 {opened[:16]}..., seed {answer.seed}):")
-    for effect, values in answer.effects.items():
-        print(f"  {effect}: " + ", ".join(f"{name} {value:.4g}" for name, value in values.items()))
-
-
 def main() -> int:
     """Run the demonstration and return the exit status."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo", help="folder for all that is written")
-    parser.add_argument("--seed", type=int, help="conceal what this seed draws (default: another each time)")
-    arguments = parser.parse_args()
-    return perform("investigation_demo", lambda: demonstrate(arguments.out.resolve(), arguments.seed))
+    return perform_on_a_rig("investigation_demo", __doc__.splitlines()[0], demonstrate)
 
 
 if __name__ == "__main__":

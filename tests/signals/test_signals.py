@@ -10,7 +10,7 @@ import pytest
 from scipy import signal as scipy_signal
 
 from eha_core.errors import ParameterError
-from eha_core.signals import Signal, from_text, make_signal, signals
+from eha_core.signals import Signal, from_text, make_signal, of_reference, signals
 
 TIMES = np.arange(0, 30_000) * 1e-3
 
@@ -192,3 +192,8 @@ def test_words_that_make_no_signal_are_refused_in_one_line(text: str, message: s
     with pytest.raises(ParameterError, match=message) as caught:
         from_text(text)
     assert "\n" not in str(caught.value)
+
+
+def test_the_reference_nodes_parameters_choose_a_signal_and_keep_the_others_to_themselves():
+    given = {"mode": "voltage", "signal": "sine", "sine.amplitude": 0.1, "sine.frequency": 2.0, "chirp.amplitude": 9.0}
+    assert of_reference(given) == ("sine", {"amplitude": 0.1, "frequency": 2.0})

@@ -13,7 +13,7 @@ from eha_core.exam.case import POSITION_NOISE, Array, Arrays, Case
 from eha_core.exam.drawing import LOAD
 from eha_core.exam.measuring import measure, simulate_case
 from eha_core.exam.truth import simulate_truth
-from eha_core.signals import make_signal
+from eha_core.signals import make_signal, of_reference
 
 DURATION = 10.0
 LONGEST = 60.0
@@ -25,12 +25,9 @@ def prescribed_voltage(reference: Mapping[str, Any], time: Array) -> Array:
 
     EhaError when it is no voltage, or no signal the generator has.
     """
-    signal = str(reference.get("signal"))
     if reference.get("mode", "voltage") != "voltage":
         raise EhaError(f"the prescribed test is a reference of {reference['mode']}, and the exam drives voltages")
-    prefix = f"{signal}."
-    parameters = {name.removeprefix(prefix): value for name, value in reference.items() if name.startswith(prefix)}
-    return np.asarray(make_signal(signal, parameters).value(time), dtype=float)
+    return np.asarray(make_signal(*of_reference(reference)).value(time), dtype=float)
 
 
 def with_other_loads(case: Case) -> list[Arrays]:

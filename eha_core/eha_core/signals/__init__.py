@@ -11,7 +11,7 @@ from types import MappingProxyType
 from eha_core.errors import ParameterError, remedy
 from eha_core.signals.signal import Signal, SignalParameter
 
-__all__ = ["Signal", "SignalParameter", "from_text", "make_signal", "signals"]
+__all__ = ["Signal", "SignalParameter", "from_text", "make_signal", "of_reference", "signals"]
 
 
 @cache
@@ -44,6 +44,13 @@ def make_signal(name: str, parameters: Mapping[str, object] | None = None) -> Si
             what_to_do = remedy(parameter, known, f"it has {', '.join(known)}")
             raise ParameterError(f"signal {name} has no parameter {parameter!r}; {what_to_do}")
     return signal(**dict(parameters or {}))  # type: ignore[arg-type]
+
+
+def of_reference(parameters: Mapping[str, object]) -> tuple[str, dict[str, object]]:
+    """The name of the signal that the reference node's parameters choose, and the parameters of that signal alone."""
+    name = str(parameters.get("signal"))
+    start = f"{name}."
+    return name, {key.removeprefix(start): value for key, value in parameters.items() if key.startswith(start)}
 
 
 def from_text(text: str) -> Signal:

@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.identification.numbers import Array
 from eha_core.quantities import quantity
-from eha_core.signals import make_signal, signals
+from eha_core.signals import make_signal, of_reference, signals
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,7 @@ class CommandSignal:
     @classmethod
     def of(cls, reference: Mapping[str, object]) -> CommandSignal:
         """The signal that the reference node's parameters name."""
-        signal = str(reference.get("signal"))
-        prefix = f"{signal}."
-        given = {name.removeprefix(prefix): value for name, value in reference.items() if name.startswith(prefix)}
-        return cls(signal, given)  # type: ignore[arg-type]
+        return cls(*of_reference(reference))  # type: ignore[arg-type]
 
     def reference(self) -> dict[str, object]:
         """As the reference node's parameters."""

@@ -14,7 +14,7 @@ from eha_core.report.picture import Group, Line, Panel, Picture
 from eha_core.report.series import thinned
 from eha_core.report.stage import Stage
 from eha_core.report.wording import channel_title, effect_title, listed, sentence
-from eha_core.signals import make_signal
+from eha_core.signals import make_signal, of_reference
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
@@ -47,10 +47,8 @@ def stage(diagnosis: Diagnosis) -> Stage:
 
 
 def _picture(reference: Mapping[str, object], duration: float) -> Picture:
-    name = str(reference["signal"])
-    parameters = {key.removeprefix(f"{name}."): value for key, value in reference.items() if key.startswith(f"{name}.")}
     time: Array = np.linspace(0.0, duration, 20_001, dtype=np.float64)
-    voltage: Array = np.asarray(make_signal(name, parameters).value(time), dtype=np.float64)
+    voltage: Array = np.asarray(make_signal(*of_reference(reference)).value(time), dtype=np.float64)
     scale = scale_for("V", float(np.abs(voltage).max()))
     x, y = thinned(time, voltage / scale.factor)
     panel = Panel((Line(x, y, "after", "", 1.4),), "time [s]", scale.unit, "Voltage command", 230)
