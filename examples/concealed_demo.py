@@ -136,10 +136,8 @@ def compare(answer: Answer, document: dict) -> dict[str, object]:
     return {"missed": sorted(missed), "extra": sorted(extra), "inside": inside}
 
 
-def demonstrate(out: Path, seed: int | None) -> None:
-    """Conceal, record, diagnose, simulate again, and only then open the answer."""
-    began = time.monotonic()
-    out.mkdir(parents=True, exist_ok=True)
+def demonstrate(out: Path, seed: int | None) -> Path:
+    """Conceal, record, diagnose, simulate again, and only then open the answer; return the report."""
     sealed = out / "answer.sealed"
     print("\nA rig that the model does not follow: driven, recorded over DDS, diagnosed, simulated again")
     digest = conceal(draw(seed), sealed)
@@ -153,7 +151,7 @@ def demonstrate(out: Path, seed: int | None) -> None:
     errors = {"nominal": before, "fitted": after, "noise": answer.noises}
     account = {**errors, "seed": answer.seed, **compare(answer, document)}
     (out / "before_after.json").write_text(json.dumps(account, indent=2) + "\n")
-    print(f"{time.monotonic() - began:.0f} s; open {os.path.relpath(out / 'diagnosis' / 'report.html')}", flush=True)
+    return out / "diagnosis" / "report.html"
 
 
 def main() -> int:

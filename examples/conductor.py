@@ -54,14 +54,22 @@ def perform(name: str, demonstrate: Callable[[], None]) -> int:
     return 0
 
 
-def perform_on_a_rig(name: str, description: str, demonstrate: Callable[[Path, int | None], None]) -> int:
-    """Run a demonstration on a rig whose faults a seed draws, in a folder, as the command line says; return its exit
-    status."""
+def perform_on_a_rig(name: str, description: str, demonstrate: Callable[[Path, int | None], Path]) -> int:
+    """Run a demonstration on a rig whose faults a seed draws, in a folder, as the command line says, and say which page
+    it made; return its exit status."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--out", type=Path, default=OUT, help="folder for all that is written")
     parser.add_argument("--seed", type=int, help="conceal what this seed draws (default: another each time)")
     arguments = parser.parse_args()
-    return perform(name, lambda: demonstrate(arguments.out.resolve(), arguments.seed))
+    out = arguments.out.resolve()
+
+    def demonstrated() -> None:
+        began = time.monotonic()
+        out.mkdir(parents=True, exist_ok=True)
+        page = demonstrate(out, arguments.seed)
+        print(f"{time.monotonic() - began:.0f} s; open {os.path.relpath(page)}", flush=True)
+
+    return perform(name, demonstrated)
 
 
 class Processes:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
 from contextlib import suppress
 from pathlib import Path
 from shutil import rmtree
@@ -81,10 +80,8 @@ def investigate(out: Path, sealed: Path) -> Path:
     return folder / "diagnosis" / "diagnosis.json"
 
 
-def demonstrate(out: Path, seed: int | None) -> None:
-    """Conceal, interrogate, open the answer, and say what the findings cost."""
-    began = time.monotonic()
-    out.mkdir(parents=True, exist_ok=True)
+def demonstrate(out: Path, seed: int | None) -> Path:
+    """Conceal, interrogate, open the answer, and say what the findings cost; return the investigation's page."""
     sealed = out / "small_answer.sealed"
     print("\nA rig that interrogates itself: each test is chosen by what those before left open")
     digest = conceal(draw_small(seed), sealed)
@@ -95,7 +92,7 @@ def demonstrate(out: Path, seed: int | None) -> None:
     made = budget(found, TASK, controller="")
     write_budget(made, out / "budget")
     print(account(made))
-    print(f"{time.monotonic() - began:.0f} s; open {os.path.relpath(out / 'investigation' / 'investigation.html')}")
+    return out / "investigation" / "investigation.html"
 
 
 def main() -> int:
