@@ -51,6 +51,16 @@ def test_three_effects_are_named_with_their_values_and_nothing_else(found):
     )
 
 
+def test_friction_is_named_where_no_noise_hides_what_the_step_of_the_simulation_leaves():
+    """What is held of it on the way is no part of the nominal model."""
+    observation = observe(recorded({"coulomb_friction.force": 250.0}, duration=4.0, noise=0.0))
+    calibration = calibrate([observation], NominalModel(nominal_values()))
+    scales = characteristic_scales([observation], calibration.shooting, calibration.fitted)
+    _, comparison = find_sets([observation], calibration, applicable_effects([observation]), scales)
+    assert comparison.entries[0].ids == ("coulomb_friction",)
+    assert comparison.nominal.fit.values["coulomb_friction.force"] == 0.0
+
+
 def test_the_nominal_model_is_told_beside_it_in_the_same_noise(found):
     before, after, comparison = found
     assert comparison.nominal.hypothesis == NOTHING and comparison.nominal.score == 0.0

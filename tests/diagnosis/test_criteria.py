@@ -44,6 +44,7 @@ THRESHOLDS = {
     "LEFT_OVER": 0.05,
     "NOTICEABLE": 4.0,
     "RELEVANT": 0.01,
+    "UNLIKELY": 2.0,
     "EXPANSIONS": 8,
     "EXPANSIONS_LATER": 3,
     "IDLE": 2,

@@ -6,11 +6,13 @@ import pytest
 from made import LAWS, bench, explanation
 
 from eha_core.diagnosis import criteria
+from eha_core.diagnosis.criteria import UNLIKELY
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.finish import (
     as_large,
     converge,
     finish,
+    from_nominal_values,
     in_a_members_place,
     meet,
     of_simpler_form,
@@ -231,6 +233,23 @@ def test_what_was_fitted_to_its_end_is_not_fitted_again(rig, pool):
     pool.found[both] = replace(first, objective=first.objective + 1.0)
     converge(pool, both)
     assert len(pool.trace.steps) > fits
+
+
+@pytest.mark.parametrize(("deviations", "again"), [(0.9 * UNLIKELY, False), (1.1 * UNLIKELY, True)])
+def test_a_set_with_an_unlikely_nominal_value_is_fitted_from_the_nominal_ones_too(rig, pool, deviations, again):
+    """As one that rests in a minimum to which another set led."""
+    both = rig.set_of("constant_load", "valve_deadband")
+    replace(rig, pool=pool).fitted(PLANTED)
+    at = converge(pool, both)
+    fits = len(pool.trace.steps)
+    mass = next(one for one in at.free if one.name == "moving_mass")
+    far = {**at.values, "moving_mass": mass.value(deviations * mass.prior_deviation)}
+    pool.found[both] = replace(at, values=far, objective=2.0 * at.objective)
+    from_nominal_values(pool, both)
+    assert [step.step for step in pool.trace.steps[fits:]] == (["from nominal values", "converge"] if again else [])
+    if again:
+        assert pool.found[both].objective == pytest.approx(at.objective, rel=1e-3)
+        assert pool.found[both].values["moving_mass"] == pytest.approx(at.values["moving_mass"], rel=0.02)
 
 
 @pytest.mark.parametrize(("left", "asked"), [(10.0, False), (100.0, True)])

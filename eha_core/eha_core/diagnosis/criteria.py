@@ -124,6 +124,10 @@ NOTICEABLE = 4.0
 RELEVANT = 0.01
 """... and by this share of itself (or, where the nominal value is zero, of the scale on which it is free)."""
 
+UNLIKELY = 2.0
+"""Standard deviations of what is believed beyond which a nominal value may belong to a minimum to which another set
+led: the best set is fitted once more from the nominal values then. Outside lies one sound value in twenty."""
+
 EXPANSIONS, EXPANSIONS_LATER = 8, 3
 """Sets about which the channels are linearised at most, at first, and wherever a search goes on from what another found
 (assumed)."""

@@ -109,7 +109,8 @@ def _over_growing_windows(
     material.progress("searching sets over longer windows")
     longer, begin = begun(whole(calibration.shorter[1]), nominal, friction, material)
     bridge = longer.fresh()  # what leads to nothing must not stand in the search's way
-    bridge.adopt(longer)
+    if friction.held is None:  # else the nominal equations have that friction in them
+        bridge.adopt(longer)
     carry(short, bridge)
     pool = carried(bridge, calibration.problem, material)
     if at_the_noise(pool):
