@@ -11,8 +11,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import theilslopes
 
 from eha_core.health.fault import Fault
+from eha_core.health.noise import NORMAL_MEDIAN
 from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
 
@@ -27,7 +29,10 @@ ALIKE = 0.7
 FEWEST = 5
 """Pieces that have one."""
 STEADY = 0.15
-"""Scatter of the delays about a straight line, over what the line rises by, up to which the change is steady."""
+"""Scatter of the delays about a straight line, over what the line rises by, up to which the change is steady (the
+line by Theil and Sen, the scatter from the median deviation)."""
+OUTSIDE = 3.0
+"""Times that scatter beyond which a delay is left out of the line (assumed)."""
 DRIFTED = 0.04
 """s by which the delay must change: more than a rig's own does (assumed: coil, spool and oil together take 0.01 s)."""
 SLOWEST = 0.003
@@ -49,15 +54,20 @@ def drift(recording: Recording) -> Sequence[Fault]:
     when, late = _delays(grid, _smooth(voltage), _smooth(speed))
     if len(when) < FEWEST:
         return ()
-    rate, level = np.polyfit(when, late, 1)
+    # a piece of even oscillation may seem late by a period more or less
+    about = late - float(theilslopes(late, when)[0]) * when
+    apart = np.abs(about - np.median(about))
+    scatter = float(np.median(apart)) / NORMAL_MEDIAN
+    kept = apart <= max(OUTSIDE * scatter, TICK)
+    rate, level = np.polyfit(when[kept], late[kept], 1)
     rise = abs(rate) * float(np.ptp(when))
-    scatter = float(np.std(late - np.polyval((rate, level), when)))
     if abs(rate) < SLOWEST or rise < DRIFTED or scatter > STEADY * rise:
         return ()
     fault = Fault(
         "position", "clock", float(position.time[0]), float(position.time[-1]),
         f"its clock runs {100.0 * abs(rate):.2g} % {'fast' if rate > 0.0 else 'slow'} against the command's:"
-        f" it follows by {1e3 * late[0]:.0f} ms at first and by {1e3 * late[-1]:.0f} ms at last",
+        f" it follows by {1e3 * (level + rate * when[0]):.0f} ms at first and by"
+        f" {1e3 * (level + rate * when[-1]):.0f} ms at last",
         "stamp all channels by one clock", False, True,
     )  # fmt: skip
     return (fault,)
