@@ -62,7 +62,7 @@ class Feedforward(Controller):
         flow = self._area * target.velocity + leak * load + turbulent + self._compliance * load_rate
         drop = values["supply_pressure"] - values["return_pressure"] - copysign(load, flow * load) * (load != 0.0)
         opening = flow / (values["valve_gain"] * sqrt(max(0.5 * drop, 1.0)))
-        spool = self._through_deadband(opening) + values["valve_null_offset.offset"]
+        spool = self._through_deadband(opening) - values["valve_null_offset.offset"]
         spool_rate = (spool - spool_before) / self._period if self._before else 0.0
         self._before = (target.velocity, load, spool)
         return values["coil_resistance"] * (spool + self._lead * spool_rate)
@@ -73,7 +73,7 @@ class Feedforward(Controller):
         friction = values["coulomb_friction.force"] + values["stribeck_friction.force"]
         force = values["moving_mass"] * acceleration + values["damping_coefficient"] * target.velocity
         force += values["spring_stiffness"] * target.position + friction * tanh(target.velocity / REVERSAL)
-        return (force - values["constant_load.force"]) / self._area
+        return (force + values["constant_load.force"]) / self._area
 
     def _through_deadband(self, opening: float) -> float:
         """The spool position that opens the valve so far, over its overlap."""
