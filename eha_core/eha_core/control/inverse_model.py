@@ -16,7 +16,7 @@ LEAST_DROP = 1.0
 """Pa; what an orifice is taken to have where the load needs all of the supply pressure (assumed): no division by 0."""
 
 LEAST_SHARE = 0.1
-"""The smallest share of its gain that a saturating valve is taken to keep (assumed): the flow that it gives is finite."""
+"""The smallest share of its gain that a saturating valve is taken to keep (assumed); the law stays finite."""
 
 NAMES = (
     "moving_mass", "damping_coefficient", "directional_damping.ratio", "quadratic_damping.coefficient",
