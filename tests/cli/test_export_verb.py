@@ -13,6 +13,8 @@ from eha_core.parameters import catalogue
 
 PUMP = "plant: {source: switched_pump}\n/**/eha_sim: {ros__parameters: {}}\n"
 VANE = "plant: {cylinder: rotary_vane}\n/**/eha_sim: {ros__parameters: {}}\n"
+SOFT = "/**/eha_sim: {ros__parameters: {bulk_modulus: 1.0e+7, moving_mass: 1.0e+5, damping_coefficient: 0.0, "
+SOFT += "internal_leakage: 0.0}}\n"
 
 
 @pytest.fixture(autouse=True)
@@ -36,6 +38,13 @@ def compiler_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
         (["c", "--out", "other.json"], "cannot be written"),
         (["fmu", "--out", "rig.fmu", "--target", "x86_64-linux-gnu"], "an FMU is for 64-bit Linux and Windows"),
         (["c", "--out", "rig", "--fmi", "3"], "a library has no FMI"),
+        (["fmu", "--out", "rig.fmu", "--rate", "500"], "leave it out, or give --step"),
+        (["controller", "--out", "rig", "--step", "1e-4"], "leave it out, or give --rate"),
+        (["controller", "--out", "rig", "--fmi", "2"], "a controller is source text"),
+        (["controller", "--out", "rig", "--rate", "0"], "a controller's rate is 1 to 10000 Hz"),
+        (["controller", "--out", "other.json"], "cannot be written"),
+        (["controller", "--out", "rig", "--nominal", "pump.yaml"], "plant.source = switched_pump is not taken here"),
+        (["controller", "--out", "rig", "--nominal", "soft.yaml"], "no position loop down to 0.62 rad/s is stable"),
         (["fmi", "--out", "rig.fmu"], "invalid choice"),
         ([], "required: form, --out"),
     ],
@@ -44,7 +53,8 @@ def test_what_cannot_be_done_is_one_line(
     words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    for name, text in {"other.json": "[]", "pump.yaml": PUMP, "vane.yaml": VANE}.items():
+    files = {"other.json": "[]", "pump.yaml": PUMP, "vane.yaml": VANE, "soft.yaml": SOFT}
+    for name, text in files.items():
         Path(name).write_text(text)
     try:
         status = main(["export", *words])

@@ -1,4 +1,4 @@
-"""`eha export`: write the plant, with all that was found, for tools that know no Python."""
+"""`eha export`: write the plant, or a controller made from it, with all that was found, for other tools."""
 
 from __future__ import annotations
 
@@ -14,27 +14,37 @@ if TYPE_CHECKING:
     from eha_core.export import ExportedModel
 
 _TARGET = "x86_64-linux-gnu"
+_STEP = 1e-4  # s
+_RATE = 500  # Hz; as eha_description's controller manager
+
+_OF = {
+    "fmu": "an FMU is for 64-bit Linux and Windows, and takes the plant's own step",
+    "c": "a library has no FMI, and takes the plant's own step",
+    "controller": "a controller is source text with a rate of its own",
+}  # why an option of another form does not fit
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the verb."""
     parser = subparsers.add_parser(
         "export",
-        help="write the plant for tools that know no Python",
+        help="write the plant, or a controller made from it, for other tools",
         description="Compiles the plant's own kernel for other tools: an FMU for co-simulation on 64-bit Linux and"
         " Windows, or a C header with a static library and its sources. The compiler comes from PyPI: pip install"
-        " ziglang",
+        " ziglang. Or writes a controller: gains for ros2_control, and the actuator's inverse as a C function and as a"
+        " Python file, which need no compiler here",
     )
     add = parser.add_argument
-    add("form", choices=("fmu", "c"), help="what to write")
-    add("--out", required=True, type=Path, metavar="FILE.fmu|DIR", help="the FMU, or the folder of header and library")
+    add("form", choices=("fmu", "c", "controller"), help="what to write")
+    add("--out", required=True, type=Path, metavar="FILE.fmu|DIR", help="the FMU, or the folder of the other forms")
     given = parser.add_mutually_exclusive_group().add_argument
     given("--nominal", type=Path, metavar="FILE", help="the plant: a parameters file in ROS 2's YAML form")
     given("--from", dest="diagnosis", type=Path, metavar="diagnosis.json", help="the plant as a diagnosis found it")
     add("--fmi", type=int, choices=(2, 3), help="of an FMU: FMI's version (default 2, which more tools read)")
     add("--target", metavar="TRIPLE", help=f"of c: processor, system and C library, such as aarch64-linux-gnu or"
         f" x86_64-windows-gnu (default {_TARGET})")  # fmt: skip
-    add("--step", type=float, default=1e-4, metavar="S", help="the plant's step (default %(default)s)")
+    add("--step", type=float, metavar="S", help=f"of fmu and c: the plant's step (default {_STEP:g})")
+    add("--rate", type=int, metavar="HZ", help=f"of controller: commands a second (default {_RATE})")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -42,7 +52,10 @@ def run(arguments: argparse.Namespace) -> int:
     _check(arguments)
     from eha_core.export import exported_model, write_fmu, write_library
 
-    model = exported_model(arguments.nominal, arguments.diagnosis, arguments.step)
+    given = (arguments.nominal, arguments.diagnosis)
+    model = exported_model(*given, _STEP if arguments.step is None else arguments.step)
+    if arguments.form == "controller":
+        return _export_controller(arguments, model)
     if arguments.form == "fmu":
         path = write_fmu(model, arguments.out, arguments.fmi or 2)
         size = path.stat().st_size / 1000.0
@@ -55,22 +68,42 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _export_controller(arguments: argparse.Namespace, model: ExportedModel) -> int:
+    from eha_core.export.controller import compensation, write_controller
+
+    source = arguments.diagnosis or arguments.nominal
+    origin = source.name if source else "the nominal plant"
+    written = write_controller(model, arguments.out, arguments.rate or _RATE, origin)
+    compensated, left = (", ".join(names) or "none" for names in compensation(model))
+    print(f"{arguments.out}: {', '.join(path.name for path in written)}")
+    print(f"effects compensated: {compensated}\neffects that act and are not compensated: {left}")
+    return 0
+
+
 def _check(arguments: argparse.Namespace) -> None:
     """Raise EhaError for what does not go together or cannot be written, before any work is done."""
     from eha_core.export.compiler import require_compiler, require_target
 
-    if arguments.form == "fmu":
-        if arguments.target is not None:
-            raise EhaError(f"--target {arguments.target}: an FMU is for 64-bit Linux and Windows; leave it out")
+    form = arguments.form
+    if arguments.target is not None and form != "c":
+        raise EhaError(f"--target {arguments.target}: {_OF[form]}; leave it out")
+    if arguments.fmi is not None and form != "fmu":
+        raise EhaError(f"--fmi {arguments.fmi}: {_OF[form]}; leave it out, or export fmu")
+    if arguments.step is not None and form == "controller":
+        raise EhaError(f"--step {arguments.step:g}: {_OF[form]}; leave it out, or give --rate")
+    if arguments.rate is not None and form != "controller":
+        raise EhaError(f"--rate {arguments.rate}: {_OF[form]}; leave it out, or give --step")
+    if arguments.rate is not None and not 1 <= arguments.rate <= 10_000:
+        raise EhaError(f"--rate {arguments.rate}: a controller's rate is 1 to 10000 Hz")
+    if form == "fmu":
         if arguments.out.suffix != ".fmu":
             raise EhaError(f"--out {arguments.out}: the name of an FMU ends in .fmu")
         require_file(arguments.out, "--out")
     else:
-        if arguments.fmi is not None:
-            raise EhaError(f"--fmi {arguments.fmi}: a library has no FMI; leave it out, or export fmu")
         require_target(arguments.target or _TARGET)
         require_folder(arguments.out, "--out")
-    require_compiler()
+    if form != "controller":
+        require_compiler()
 
 
 def _account(model: ExportedModel) -> str:
