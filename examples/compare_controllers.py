@@ -2,7 +2,8 @@
 
 Starts simulator and reference once and each controller in turn, turns the rig's parameters with the parameter service,
 and scores what the topics said. The feedforward is run with the data sheet's values and, on the rig with friction, with
-what a diagnosis of that rig's recording found. Leaves under out/controllers/ scores.json, table.md and controllers.png.
+what a diagnosis of that rig's recording found: by the library, and as `eha export controller` writes it. Leaves under
+out/controllers/ scores.json, table.md and controllers.png.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from eha_interfaces.msg import ActuatorState
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORDING = ROOT / "bags" / "rig_coulomb_friction.mcap"
+EXPORTED = ROOT / "examples" / "exported_controller.py"
 SECONDS, SKIP, PERIOD = 4.0, 1.0, 0.002  # s of each run, s until it is scored, s between commands
 AMPLITUDE, FREQUENCY = 0.01, 1.0  # m, Hz of the reference
 _HALF = PERIOD / 2
@@ -38,6 +40,7 @@ _FOUND = 0.5  # s until nodes that see each other in the graph are surely matche
 PATIENCE = 1200.0  # s for a controller to start, or a piece of a run: a busy machine is no failure
 SOUND: Mapping[str, float] = {"moving_mass": 9.0, "coulomb_friction.force": 0.0, "internal_leakage": 1e-12}
 FRICTION = "friction 250 N"
+DIAGNOSED = "feedforward, diagnosis"
 RIGS: Mapping[str, Mapping[str, float]] = {
     **{f"leakage {level:g}": {**SOUND, "internal_leakage": level} for level in LEVELS},
     FRICTION: {**SOUND, "moving_mass": 11.0, "coulomb_friction.force": 250.0},  # as recorded in RECORDING
@@ -46,21 +49,27 @@ RIGS: Mapping[str, Mapping[str, float]] = {
 
 @dataclass(frozen=True)
 class Contender:
-    """A controller, what it knows of the actuator, and the rigs it runs on."""
+    """A controller, how its node is started, and the rigs it runs on."""
 
     title: str
-    law: str
-    model: Path | None = None
+    words: tuple[str, ...]
     rigs: tuple[str, ...] = tuple(RIGS)
 
 
-def contenders(fitted: Path) -> list[Contender]:
-    """Every controller with nominal values, and the feedforward that knows the diagnosis."""
-    nominal = [Contender(law.replace("_", " "), law) for law in ("pid", "cascade", "lqr", "sliding_mode")]
+def contenders(diagnosis: Path) -> list[Contender]:
+    """Every controller with nominal values, and the feedforward that knows the diagnosis in a folder, in two forms."""
+    node = ("-m", "eha_sim_node.controller", "--ros-args", "-p")
+    nominal = [
+        Contender(law.replace("_", " "), (*node, f"controller:={law}"))
+        for law in ("pid", "cascade", "lqr", "sliding_mode")
+    ]
+    feedforward = (*node, "controller:=feedforward")
+    exported = (str(EXPORTED), "--ros-args", "-p", f"folder:={diagnosis / 'controller'}")
     return [
         *nominal,
-        Contender("feedforward, data sheet", "feedforward"),
-        Contender("feedforward, diagnosis", "feedforward", fitted, (FRICTION,)),
+        Contender("feedforward, data sheet", feedforward),
+        Contender(DIAGNOSED, (*feedforward, "-p", f"model:={diagnosis / 'fitted.yaml'}"), (FRICTION,)),
+        Contender("feedforward, exported from the diagnosis", exported, (FRICTION,)),
     ]
 
 
@@ -123,7 +132,7 @@ def _tick(stamp: Any) -> int:
     return round((stamp.sec + stamp.nanosec * 1e-9) / PERIOD)
 
 
-def compare(fitted: Path, logs: Path) -> list[dict[str, Any]]:
+def compare(diagnosis: Path, logs: Path) -> list[dict[str, Any]]:
     """Run every contender on its rigs; return one row each."""
     processes, conductor, rows = Processes(logs), None, []
     signal = ("mode:=position", "lockstep:=true", f"sine.amplitude:={AMPLITUDE}", f"sine.frequency:={FREQUENCY}")
@@ -132,14 +141,13 @@ def compare(fitted: Path, logs: Path) -> list[dict[str, Any]]:
         processes.start("reference", *(word for given in signal for word in ("-p", given)))
         conductor = Comparison(processes)
         conductor.await_nodes(())
-        for contender in contenders(fitted):
-            model = ("-p", f"model:={contender.model}") if contender.model else ()
-            processes.start("controller", "-p", f"controller:={contender.law}", *model)
+        for contender in contenders(diagnosis):
+            processes.start_program("controller", *contender.words)
             conductor.meet()
             for rig in contender.rigs:
                 made, errors = conductor.run(RIGS[rig])
                 rows.append({"controller": contender.title, "rig": rig, **asdict(made), "errors": errors})
-                print(f"  {contender.title:24s} {rig:16s} {1e6 * made.rmse:9.1f} um", flush=True)
+                print(f"  {contender.title:40s} {rig:16s} {1e6 * made.rmse:9.1f} um", flush=True)
             processes.stop("controller")
     finally:
         processes.stop()
@@ -149,14 +157,20 @@ def compare(fitted: Path, logs: Path) -> list[dict[str, Any]]:
 
 
 def diagnose(folder: Path) -> Path:
-    """Diagnose the recording of the rig with friction; return the fitted parameters file."""
-    words = ["diagnose", str(RECORDING), "--out", str(folder)]
-    print(f"$ eha diagnose bags/{RECORDING.name}", flush=True)
+    """Diagnose the recording of the rig with friction and export a controller from it; return the diagnosis' folder."""
+    _eha("diagnose", str(RECORDING), "--out", str(folder))
+    _eha("export", "controller", "--from", str(folder / "diagnosis.json"), "--out", str(folder / "controller"))
+    return folder
+
+
+def _eha(*words: str) -> None:
+    """Run a command of `eha`, and show what it found."""
+    print(f"$ eha {' '.join(word.removeprefix(f'{ROOT}/') for word in words)}", flush=True)
     done = subprocess.run([sys.executable, "-m", "eha_core.cli", *words], capture_output=True, text=True, check=False)
     if done.returncode:
-        raise DemoError(f"eha diagnose ended with status {done.returncode}: {done.stderr.strip()}")
-    print("\n".join(line for line in done.stdout.splitlines() if line.startswith(("Verdict", "Named"))), flush=True)
-    return folder / "fitted.yaml"
+        raise DemoError(f"eha {words[0]} ended with status {done.returncode}: {done.stderr.strip()}")
+    shown = ("Verdict", "Named", "effects compensated")
+    print("\n".join(line for line in done.stdout.splitlines() if line.startswith(shown)), flush=True)
 
 
 def table(rows: list[dict[str, Any]]) -> str:
@@ -181,7 +195,7 @@ def demonstrate(out: Path) -> None:
     (out / "scores.json").write_text(json.dumps(rows, indent=2) + "\n")
     (out / "table.md").write_text(table(rows))
     found = {row["controller"]: row["rmse"] for row in rows if row["rig"] == FRICTION}
-    ratio = found["pid"] / found["feedforward, diagnosis"]
+    ratio = found["pid"] / found[DIAGNOSED]
     print(f"\n{table(rows)}\nOn the rig with friction the PID's RMSE is {ratio:.0f} times that of the feedforward made")
     print(f"from the diagnosis. {time.monotonic() - began:.0f} s; all of it is in {out}", flush=True)
 

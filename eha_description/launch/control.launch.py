@@ -3,8 +3,9 @@
     ros2 launch eha_description control.launch.py controller:=pid_controller
 
 Arguments: namespace, time_mode (realtime, scaled, lockstep), plant (a parameters file of the simulator), controller
-(joint_trajectory_controller, pid_controller, cascade), hardware (joint_state, joint_command), record (true, false),
-directory. The simulator itself publishes joint_states, which robot_state_publisher takes; no broadcaster is spawned.
+(joint_trajectory_controller, pid_controller, cascade), controllers (a file with their gains, such as `eha export
+controller` writes), hardware (joint_state, joint_command), record (true, false), directory. The simulator itself
+publishes joint_states, which robot_state_publisher takes; no broadcaster is spawned.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ ARGUMENTS = (
     DeclareLaunchArgument("time_mode", default_value="realtime", choices=["realtime", "scaled", "lockstep"]),
     DeclareLaunchArgument("plant", default_value="", description="parameters file of the simulator, e.g. fitted.yaml"),
     DeclareLaunchArgument("controller", default_value="joint_trajectory_controller", choices=list(CONTROLLERS)),
+    DeclareLaunchArgument("controllers", default_value="", description="file with the gains; empty: the package's own"),
     DeclareLaunchArgument("hardware", default_value="joint_state", choices=["joint_state", "joint_command"]),
     DeclareLaunchArgument("record", default_value="false", choices=["true", "false"]),
     DeclareLaunchArgument("directory", default_value="bags", description="folder that recordings go to"),
@@ -44,7 +46,8 @@ def nodes(context: LaunchContext) -> list[Node]:
     """Return the nodes for the arguments given."""
     given = {item.name: LaunchConfiguration(item.name).perform(context) for item in ARGUMENTS}
     share = Path(get_package_share_directory("eha_description"))
-    namespace, controllers = given["namespace"].strip("/"), str(share / "config" / "controllers.yaml")
+    namespace = given["namespace"].strip("/")
+    controllers = given["controllers"] or str(share / "config" / "controllers.yaml")
     clock = {"use_sim_time": given["time_mode"] != "realtime"}
     description = {"robot_description": robot_description(share, f"/{namespace}".rstrip("/"), given["hardware"])}
     simulator: list[Any] = [str(share / "config" / "simulator.yaml"), {"time_mode": given["time_mode"]}]

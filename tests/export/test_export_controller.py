@@ -101,7 +101,7 @@ def test_a_motion_in_c_and_in_python_is_the_feedforward_s(python: ModuleType, co
         assert python.ACTUATOR.follow(position, velocity, PERIOD) == volts
         supply = ctypes.c_double.in_dll(compiled, "eha_supply_pressure").value
         in_c = compiled.eha_follow(ctypes.addressof(memory), position, velocity, PERIOD, supply)
-        assert in_c == pytest.approx(volts, rel=1e-11, abs=1e-12)  # rates divide a difference by the period
+        assert in_c == pytest.approx(volts, rel=1e-12, abs=0.0)
 
 
 def test_the_python_file_needs_math_alone(folder: Path) -> None:

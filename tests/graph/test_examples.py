@@ -15,6 +15,7 @@ from headlines import hold_against
 from mcap.reader import make_reader
 from sensor_msgs.msg import JointState
 
+from eha_core.cli import main
 from eha_core.exam.truth import simulate_truth
 from eha_core.plant import Plant
 from eha_core.recording import read_recording
@@ -141,14 +142,14 @@ def test_an_example_that_was_given_no_file_says_so_in_one_line(tmp_path: Path, w
     assert done.stderr.startswith(text) and done.stderr.count("\n") == 1
 
 
-def test_a_controller_of_ones_own_follows_a_position(rig: Rig) -> None:
+def largest_error(rig: Rig, example: str, *parameters: str) -> float:
+    """Of the position [m], from the third second on, where an example leads the rig along a sine of 10 mm."""
     rig.node.destroy_publisher(rig.commands)
     rig.start_sim("time_mode:=lockstep")
     rig.start("reference", "mode:=position", "lockstep:=true", "signal:=sine", "sine.amplitude:=0.01")
-    log = rig.folder / "controller.log"
-    gains = ["-p", "gain:=10.0", "-p", "feedforward:=0.8"]
-    command = [str(EXAMPLES / "position_controller.py"), "--ros-args", "-r", f"__ns:={rig.namespace}", *gains]
-    rig.processes.append(NodeProcess(log, [sys.executable, *command]))
+    given = [word for parameter in parameters for word in ("-p", parameter)]
+    command = [str(EXAMPLES / example), "--ros-args", "-r", f"__ns:={rig.namespace}", *given]
+    rig.processes.append(NodeProcess(rig.folder / "controller.log", [sys.executable, *command]))
     measured, references = rig.hear(JointState, "joint_states"), rig.hear(JointState, "reference")
     rig.wait(lambda: len(measured) > 2000 and len(references) > 2000, "four seconds of simulated time")
     by_stamp = {(item.header.stamp.sec, item.header.stamp.nanosec): item.position[0] for item in references}
@@ -158,4 +159,14 @@ def test_a_controller_of_ones_own_follows_a_position(rig: Rig) -> None:
         if (item.header.stamp.sec, item.header.stamp.nanosec) in by_stamp
     ]
     assert len(errors) > 900
-    assert np.abs(errors).max() < 0.001  # a tenth of the amplitude
+    return float(np.abs(errors).max())
+
+
+def test_a_controller_of_ones_own_follows_a_position(rig: Rig) -> None:
+    found = largest_error(rig, "position_controller.py", "gain:=10.0", "feedforward:=0.8")
+    assert found < 0.001  # a tenth of the amplitude
+
+
+def test_an_exported_controller_follows_a_position(rig: Rig) -> None:
+    assert main(["export", "controller", "--out", str(rig.folder / "exported")]) == 0
+    assert largest_error(rig, "exported_controller.py", f"folder:={rig.folder / 'exported'}") < 2e-6
