@@ -64,7 +64,7 @@ class InverseModel:
         Args:
             position: to be followed [m].
             velocity: likewise [m/s].
-            period: time since the last call, and for which the voltage is held [s].
+            period: time since the last call, and for which the voltage is held [s]; above 0.
             supply_pressure: as measured, above the return line's reference [Pa]; None: as in the values.
         """
         velocity_before, force_before, spool_before = self._before or (velocity, 0.0, 0.0)

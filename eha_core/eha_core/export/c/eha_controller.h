@@ -25,7 +25,7 @@ typedef struct {
 
 /* Volts for a motion that is given sample by sample, with the lags of oil, spool, coil and command; accelerations and
    rates are backward differences. Start with `eha_motion motion = {0};`.
-   position [m], velocity [m/s], period: time since the last call [s], supply_pressure [Pa] */
+   position [m], velocity [m/s], period: time since the last call, above 0 [s], supply_pressure [Pa] */
 double eha_follow(eha_motion *motion, double position, double velocity, double period, double supply_pressure);
 
 /* Viscous and dry friction against a velocity [m/s], smooth about zero [N]. */
