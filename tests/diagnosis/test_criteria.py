@@ -1,6 +1,7 @@
 """The thresholds that decide what is named: none of them moves unnoticed."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from eha_core.diagnosis.search.pool import Pool, Trace
 THRESHOLDS = {
     "FAR_FROM_NOISE": 5.0,
     "NEAR_NOISE": 1.03,
+    "BLOCK": 20,
+    "LASTS": 5.0,
     "OF_EXCESS": 0.01,
     "OF_FRICTION": 0.25,
     "CHANCE": 25.0,
@@ -101,7 +104,8 @@ def pool_of(objectives):
     """A pool of fits of so many effects, each of which leaves so much."""
     named = [effect for effect in LAWS.values() if effect.named and not effect.kind]
     sets = {NOTHING.with_effects(named[:size]): leaving(left) for size, left in objectives.items()}
-    return Pool(None, (), Trace(), sets)
+    without_channels = SimpleNamespace(names=(), samplings=())
+    return Pool(SimpleNamespace(shooting=without_channels, used=lambda: None), (), Trace(), sets)
 
 
 def test_of_sets_the_larger_leads_only_where_its_members_gain_more_than_chance():

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from made import LAWS, bench
 
-from eha_core.diagnosis.criteria import FAR_FROM_NOISE
+from eha_core.diagnosis.criteria import BLOCK, FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.pool import REACH, Pool, Trace
+from eha_core.diagnosis.search.pool import REACH, Pool, Trace, lasting
 from eha_core.identification.fit import fit
 from eha_core.parameters import nominal_values
 
@@ -147,3 +147,27 @@ def test_a_bound_is_released_in_the_nominal_equations_too():
 def test_where_a_member_sticks_derivatives_are_taken_more_finely(rig, pool):
     assert pool.posed(rig.set_of("constant_load")) is pool.problem
     assert pool.posed(rig.set_of("coulomb_friction")).slope_step < pool.problem.slope_step
+
+
+def test_what_lasts_in_a_residual_is_not_noise(rig, pool):
+    """Block averages of white noise are as large as chance makes them; those of a slow sine are its own, by the
+    closed form."""
+    both, rng = rig.set_of("constant_load", "valve_deadband"), np.random.default_rng(7)
+    at = pool.found[both]
+    power = 0.1
+    white = tuple(rng.standard_normal(len(row)) for row in at.residuals)
+    used = pool.problem.used()
+    counts = [int(used[sampling.window].sum()) for sampling in pool.problem.shooting.samplings]
+    slow = tuple(row + np.sqrt(2.0 * power) * np.sin(0.05 * np.arange(len(row))) for row in white)
+    blocks = sum(count // BLOCK for count in counts)
+    of_noise, of_sine = (lasting(pool.problem, replace(at, residuals=rows)) for rows in (white, slow))
+    assert abs(of_noise) < 3.0
+    averaged = power * (np.sin(0.025 * BLOCK) / (0.025 * BLOCK)) ** 2
+    assert of_sine == pytest.approx(((1.0 + averaged * BLOCK) / (1.0 + power) - 1.0) * np.sqrt(blocks / 2.0), rel=0.2)
+    assert lasting(pool.problem, replace(at, residuals=slow), pool.problem.shooting.names) == 0.0
+    pool.found[both] = replace(at, residuals=slow, data=1.01 * at.count)
+    assert not pool.leaves_noise(both)
+    pool.found[both] = replace(at, residuals=white, data=at.count)
+    assert pool.leaves_noise(both)
+    pool.found[both] = replace(at, residuals=white, data=1.01 * NEAR_NOISE * at.count)
+    assert not pool.leaves_noise(both)

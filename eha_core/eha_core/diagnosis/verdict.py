@@ -11,6 +11,7 @@ import numpy as np
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.calibrate import Calibration, has_changed
 from eha_core.diagnosis.criteria import (
+    BLOCK,
     COHERENT,
     CONTENDING,
     ENOUGH,
@@ -46,10 +47,6 @@ class Decision:
     judged_nominal: Judged | None
     judged_winner: Judged | None
     as_given: bool = False
-
-
-SMOOTHED = 20
-"""Samples a block in which a residual is averaged to see whether it is coherent."""
 
 
 def decide(
@@ -97,11 +94,11 @@ def _leaves_physics_over(best: Fit, nominal: Fit) -> bool:
 
 def coherence(residual: Array) -> float:
     """The size of a residual averaged over blocks (its median over the record), over what white noise would leave."""
-    blocks = len(residual) // SMOOTHED
+    blocks = len(residual) // BLOCK
     if blocks < 3:
         return 0.0
-    means = residual[: blocks * SMOOTHED].reshape(blocks, SMOOTHED).mean(axis=1)
-    return float(np.median(np.abs(means)) / NORMAL_MEDIAN * np.sqrt(SMOOTHED))
+    means = residual[: blocks * BLOCK].reshape(blocks, BLOCK).mean(axis=1)
+    return float(np.median(np.abs(means)) / NORMAL_MEDIAN * np.sqrt(BLOCK))
 
 
 def _beats_the_catalogue(recovery: Recovery, comparison: ModelComparison) -> bool:

@@ -123,7 +123,7 @@ def _over_growing_windows(
 
 def at_the_noise(pool: Pool) -> bool:
     """Whether the best set leaves no more than noise."""
-    return is_at_noise(pool.found[leader(pool)])
+    return pool.leaves_noise(leader(pool))
 
 
 def _plant(fitted: Fit) -> tuple[FreeParameter, ...]:

@@ -71,7 +71,7 @@ class Search:
         result = self.pool.found[lead]
         if result.objective < self.expanded[lead] - required(result):
             return lead
-        if is_at_noise(result):
+        if self.pool.leaves_noise(lead):
             return None
         within = RELATED * cost(lead, result)
         rest = [h for h, at in self.pool if h not in self.expanded and cost(h, at) < within]
@@ -110,8 +110,10 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
             continue  # what is larger is proposed from there, if it is needed
         result = pool.try_set(step, start.hypothesis, start.values, start.states, AT_FIRST)
         tried += 1
-        if is_at_noise(result):
-            near = start.hypothesis
+        if is_at_noise(result):  # what a fit that stopped short leaves would last, too
+            pool.go_on(step, start.hypothesis, TO_THE_END, 2)
+            if pool.leaves_noise(start.hypothesis):
+                near = start.hypothesis
     now = leader(pool)
     if not is_at_noise(pool.found[now]) and (now != lead or base == lead):
         # what a fit that stopped short leaves would be taken for more effects

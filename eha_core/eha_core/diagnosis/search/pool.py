@@ -10,7 +10,15 @@ from math import inf
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise
-from eha_core.diagnosis.criteria import EXPANSIONS_IN_ALL, FAR_FROM_NOISE, NEAR_NOISE, TO_THE_END, chance_gain
+from eha_core.diagnosis.criteria import (
+    BLOCK,
+    EXPANSIONS_IN_ALL,
+    FAR_FROM_NOISE,
+    LASTS,
+    NEAR_NOISE,
+    TO_THE_END,
+    chance_gain,
+)
 from eha_core.diagnosis.effect_parameters import free_instants, with_effects
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.result import TraceStep
@@ -210,8 +218,29 @@ class Pool:
         for other, result in self.found.items():
             self.found[other] = in_noise_of(self.problem, before, result)
 
+    def leaves_noise(self, hypothesis: Hypothesis) -> bool:
+        """Whether a set leaves no more than noise, and nothing that lasts in it."""
+        result = self.found[hypothesis]
+        return is_at_noise(result) and lasting(self.problem, result, self.filtered) < LASTS
+
     def __iter__(self) -> Iterator[tuple[Hypothesis, Fit]]:
         return iter(self.found.items())
+
+
+def lasting(problem: Problem, result: Fit, filtered: Collection[str] = ()) -> float:
+    """By how many standard deviations the squared block averages of a residual exceed those of white noise of its size,
+    over the windows in use; not of channels that are `filtered`, whose noise lasts, too."""
+    used, excess, count = problem.used(), 0.0, 0
+    shooting = problem.shooting
+    for name, sampling, residual in zip(shooting.names, shooting.samplings, result.residuals, strict=True):
+        left = residual[used[sampling.window]]
+        blocks = len(left) // BLOCK
+        if blocks == 0 or name in filtered:
+            continue
+        means = left[: blocks * BLOCK].reshape(blocks, BLOCK).mean(axis=1)
+        excess += float(means @ means) * BLOCK / max(1.0, float(np.mean(left**2))) - blocks
+        count += blocks
+    return excess / np.sqrt(2.0 * count) if count else 0.0
 
 
 def is_at_noise(result: Fit) -> bool:
