@@ -115,6 +115,18 @@ def mass_in_step(mass, stiff):
 
 
 @inlined
+def implicit_mass(mass, stiff, drag):
+    """The mass to which a force, taken at the velocity at a step's start, gives the change of `velocity_step`.
+
+    stiff, drag: stiffness times step^2, damping times step.
+    """
+    bulky, thin = mass_in_step(mass, stiff)
+    bulky /= thin
+    drag = max(drag, -bulky)
+    return bulky + drag * (bulky + drag) / (2.0 * bulky + drag)
+
+
+@inlined
 def velocity_step(step_size, position, velocity, driving, resistance, oil_stiffness, mass, spring, stroke):
     """Equation (10) over one step at a held position: the velocity at its end.
 

@@ -8,8 +8,21 @@ also beside a `source` of the same functions. `lanes` takes the same step for ma
 from __future__ import annotations
 
 from eha_core.compiled import compiled, inlined, unowned
-from eha_core.plant.equations import driving_force, external_leakage_flow, hydraulic_force, internal_leakage_flow
-from eha_core.plant.scheme import effective_velocity, friction_force, held_at_the_ends, oil_step, velocity_step
+from eha_core.plant.equations import (
+    driving_force,
+    external_leakage_flow,
+    hydraulic_force,
+    internal_leakage_flow,
+    volumes,
+)
+from eha_core.plant.scheme import (
+    effective_velocity,
+    friction_force,
+    held_at_the_ends,
+    implicit_mass,
+    oil_step,
+    velocity_step,
+)
 from eha_core.plant.state import AT, COLUMN
 from eha_core.plant.vector import (
     ACTUATOR_DISPLACEMENT,
@@ -284,3 +297,28 @@ def advance_driven(state, memory, parameters, active, pressures_a, pressures_b, 
                 write_driven(row, position, velocity, pressure_a, pressure_b, hydraulic, friction, seen)
     state[AT.time], state[AT.position], state[AT.velocity] = time, position, velocity
     state[AT.pressure_a], state[AT.pressure_b] = pressure_a, pressure_b
+
+
+@compiled
+def reaction(state, memory, parameters, active, mass, step_size):
+    """What the actuator does over one step, its pressures held, to a load of `mass` that another simulation moves.
+
+    Returns the force at the velocity at the step's start, the dry friction that opposes motion in addition, and what
+    the mass is to be enlarged by.
+    """
+    memory = unowned(memory)
+    position, velocity = state[AT.position], state[AT.velocity]
+    pressure_a, pressure_b = state[AT.pressure_a], state[AT.pressure_b]
+    area_a, spring = parameters[PISTON_AREA], parameters[SPRING_STIFFNESS]
+    _, damping = schedule(0.0, parameters[DAMPING_COEFFICIENT], state[AT.time], parameters, active)
+    area_b, bulk_a, _, bulk_b, _, _, _, _, _ = chambers_of(
+        parameters[BULK_MODULUS], 0.0, 0.0, position, pressure_a, pressure_b, parameters, active
+    )
+    volume_a, volume_b = volumes(position, area_a, area_b, parameters[ACTUATOR_DISPLACEMENT], parameters[LINE_VOLUME])
+    other, damping, stop_stiffness, dry = force(
+        0.0, damping, 0.0, 0.0, position, velocity, pressure_a, pressure_b, memory, step_size, parameters, active
+    )
+    stiffness = area_a * area_a * bulk_a / volume_a + area_b * area_b * bulk_b / volume_b + spring + stop_stiffness
+    driving = driving_force(hydraulic_force(area_a, area_b, pressure_a, pressure_b), spring, position)
+    enlarged = implicit_mass(mass, step_size * step_size * stiffness, step_size * damping)
+    return driving + other - damping * velocity, dry, enlarged - mass
