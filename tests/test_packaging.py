@@ -58,6 +58,7 @@ def test_what_is_optional_allows_what_is_tested() -> None:
         "files": {"h5py", "pyarrow", "openpyxl", "npTDMS", "asammdf"},
         "page": {"starlette", "uvicorn"},
         "export": {"ziglang"},
+        "mujoco": {"mujoco"},
     }
     assert all(one.specifier.contains(develop[one.name]) for ones in optional.values() for one in ones)
 

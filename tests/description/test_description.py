@@ -66,6 +66,22 @@ def test_without_ros2_control_the_picture_remains() -> None:
     assert robot.find(f"joint[@name='{JOINT}']/limit").get("upper") == "0.25"
 
 
+@pytest.mark.parametrize("hardware", ["joint_state", "none"])
+def test_mujoco_loads_the_description(hardware: str) -> None:
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install mujoco")
+    model = mujoco.MjModel.from_xml_string(ElementTree.tostring(urdf(hardware=hardware), "unicode"))
+    data, plant = mujoco.MjData(model), nominal_values()
+    joint = model.joint(JOINT)
+    assert (model.njnt, joint.type[0]) == (1, mujoco.mjtJoint.mjJNT_SLIDE)
+    assert joint.axis.tolist() == [1.0, 0.0, 0.0]
+    assert joint.range.tolist() == [-plant["actuator_displacement"], plant["actuator_displacement"]]
+    for position in joint.range:  # the load meets the cylinder nowhere in the stroke
+        data.qpos[0] = position
+        mujoco.mj_forward(model, data)
+        assert data.ncon == 0
+    assert model.dof_M0[0] == pytest.approx(plant["moving_mass"])
+
+
 def test_the_manager_asks_as_often_as_the_simulator_answers() -> None:
     controllers = yaml.safe_load((ROOT / "config" / "controllers.yaml").read_text())
     simulator = yaml.safe_load((ROOT / "config" / "simulator.yaml").read_text())
