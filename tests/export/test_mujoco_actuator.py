@@ -13,7 +13,7 @@ import pytest
 from exported import FIVE, voltages
 from numpy.typing import NDArray
 
-from eha_core.errors import EhaError
+from eha_core.errors import EhaError, ParameterError
 from eha_core.export import ExportedModel
 from eha_core.plant import PAPER, Plant
 
@@ -167,6 +167,22 @@ def test_the_joint_follows_the_plant_to_the_end_of_the_stroke_and_back() -> None
     assert actuator.state.pressure_b == pytest.approx(expected.pressure_b[-1], rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("given", "middle", "range_of_joint"),
+    [
+        ("", 0.0, [-0.1, 0.1]),
+        (' range="-0.2 0.3"', 0.0, [-0.1, 0.1]),
+        (' range="-0.02 0.03"', 0.0, [-0.02, 0.03]),
+        (' range="0 0.15"', 0.1, [0.0, 0.15]),
+    ],
+)
+def test_the_joint_ends_with_the_stroke_or_before(given: str, middle: float, range_of_joint: list[float]) -> None:
+    limits = f'limited="true"{given}' if given else ""
+    model, data = loaded(changed(('limited="true" range="-0.1 0.1"/>\n      <geom', f"{limits}/>\n      <geom")))
+    EhaActuator(model, data, "valve", middle=middle)
+    assert model.jnt_limited[0] and model.jnt_range[0].tolist() == pytest.approx(range_of_joint)
+
+
 def test_after_a_reset_it_begins_anew() -> None:
     actuator = EhaActuator(*loaded(MODEL), "valve", plant_of(FIVE))
     first = positions(actuator, COMMANDS[:1000])
@@ -182,8 +198,6 @@ def test_after_a_reset_it_begins_anew() -> None:
         ([('"slide"', '"hinge"')], "actuator valve: it does not act on a slide joint"),
         ([("ctrllimited", 'gear="2" ctrllimited')], "actuator valve: gear = 2"),
         ([("ctrllimited", 'dyntype="filter" dynprm="1" ctrllimited')], "actuator valve: it has dynamics of its own"),
-        ([('range="-0.1 0.1"/>\n      <geom', 'range="-0.1 0.2"/>\n      <geom')], "joint piston: .* -0.1 to 0.1 m"),
-        ([('limited="true" range="-0.1 0.1"/>\n      <geom', "/>\n      <geom")], "joint piston: its range must lie"),
         ([('"Euler"', '"RK4"')], "integrator RK4"),
         (
             [('gravity="0 0 0"/>', 'gravity="0 0 0"><flag frictionloss="disable"/></option>')],
@@ -196,6 +210,11 @@ def test_a_model_that_it_cannot_act_on_is_refused_in_a_line(pairs: list[tuple[st
     with pytest.raises(EhaError, match=complaint) as caught:
         EhaActuator(*loaded(changed(*pairs)), "valve")
     assert "\n" not in str(caught.value)
+
+
+def test_a_load_that_starts_beyond_the_stroke_is_refused() -> None:
+    with pytest.raises(ParameterError, match="initial_position = -0.3 m is outside the stroke"):
+        EhaActuator(*loaded(MODEL), "valve", middle=0.3)
 
 
 def test_the_example_prints_how_far_it_deviates() -> None:

@@ -20,7 +20,7 @@ NEEDED = ("constraint", "frictionloss", "limit", "actuation")
 """Flags of a model, without which force, dry friction or the ends of the stroke do not act."""
 
 ROUNDING = 1e-9
-"""Of lengths [m], and of the plant's steps in a timestep, relative to it."""
+"""Of the plant's steps in a timestep, relative to it."""
 
 
 class EhaActuator:
@@ -28,9 +28,9 @@ class EhaActuator:
 
     The actuator is one of the model's own, on a slide joint and without dynamics. Its control becomes the valve's
     voltage [V], its force the plant's [N]; its gain and limits of force are overwritten. The moving mass is that of the
-    model's bodies: the plant's `moving_mass` is not used. The ends of the stroke are the joint's range, made as hard as
-    MuJoCo allows. Dry friction becomes the joint's `frictionloss`; what the model gives of that and of `armature`
-    remains in addition.
+    model's bodies: the plant's `moving_mass` is not used. The joint's range ends with the stroke, if not before, and as
+    hard as MuJoCo allows. Dry friction becomes the joint's `frictionloss`; what the model gives of that and of
+    `armature` remains in addition.
 
     Make one for each such joint; it changes the model, which then belongs to this `data` alone.
 
@@ -55,19 +55,17 @@ class EhaActuator:
         self.model, self.data, self.middle = model, data, middle
         self._duration, self._steps = model.opt.timestep, _steps(model.opt.timestep, plant.step_size)
         self.plant = CoupledPlant(plant.values, plant.step_size, composition=plant.composition)
-        self._require_range(joint)
+        self._limit(joint)
         self._prepare(number, joint)
         self.reset()
 
-    def _require_range(self, joint: int) -> None:
-        """The joint must stop within the stroke: beyond it there is no cylinder."""
-        stroke = self.plant.parameters["actuator_displacement"]
-        lower, upper = self.model.jnt_range[joint] - self.middle
-        if not self.model.jnt_limited[joint] or lower < -stroke - ROUNDING or upper > stroke + ROUNDING:
-            raise EhaError(
-                f"joint {self.model.joint(joint).name}: its range must lie within the stroke; give at most "
-                f"{self.middle - stroke:g} to {self.middle + stroke:g} m"
-            )
+    def _limit(self, joint: int) -> None:
+        """End the joint's range where the stroke ends, if not before."""
+        stroke, model = self.plant.parameters["actuator_displacement"], self.model
+        lower, upper = self.middle - stroke, self.middle + stroke
+        given = model.jnt_range[joint] if model.jnt_limited[joint] else (lower, upper)
+        model.jnt_range[joint] = [min(max(end, lower), upper) for end in given]
+        model.jnt_limited[joint] = 1
 
     def _prepare(self, number: int, joint: int) -> None:
         """Make the actuator's force a number that we write, and stops hard; keep views of what a step needs."""
