@@ -145,6 +145,18 @@ def test_two_actuators_of_one_model_each_follow_their_own_plant() -> None:
     assert rms(found[:, 1], Plant({"moving_mass": 11.0}).run(-COMMANDS[:2000]).position) < FOLLOWED
 
 
+def test_a_hanging_load_rests_on_the_oil_and_sinks_by_the_leakage() -> None:
+    actuator = EhaActuator(
+        *loaded(changed(('"1 0 0"', '"0 0 1"'), ('gravity="0 0 0"', 'gravity="0 0 -9.81"'))), "valve"
+    )
+    positions(actuator, np.zeros(5000))
+    of, state = actuator.plant.parameters, actuator.state
+    sinking = of["internal_leakage"] * (state.pressure_a - state.pressure_b) / of["piston_area"]
+    assert actuator.data.qvel[0] == pytest.approx(-sinking, rel=1e-3)
+    carried = state.hydraulic_force - of["spring_stiffness"] * state.position + of["damping_coefficient"] * sinking
+    assert carried == pytest.approx(11.0 * 9.81, rel=1e-5)
+
+
 def test_dry_friction_holds_a_load_at_rest() -> None:
     held = {"coulomb_friction.force": 250.0, "constant_load.force": 200.0}
     actuator = EhaActuator(*loaded(MODEL), "valve", plant_of(held))
