@@ -78,7 +78,7 @@ def rms(found: Array, expected: Array) -> float:
     return float(np.sqrt(np.mean((found - expected) ** 2)))
 
 
-COMMANDS = np.repeat(voltages(2.0), 10)
+COMMANDS = np.repeat(voltages(1.0), 10)
 FOLLOWED = 1e-7
 """m RMS; a tenth of what is promised, so that a missing term of the second order in the step is noticed."""
 

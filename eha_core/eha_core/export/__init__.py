@@ -4,6 +4,8 @@ from the model.
 FMU and C library are compiled from the LLVM text of the same kernel that `eha_core.plant.Plant` runs. The files in `c/`
 hold what `Plant` does around it: parameters, effects that begin and cease to act, the start at rest; FMI's functions;
 and the controller's law.
+
+`mujoco_actuator`, which is imported by its own name, is the plant in Python as an actuator of a MuJoCo model.
 """
 
 from eha_core.export.controller import write_controller
