@@ -47,7 +47,7 @@ def test_the_kind_is_claimed_and_not_the_law():
     said = summary(decision(("coulomb_friction",), ("stribeck_friction",)), (friction,), None, Explained(1.0, {}, True))
     assert said.startswith("Physics is missing: dry friction; most simply, the seals rub: 1.9 kN.")
     assert "Its law cannot be identified from this recording: " in said
-    assert "coulomb_friction and stribeck_friction explain it alike" in said
+    assert "coulomb_friction and stribeck_friction explain it equally well" in said
 
 
 def test_a_name_that_is_less_than_sure_has_its_probability():
@@ -62,7 +62,7 @@ def test_an_event_is_told_before_its_cause_and_a_common_scale_after_the_verdict(
     friction = NamedEffect("coulomb_friction", "force", "", {}, 100.0, "the seals rub: 1.9 kN")
     alone = replace(decision(("coulomb_friction",)), verdict="missing_physics")
     said = summary(alone, (friction,), None, Explained(1.0, {}, True), (3.0, 5.1))
-    assert said.startswith("The nominal model is at the noise but for 3.00 s to 5.10 s: an event, or a fault of the")
+    assert said.startswith("The nominal model fails only from 3.00 s to 5.10 s: an event on the rig, or a fault of")
     assert said.endswith("Physics is missing: the seals rub: 1.9 kN.")
     nothing = Decision("parameters", Entry(NOTHING, FIT, 0.0), (), None, None)
     clock = CommonScale("clock", 2.01, 0.01, ("moving_mass", "valve_gain", "damping_coefficient"))
@@ -74,6 +74,6 @@ def test_what_is_told_from_one_side_and_what_nothing_explains_is_said():
     friction = NamedEffect("coulomb_friction", "force", "", {}, 100.0, "the seals rub: at least 17 kN")
     alone = replace(decision(("coulomb_friction",)), verdict="missing_physics")
     vague = Explained(1.0, {"position": 1.0}, False, (), True)
-    assert summary(alone, (friction,), None, vague).endswith("how strong all of this is, the recording does not tell.")
+    assert summary(alone, (friction,), None, vague).endswith("does not determine how strong the effects are.")
     given = Decision("unknown_physics", Entry(NOTHING, FIT, 0.0), (), None, None, as_given=True)
     assert "better than the nominal one" in summary(given, (), None, vague)

@@ -1,6 +1,6 @@
-"""Stage 4d, attribute: the sites by the share of what is unexplained that their best hypothesis takes away.
+"""Stage 4d, attribute: the sites, by the share of the unexplained chi^2 that their best hypothesis removes.
 
-Where and when the nominal equations fail is `locate`'s; which site it is follows from the names that were tried.
+`locate` finds where and when the nominal equations fail; the site follows from the hypotheses that were tried.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ def attribute(
     comparison: ModelComparison,
     recording: int = 1,
 ) -> tuple[Location, ...]:
-    """The sites by the share of the unexplained chi^2 that their best hypothesis takes away, the largest first.
+    """The sites by the share of the unexplained chi^2 that their best hypothesis removes, the largest first.
 
-    Where in state space and when is reported of one `recording`, counted from one.
+    The states and times of the failure are those of one `recording`, counted from one.
     """
     shooting = calibration.shooting
     unexplained = max(nominal.objective - nominal.count, 1.0)

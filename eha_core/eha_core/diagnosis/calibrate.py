@@ -1,5 +1,4 @@
-"""Stage 2, calibrate: the nominal equations with their parameters free, so that a wrong value is not taken for
-physics."""
+"""Stage 2, calibrate: fit the parameters of the nominal equations, so that a wrong value is not taken for physics."""
 
 from __future__ import annotations
 
@@ -22,33 +21,33 @@ from eha_core.identification.together import cut_together, fit_alone, recording_
 from eha_core.nominal import NominalModel
 
 STEPS = (2e-4, 1e-4, 5e-5)
-"""s; the steps at which hypotheses may be compared. The oil's frequency is right to fourth order at the first; large
-flows or a fast valve can need the others."""
+"""s; the step sizes at which hypotheses may be compared. At the first the oil's natural frequency is right to fourth
+order; large flows or a fast valve can need the others."""
 
 UNNOTICED = 20.0
-"""Chi^2 by which the response may change as its step is halved: less than any effect must gain to be named. Of a model
-that is far off, the share WORTH of what it leaves may be more."""
+"""Chi^2 by which the response may change when the step size is halved: less than any effect must gain to be named. For
+a model far from the noise, the share WORTH of its excess chi^2 where that is more."""
 
 SAMPLES_A_WINDOW = 45.0
-"""Samples of all channels that the shortest window holds: eleven for each state that is free at its start, or these
-explain whatever is there (assumed)."""
+"""Samples of all channels in the shortest window: eleven for each free initial state. With fewer, the initial states
+fit anything (assumed)."""
 
 NOWHERE_ELSE = 0.8
 AT_ALL = 50.0
-"""Where this share of what the nominal equations leave unexplained, and so much chi^2, sits in the last window, that is
-taken for the recording's end: nodes go down one after the other there, and what is still recorded no longer acts. Nor
-could a law for it be judged on anything that it was not fitted to."""
+"""A last window with at least this share of the nominal equations' excess chi^2, and this much chi^2, is removed: nodes
+shut down one after the other there, and commands still recorded no longer act. Nor could a law of that window be tested
+on held-out data."""
 
 
 BEHIND_A_FILTER = 16.0
-"""Times the noise in a channel's differences that it may have been before a filter: as for one of first order whose
-corner is a 50th of the sampling rate. Of what a wrong model leaves there may be more."""
+"""Largest ratio of the noise before a low-pass filter to the noise in the channel's differences: that of a first-order
+filter whose corner is a 50th of the sampling rate. The residual of a wrong model may be larger."""
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """The windows, the nominal model as given (only starts fitted), and the nominal equations at their best; `shorter`
-    windows of the same recordings, as `short_windows.SHORT` has them."""
+    """The windows, the nominal model as given (only initial states fitted) and the recalibrated one; `shorter` windows
+    of the same recordings, of the lengths `short_windows.SHORT`."""
 
     shooting: Shooting
     problem: Problem
@@ -63,9 +62,9 @@ def calibrate(
     step_size: float = STEPS[0],
     begun: Fit | None = None,
 ) -> Calibration:
-    """Fit the nominal equations; correct each channel's noise by what the residual's roughness shows; fit again.
+    """Fit the nominal equations, correct each channel's noise level by the residual's roughness, and fit again.
 
-    `begun`: a fit at another step, to begin with in place of the nominal values.
+    `begun`: a fit at another step size, the initial guess in place of the nominal values.
     """
     nominal = model.values
     shooting = cut_together(observations, nominal, step_size, per_recording=model.per_recording)
@@ -89,7 +88,7 @@ def calibrate(
 
 
 def step_needed(observations: Sequence[Observation], shooting: Shooting, model: Fit) -> float:
-    """The longest of STEPS [s] at which a model's response is its own, with the windows and the noise of `shooting`."""
+    """The longest of STEPS [s] with a negligible error of the response, with the windows and noise of `shooting`."""
     noticed = max(UNNOTICED, WORTH * (model.objective - model.count))
     for step_size in STEPS[:-1]:
         if step_error(observations, shooting, model, step_size) < noticed:
@@ -98,7 +97,7 @@ def step_needed(observations: Sequence[Observation], shooting: Shooting, model: 
 
 
 def step_error(observations: Sequence[Observation], shooting: Shooting, model: Fit, step_size: float) -> float:
-    """Chi^2 between a model's response at a step and at half of it, at the samples that both have."""
+    """Chi^2 between a model's responses at a step size and at half of it, at their common samples."""
     noise = [sampling.noise for sampling in shooting.samplings]
     coarse, fine = (
         with_noise(cut_together(observations, model.values, size, per_recording=shooting.per_recording), noise)
@@ -114,7 +113,7 @@ def step_error(observations: Sequence[Observation], shooting: Shooting, model: F
 
 
 def at_step(observations: Sequence[Observation], calibration: Calibration, step_size: float) -> Calibration:
-    """A calibration gone on with at another step, in the noise that it has."""
+    """A calibration continued at another step size, with its noise levels."""
     before, given, fitted = calibration.shooting, calibration.nominal, calibration.fitted
     cut = cut_together(observations, given.values, step_size, per_recording=before.per_recording)
     shooting = with_noise(cut, [sampling.noise for sampling in before.samplings])
@@ -138,18 +137,18 @@ def calibrate_but_for_the_ends(
 
 
 def _but_for_its_end(observation: Observation, calibration: Calibration, number: int) -> Observation:
-    """A recording without its last window, if what the model leaves of it sits there."""
+    """A recording without its last window, if the model's excess chi^2 is concentrated there."""
     shooting = recording_alone(calibration.shooting, number)
     share = _share_of_last_window(shooting, fit_alone(calibration.shooting, calibration.fitted, number))
     last = float(shooting.edges[-1] - shooting.edges[-2]) * shooting.step_size
     if share < NOWHERE_ELSE or observation.duration < SHORTEST + last:
         return observation
-    why = f"{100 * share:.0f} % of what the nominal equations leave unexplained sits there, as where nodes go down"
+    why = f"{100 * share:.0f} % of the nominal model's unexplained error is there, as when nodes shut down"
     return without_end(observation, last, why)
 
 
 def _share_of_last_window(shooting: Shooting, fitted: Fit) -> float:
-    """Share of what the fit leaves beyond noise that sits in the last window; 0 where that is next to nothing."""
+    """The last window's share of the fit's excess chi^2; 0 where that is negligible."""
     if shooting.windows < 3:
         return 0.0
     before = at_the_end = 0.0
@@ -171,11 +170,11 @@ def filtered_channels(observations: Sequence[Observation]) -> frozenset[str]:
 
 
 def corrected_noise(shooting: Shooting, result: Fit, filtered: Collection[str] = ()) -> list[float]:
-    """The noise that the residual's second differences show, within a factor two of what the channel itself showed.
+    """Each channel's noise level from the residual's second differences, within a factor of two of the channel's own.
 
-    Of a channel behind a filter differences show the least part of the noise, and the residual's size is not all of it
-    either: as many samples tell less. There it is what the noise was before the filter, up to BEHIND_A_FILTER times
-    what the differences show.
+    Behind a low-pass filter the differences show little of the noise, and neighbouring samples are correlated, so that
+    as many of them carry less information. There it is the noise before the filter, up to BEHIND_A_FILTER times that
+    of the differences.
     """
     found = []
     for name, sampling, residual in zip(shooting.names, shooting.samplings, result.residuals, strict=True):
@@ -189,13 +188,13 @@ def corrected_noise(shooting: Shooting, result: Fit, filtered: Collection[str] =
 
 
 def identifiable(result: Fit, name: str) -> bool:
-    """Whether the recording says more about a parameter than its nominal value did."""
+    """Whether the fit's standard deviation of a parameter is below half that of its prior."""
     place = [parameter.name for parameter in result.free].index(name)
     return bool(np.sqrt(max(result.covariance[place, place], 0.0)) < 0.5 * result.free[place].prior_deviation)
 
 
 def has_changed(result: Fit, nominal: Mapping[str, float], name: str) -> bool:
-    """Whether a fitted parameter has left its nominal value, noticeably and relevantly."""
+    """Whether a fitted parameter differs from its nominal value significantly and by a relevant amount."""
     place = [parameter.name for parameter in result.free].index(name)
     parameter = result.free[place]
     given = nominal[base_name(name)]

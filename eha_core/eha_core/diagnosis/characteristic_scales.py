@@ -1,4 +1,4 @@
-"""What the recording's motion is like, computed once: the scales of the catalogue's initial guesses."""
+"""Characteristic scales of a recording's motion, computed once, for the catalogue's initial guesses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from eha_core.identification.shooting import Shooting
 from eha_core.plant import COLUMNS
 
 QUANTITIES = ("position", "time", "speed", "force", "spool", "pressure", "supply_flow", "leakage_flow")
-"""What an initial guess can be relative to."""
+"""The quantities that an initial guess can be relative to."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Scales:
 
 
 def characteristic_scales(observations: Sequence[Observation], shooting: Shooting, calibrated: Fit) -> Scales:
-    """Simulate the calibrated model once more, in full, and read the scales off it and off the measured positions."""
+    """The scales of the measured positions and of one full simulation of the calibrated model."""
     positions = [
         channel for observation in observations for channel in observation.measured if channel.name == "position"
     ]

@@ -1,9 +1,9 @@
-"""Whether the parameters differ from the nominal ones by one factor, as if one thing that they share were off.
+"""Whether one common factor, such as a wrong clock, explains why several parameters differ from their nominal values.
 
-The plant's equations keep their form where time, the position or both pressures are counted in another unit, and where
-the piston has another area; each parameter is then another by a power of the factor that follows from its unit. The
-piston's area and the lines' volume are held in every fit, so that the powers below are those that are left for the
-others. So a recording of another clock reads as many wrong values, and is reported as one.
+The plant's equations keep their form if time, the position or both pressures are measured in another unit, or if the
+piston has another area: each parameter is then scaled by a power of the factor that follows from its unit. The piston's
+area and the lines' volume are held in every fit; the powers below allow for that. So a wrong clock changes many values
+and is reported as one error.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ POWERS: Mapping[str, Mapping[str, float]] = {
         "spring_stiffness": -1.0,
     },
 }  # fmt: skip
-"""The power of the factor by which each parameter is another: recorded seconds, metres or pascals over true ones, and
+"""The exponent of the factor in each parameter; the factor is recorded seconds, metres or pascals over true ones, or
 the true piston area over the nominal one. From the equations: A_p (P1 - P2) = M_p x'' + B_s x' + K_s x, Q = K I
 (P_s - P1)^(1/2), P1' V / beta = Q - A_p x' - K_Lin (P1 - P2), L_c I' = V - R_c I, V = A_p (x_s + x)."""
 
 FEWEST = 3
-"""Parameters that must have changed: two of any do so by powers of some factor."""
+"""Parameters that must have changed: any two changes fit the powers of some factor."""
 SURE = 0.999
-"""Probability with which a factor that they share would leave no more beside it."""
+"""Level of the chi-squared test of what the common factor does not explain."""
 CLOSE = RELEVANT
-"""Share of a parameter by which it may miss: the volumes that are held are no power of the factor."""
+"""Relative deviation allowed of each parameter: the volumes that are held do not scale with the factor."""
 
 
 def common_scale(final: Fit, changed: Sequence[FittedParameter]) -> CommonScale | None:
@@ -79,7 +79,7 @@ def common_scale(final: Fit, changed: Sequence[FittedParameter]) -> CommonScale 
 
 
 def _along(moved: Array, direction: Array, spread: Array) -> tuple[float, float, float]:
-    """The factor's logarithm along a direction with its deviation, and the chi^2 that it leaves."""
+    """The factor's logarithm along a direction, its standard deviation, and the chi^2 that it does not explain."""
     weighted = np.linalg.solve(spread, direction)
     deviation = 1.0 / np.sqrt(max(float(direction @ weighted), 1e-300))
     factor = float(moved @ weighted) * deviation**2

@@ -1,4 +1,4 @@
-"""Stages 5 and 6, model and show: the evidence turned into the frozen result that the presenters know."""
+"""Stages 5 and 6, model and show: the frozen result, assembled from the evidence, that every report presents."""
 
 from __future__ import annotations
 
@@ -50,8 +50,7 @@ from eha_core.plausibility.finding import rescaled, topics_line
 from eha_core.recording import Recording
 
 FINAL_STEP = 1e-4
-"""s; the winner is fitted once more at this step, so that its parameters and intervals owe nothing to the coarser
-one."""
+"""s; step size of the winner's final fit, so that its values and intervals do not depend on the search's larger one."""
 
 
 def conclude(
@@ -61,9 +60,9 @@ def conclude(
     tests: Sequence[Recording] = (),
     limits: Limits | None = None,
 ) -> Diagnosis:
-    """Polish the winner, measure what it is worth on data it was not fitted to, and put everything into words.
+    """Refit the winner at the final step, score it on held-out data, and assemble the result.
 
-    `limits`: what the next experiment has to stay within, by default what the model bears.
+    `limits`: those of the next experiment; by default the model's own.
     """
     progress("polishing the winner and its intervals")
     unknown = _unknown(evidence)
@@ -94,7 +93,7 @@ def _findings(
     recording: Recording, evidence: Evidence, final: Fit, unknown: UnknownLaw | None, left: Explained,
     limits: Limits | None,
 ) -> Diagnosis:  # fmt: skip
-    """What is missing, where, and what speaks for it, of the recording that is drawn."""
+    """What is missing, where, and the evidence for it, in the recording that the report shows."""
     decision, comparison, composition = evidence.decision, evidence.comparison, evidence.observation.composition
     winner, before = decision.winner, evidence.calibration.nominal
     happened = _event(evidence, decision)
@@ -137,21 +136,21 @@ def _findings(
 def _named(
     evidence: Evidence, winner: Entry, final: Fit, sets: tuple[ProbableSet, ...], order: list[str]
 ) -> tuple[NamedEffect, ...]:
-    """The effects that were named, in this order where there is one."""
+    """The named effects, in `order` where it is not empty."""
     ends = one_sided(evidence, final, winner)
     effects = named_effects(winner, final, evidence.observation.composition, sets, ends)
     return tuple(sorted(effects, key=lambda effect: order.index(effect.id))) if order else effects
 
 
 def _health(evidence: Evidence) -> tuple[tuple[int, Fault], ...]:
-    """What is wrong with each recording, by its number."""
+    """The faults of each recording, with its number."""
     return tuple(
         (number, fault) for number, observation in enumerate(evidence.observations, 1) for fault in observation.health
     )
 
 
 def _event(evidence: Evidence, decision: Decision) -> tuple[float, float] | None:
-    """When alone the nominal model fails in the recording that is drawn; nothing where no physics is missing."""
+    """The only interval [s] in which the nominal model fails in the recording shown; None without missing physics."""
     if decision.verdict in ("consistent", "parameters"):
         return None
     shooting = evidence.calibration.shooting
@@ -164,14 +163,14 @@ def polish(evidence: Evidence, winner: Entry) -> Fit:
     searched = evidence.calibration.shooting
     step_size = min(FINAL_STEP, searched.step_size)
     shooting = cut_together(evidence.observations, evidence.nominal, step_size, per_recording=searched.per_recording)
-    # under the winner the residual is noise at last, so its roughness is measured best there
+    # the winner's residual is closest to pure noise, so its roughness gives the best noise level
     shooting = with_noise(
         shooting, corrected_noise(evidence.calibration.shooting, winner.fit, filtered_channels(evidence.observations))
     )
     problem = Problem(shooting, np.arange(shooting.windows))
     final = fit(problem, winner.fit.values, winner.fit.free, winner.fit.states, iterations=4)
     if final.data > FAR_FROM_NOISE * final.count > winner.fit.data:
-        # the finer step met a worse valley than the search had left: go on to its end
+        # the smaller step ended in a worse minimum than the search's: iterate until it converges
         final = fit(problem, final.values, final.free, final.states, iterations=30)
     return with_residual(problem, final)
 
@@ -179,7 +178,7 @@ def polish(evidence: Evidence, winner: Entry) -> Fit:
 def _channel_fits(
     evidence: Evidence, before: Fit, calibrated: Fit, decision: Decision
 ) -> tuple[dict[str, ChannelFit], dict[str, ChannelFit]]:
-    """RMSE of every channel before, calibrated and after, on the windows fitted to and on those held out."""
+    """RMSE of each channel of the nominal, recalibrated and augmented models, in training and in held-out windows."""
     shooting = evidence.calibration.shooting
     judged_nominal = decision.judged_nominal or judge(shooting, calibrated)
     judged_winner = decision.judged_winner or judged_nominal
@@ -197,7 +196,7 @@ def _channel_fits(
 
 
 def zeros_to_correct(effects: Iterable[NamedEffect], recording: Recording) -> Iterator[str]:
-    """What a topics file says where a sensor's zero is named: counted from elsewhere, it reads as one displaced."""
+    """The topics-file line for each named zero offset of a sensor: a channel with another origin looks the same."""
     declared = {effect.id: dict(effect.zeros) for effect in every_effect()}
     for effect in effects:
         if effect.active is not None:
@@ -207,14 +206,14 @@ def zeros_to_correct(effects: Iterable[NamedEffect], recording: Recording) -> It
                 if shift and channel in recording.channels}  # fmt: skip
         if read:
             what = " and ".join(read)
-            yield f"if {what} only counts from elsewhere, a topics file (--topics) corrects it: `{topics_line(read)}`"
+            yield f"if only the zero of {what} is off, a topics file (--topics) corrects it: `{topics_line(read)}`"
 
 
 def _remarks(evidence: Evidence) -> tuple[str, ...]:
-    """What was put right in each recording, of several each with its path; and a search that was cut short."""
+    """Corrections made to each recording, of several with its path; and a search that was cut short."""
     what = []
     if evidence.observation.composition.cylinder.motion == "rad":
-        what.append("the actuator turns: for m, m/s and N of the channels read rad, rad/s and N m")
+        what.append("the actuator is rotary: read rad, rad/s and N m in place of the channels' m, m/s and N")
     if evidence.comparison.cut_short:
         what.append("the search for sets of effects ended at its limit; another set may explain more")
     if len(evidence.observations) == 1:
@@ -226,7 +225,7 @@ def _remarks(evidence: Evidence) -> tuple[str, ...]:
 
 
 def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, ...]:
-    """The named effect's site first: where the name is certain, so is the site, and when it acts."""
+    """The named effects' sites first, each with its effect's active interval: a certain name makes both certain."""
     sites = {effect.site for effect in winner.effects}
     always = {member.effect.site for member in winner.hypothesis.members if not member.limited}
     limited = (member for member in winner.hypothesis.limited if member.effect.site not in always)
@@ -238,7 +237,7 @@ def _ordered(location: tuple[Location, ...], winner: Entry) -> tuple[Location, .
 
 
 def _unknown(evidence: Evidence) -> UnknownLaw | None:
-    """The law that no name fits, if there is one that explains more than it leaves."""
+    """The recovered law of an unknown effect; None where its R^2 is below LEAST_OF_A_LAW."""
     if evidence.decision.verdict != "unknown_physics":
         return None
     law = _best_law(evidence)
@@ -246,13 +245,13 @@ def _unknown(evidence: Evidence) -> UnknownLaw | None:
 
 
 def _best_law(evidence: Evidence) -> UnknownLaw | None:
-    """The law as the equations' residuals hold it, or as the simulated curve where that explains more.
+    """The law regressed on the equation residuals, or the simulated curve where that explains more.
 
-    The residuals tell the site; a curve of another site only compensates for what it does not describe.
+    The residuals identify the site; a curve at another site only compensates for the law.
     """
     law, curve = weak_law(evidence.equation_residuals), evidence.recovery
     if curve is not None and curve.named:
-        law = None  # the residuals lack what is named, too
+        law = None  # the equation residuals also contain the named effects
     if curve is not None and (law is None or (curve.effect.site == law.site and curve.share > law.r_squared)):
         x, y = np.array(curve.knots, dtype=np.float64).reshape(-1, 2).T
         over, _, times = curve.variable.partition(", times ")
@@ -265,7 +264,7 @@ def _best_law(evidence: Evidence) -> UnknownLaw | None:
 
 
 def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> Decision:
-    """The decision, on the nominal equations where its curve is not the law that was found."""
+    """The decision, with the recalibrated model as winner where its curve is not the law that was found."""
     decision, curve = evidence.decision, evidence.recovery
     if decision.verdict != "unknown_physics" or curve is None:
         return decision
@@ -275,14 +274,14 @@ def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> De
 
 
 def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
-    """The law's site first, whatever effects of other sites could make up for."""
+    """The law's site first, however well effects of other sites could compensate for the law."""
     where, when = (location[0].where, location[0].when) if location else ("all over the states that were visited", ())
     others = (place for place in location if place.site != law.site)
     return (Location(law.site, law.r_squared, where, when, law.function_of), *others)
 
 
 def _experiment(evidence: Evidence, decision: Decision, limits: Limits | None) -> Experiment:
-    """The test that would tell the rivals apart; of a source that no voltage drives, why there is none."""
+    """The test that would distinguish the rivals; for a source that no voltage drives, why there is none."""
     source = evidence.observation.composition.source
     if source.valve != "coil":
         names = [entry.ids for entry in contenders(decision.winner, evidence.comparison)]

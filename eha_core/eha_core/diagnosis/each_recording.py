@@ -1,4 +1,4 @@
-"""What the joint model says of every recording: of those that it was fitted to, and of those that it never saw."""
+"""How well the joint model fits each training recording, and how well it predicts each test recording."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from eha_core.recording import Recording
 
 
 def fitted_recordings(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]) -> tuple[RecordingFit, ...]:
-    """Every recording's channels on its held-out windows, and the values that are its own; none of a single one."""
+    """Each recording's fit on its held-out windows and its own values; empty for a single recording."""
     observations, marked = evidence.observations, evidence.calibration.shooting.per_recording
     if len(observations) == 1:
         return ()
@@ -40,8 +40,8 @@ def of_recording(channels: Mapping[str, ChannelFit], number: int) -> Mapping[str
 def predicted_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recording]) -> tuple[PredictedRecording, ...]:
     """How well the three models predict recordings that nothing was fitted to.
 
-    What has a value of its own in each recording is not known of these: a nominal parameter has its nominal value
-    there, an effect's the mean over the recordings fitted to.
+    Values that differ between recordings are not known of these: a nominal parameter keeps its nominal value, an
+    effect's parameter takes the mean over the training recordings.
 
     Raises RecordingError where a recording cannot be used.
     """
@@ -62,7 +62,7 @@ def predicted_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recordi
 
 
 def _of_another(evidence: Evidence, model: Fit) -> Mapping[str, float]:
-    """A fitted model's values in a recording that it was not fitted to."""
+    """A fitted model's values for a recording that it was not fitted to."""
     shooting = evidence.calibration.shooting
     count = len(shooting.first_windows)
     values = dict(model.values)

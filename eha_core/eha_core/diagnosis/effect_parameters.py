@@ -1,4 +1,4 @@
-"""The parameters of effects that a fit may move, and the instants between which they act."""
+"""The free parameters of effects, and the ends of the intervals in which they act."""
 
 from __future__ import annotations
 
@@ -12,22 +12,23 @@ from eha_core.identification.per_recording import base_name
 from eha_core.parameters import catalogue
 
 EFFECT_PRIOR = 30.0
-"""An effect's parameter may move by this many times its starting size, or by e^3 where it moves by factors."""
+"""Prior standard deviation of an effect's parameter, in units of its initial size; 3 in a logarithmic one's
+logarithm."""
 
 
 KNOT_PRIOR = 3.0
-"""Standard deviation of a knot, in units of the largest one that a fit begins with."""
+"""Prior standard deviation of a knot, in units of the largest initial knot."""
 
 MOST_ABOVE = 3.0
-"""Share by which friction at rest may exceed that in motion. Seals show up to twice as much (assumed); without a bound
-friction that vanishes in motion is confounded with Coulomb's and damping that grows with the speed."""
+"""Share by which static friction may exceed kinetic friction. Seals show up to twice as much (assumed); without a
+bound, friction that vanishes in motion is confounded with Coulomb friction and damping that grows with the speed."""
 
 SHORTEST_INSTANT = 0.01
-"""s; over this much an instant is moved to see what that changes."""
+"""s; smallest finite difference of an instant."""
 
 
 def free_effect_parameters(effect: Effect, start: Mapping[str, float]) -> tuple[FreeParameter, ...]:
-    """An effect's parameters, free about `start` (full names)."""
+    """An effect's free parameters, with their priors about `start` (full names)."""
     free = []
     if not effect.named:
         return _free_knots(effect, start)
@@ -47,7 +48,7 @@ def free_effect_parameters(effect: Effect, start: Mapping[str, float]) -> tuple[
 
 
 def _free_knots(effect: Effect, start: Mapping[str, float]) -> tuple[FreeParameter, ...]:
-    """The knots of a curve, free about `start` in units of the largest of them."""
+    """The free knots of a curve, with their priors about `start`, in units of the largest of them."""
     rows = {f"{effect.id}.{row.name}": row for row in effect.parameters if row.switches}
     scale = max(abs(start[name]) for name in rows) or 1.0
     return tuple(
@@ -58,18 +59,18 @@ def _free_knots(effect: Effect, start: Mapping[str, float]) -> tuple[FreeParamet
 def with_effects(
     free: Sequence[FreeParameter], effects: Sequence[Effect], values: Mapping[str, float]
 ) -> tuple[FreeParameter, ...]:
-    """The free parameters with those of more effects, which are free about where `values` has them."""
+    """The free parameters with those of more effects, whose priors are about `values`."""
     extra = [parameter for effect in effects for parameter in free_effect_parameters(effect, values)]
     names = {parameter.name for parameter in extra}
     return (*(parameter for parameter in free if parameter.name not in names), *extra)
 
 
 SPAN_SCALE = 0.3
-"""s; the coordinate's unit of an instant from which, or until which, an effect acts."""
+"""s; unit of the coordinate of an active interval's begin or end."""
 
 
 def free_instants(span: Mapping[str, float], bounds: Sequence[tuple[float, float]]) -> tuple[FreeParameter, ...]:
-    """The instants between which an effect acts, free about where they are taken to be, within bounds [s]."""
+    """The free begin and end of an active interval, with priors about `span` [s], within `bounds` [s]."""
     resolution = SHORTEST_INSTANT / SPAN_SCALE
     return tuple(
         FreeParameter(name, at, False, SPAN_SCALE, EFFECT_PRIOR, *within, resolution)
@@ -78,16 +79,16 @@ def free_instants(span: Mapping[str, float], bounds: Sequence[tuple[float, float
 
 
 def parameters_used(result: Fit) -> int:
-    """How many parameters a fit makes use of: a shape of an effect's that is next to nothing is none.
+    """How many parameters of a fit count: an effect's shape parameter near its neutral value does not.
 
-    A deadband with sharp edges has no rounding to pay for.
+    A dead band with sharp edges is not charged for its rounding.
     """
     return sum(not _is_no_shape(result, parameter.name) for parameter in result.free)
 
 
 def _is_no_shape(result: Fit, name: str) -> bool:
     if "." not in name:
-        return False  # the plant's own: of a source's own parameters the catalogue has no row
+        return False  # a parameter of the plant; those of a source have no row in the catalogue
     row = catalogue()[base_name(name)]
     may_be_nothing = not row.switches and row.lower == row.nominal
     return may_be_nothing and result.values[name] - row.lower < NEXT_TO_NOTHING * abs(row.typical)

@@ -1,9 +1,9 @@
-"""Whether the nominal model fails over one span only, and is at the noise at all other times.
+"""Whether the nominal model fails in one interval only, and is at the noise level at all other times.
 
-What is missing from a model is missing whenever the piston moves as it did before. What happens once is an event on the
-rig, as a load that touches or a valve that is opened, or a fault of the recording; a law for it would be of that span
-alone. Where a channel's noise is known too large, as behind a filter, a model may fail at all times and yet be at the
-noise; what was found then explains more at other times, too.
+Missing physics acts whenever the same motion recurs. What happens once is an event on the rig, such as contact with a
+load or the opening of a valve, or a fault of the recording; a law fitted to it would hold in that interval alone. Where
+a channel's noise level is too high, as behind a filter, a wrong model may stay at the noise throughout; the effects
+found then improve the fit at other times, too.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from eha_core.identification.fit import Fit
 from eha_core.identification.shooting import Shooting
 
 FEWEST = 6
-"""Windows of a recording from which on one of them can be an exception."""
+"""Windows that a recording needs for one of them to be an exception."""
 MOST = 0.34
-"""Share of the windows that an event takes at most; of more it is not sure which is the exception (assumed)."""
+"""Largest share of the windows that an event may take; above it, it is unclear which is the exception (assumed)."""
 LOUD = 2.0
-"""Chi^2 a sample of a window that the nominal model fails in: of a window's hundreds of samples noise leaves one, give
-or take a tenth. Windows between this and UNFITTED may belong to the event at its edges."""
+"""Chi^2 per sample of a window above which the nominal model fails in it: noise gives 1.0 +- 0.1 over a window's
+hundreds of samples. Windows between this and UNFITTED may belong to the event at its edges."""
 
 
 def event(shooting: Shooting, nominal: Fit, winner: Fit) -> tuple[float, float] | None:
-    """From when until when [s] the nominal model fails, if in all other windows of the recording it is at the noise and
-    what was found explains no more."""
+    """The interval [s] in which the nominal model fails; None unless it is at the noise in all other windows and the
+    effects found do not improve the fit there."""
     if shooting.windows < FEWEST:
         return None
     left, gained = np.zeros(shooting.windows), np.zeros(shooting.windows)

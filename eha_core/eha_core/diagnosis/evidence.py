@@ -1,4 +1,4 @@
-"""Everything that the stages found in the recordings of one rig: what the conclusion rests on."""
+"""The results of all stages up to the decision, for the recordings of one rig."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Evidence:
     """Every stage's result, in their order.
 
     Attributes:
-        observations: one a recording; `lead` is the number, counted from one, of that which the report draws.
-        equation_residuals: of the lead, those that each model leaves; `equations`: the smallest of them.
+        observations: one for each recording; `lead` is the number, counted from one, of the one that the report shows.
+        equation_residuals: of the lead recording, those of each model; `equations`: the smallest of them.
     """
 
     observations: tuple[Observation, ...]
@@ -43,19 +43,19 @@ class Evidence:
 
     @property
     def observation(self) -> Observation:
-        """The lead's."""
+        """The lead recording's observation."""
         return self.observations[self.lead - 1]
 
     def shown(self, shooting: Shooting) -> Shooting:
-        """The lead's part of the windows."""
+        """The lead recording's windows."""
         return recording_alone(shooting, self.lead)
 
     def shown_fit(self, shooting: Shooting, result: Fit) -> Fit:
-        """What a fit to these windows says of the lead."""
+        """The lead recording's part of a fit to these windows."""
         return fit_alone(shooting, result, self.lead)
 
 
 def telling_most(shooting: Shooting, fitted: Fit) -> int:
-    """The number of the recording that a model leaves most of, a sample."""
+    """The number, counted from one, of the recording with the largest chi^2 per sample."""
     each = [fit_alone(shooting, fitted, number) for number in range(1, len(shooting.first_windows) + 1)]
     return 1 + int(np.argmax([result.data / max(result.count, 1) for result in each]))

@@ -1,4 +1,4 @@
-"""Stage 5, the residual: how much the fitted model explains, where the rest sits, and how far it predicts."""
+"""Stage 5, the residual: how much the fitted model explains, where it fails, and how well it predicts."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from eha_core.identification.observation import Observation
 from eha_core.identification.segments import cut
 
 AHEAD = (0.25, 1.0)
-"""s; how far the model is run on from measured states."""
+"""s; prediction horizons from measured states."""
 
 
 def explained(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]) -> Explained:
-    """What the final fit takes away of the recalibrated nominal model's error, and the residual: in each channel the
-    larger of that of the fit and that where nothing was fitted."""
+    """The share of the recalibrated model's excess chi^2 that the fit explains, and the residual: in each channel the
+    larger of the training and the held-out one."""
     names = evidence.calibration.shooting.names
     fitted = {name: root_mean_square(residual) for name, residual in zip(names, final.residuals, strict=True)}
-    # a local minimum can pass for noise where it was fitted, and nowhere else
+    # a wrong local minimum can reach the noise on training data, but not on held-out data
     left = {name: max(size, held_out[name].rmse_after / held_out[name].noise) for name, size in fitted.items()}
     white = all(coherence(residual) < COHERENT for residual in final.residuals)
     identified = all(is_identified(effect, final) for effect in evidence.decision.winner.effects if effect.named)
     noise = max(left.values()) < LEFT_IN_A_CHANNEL and white
     before = evidence.comparison.nominal.fit
     missing = max(before.data - before.count, 0.0)
-    # the same model in the final fit's noise: both are compared as shares of what was there
+    # the winner as the search fitted it: the final fit's chi^2 is over other noise levels
     beyond = max(evidence.decision.winner.fit.data - before.count, 0.0)
     share = 1.0 - beyond / missing if missing > 0.0 else 1.0
     rest = () if noise else _left_over(evidence)
@@ -46,8 +46,10 @@ def root_mean_square(values: Array) -> float:
 
 
 def is_identified(effect: Effect, final: Fit) -> bool:
-    """Whether the recording tells that an effect is there: one of its values differs from what leaves it out by more
-    than its interval. A force of 18 kN, give or take 593 kN, is no explanation, however small the residual."""
+    """Whether a fitted value of an effect differs from its neutral value by more than its confidence interval.
+
+    A force of 18 kN +- 593 kN is no explanation, however small the residual.
+    """
     free = {parameter.name for parameter in final.free}
     rows = {f"{effect.id}.{row.name}": row for row in effect.parameters}
     fitted = {name: row for name, row in rows.items() if name in free}
@@ -57,8 +59,8 @@ def is_identified(effect: Effect, final: Fit) -> bool:
 
 
 def _left_over(evidence: Evidence) -> tuple[Location, ...]:
-    """Where and when the rest sits; at the site at which one more effect would explain most of it, as far as a score
-    test tells."""
+    """Where and when the residual is largest, at the sites where a score test predicts the largest gain of another
+    effect."""
     winner = evidence.decision.winner
     where, when = whereabouts(evidence.calibration.shooting, winner.fit, evidence.scales, evidence.lead)
     sites = evidence.comparison.left_over
@@ -68,7 +70,7 @@ def _left_over(evidence: Evidence) -> tuple[Location, ...]:
 
 
 def predictions(observation: Observation, values: Mapping[str, float], step_size: float) -> Mapping[str, Prediction]:
-    """How far a model predicts each channel of a recording from measured states alone, and over the whole record."""
+    """RMSE of a model's prediction of each channel: over the horizons AHEAD, and free-running over the whole record."""
     ahead = {
         seconds: _errors(observation, values, step_size, seconds) for seconds in AHEAD if seconds < observation.duration
     }
@@ -82,7 +84,7 @@ def predictions(observation: Observation, values: Mapping[str, float], step_size
 def _errors(
     observation: Observation, values: Mapping[str, float], step_size: float, seconds: float
 ) -> Mapping[str, float]:
-    """RMSE of every channel, restarted from the measured states every so many seconds."""
+    """RMSE of every channel, restarted from the measured states every `seconds`."""
     shooting = cut(observation, values, step_size, seconds)
     rows, _ = shooting.simulate(values, shooting.initial_states)
     triples = zip(shooting.names, shooting.samplings, shooting.sample(rows), strict=True)

@@ -1,4 +1,4 @@
-"""The fitted model's values as the result tells them: parameters, named effects, and what a simulator needs."""
+"""The fitted model's values in the result: parameters, named effects, and the values that a simulator needs."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from eha_core.plant import Composition
 from eha_core.quantities import Quantity
 
 TOLD_TOGETHER = 4.0
-"""Times as well as either of two values that their difference must be known to be all that is."""
+"""Factor by which the difference or sum of two values must be more precise than either, to be reported instead."""
 
 
 def fitted_parameters(
     final: Fit, nominal: Mapping[str, float], composition: Composition
 ) -> tuple[FittedParameter, ...]:
-    """The plant's own parameters that were free, each with its deviation and whether it has changed."""
+    """The plant's free parameters, each with its standard deviation and whether it has changed."""
     rows = composition.place_rows
     found = []
     for parameter in final.free:
@@ -40,11 +40,11 @@ def fitted_parameters(
         note = (
             ""
             if identifiable(final, parameter.name)
-            else "this recording does not tell it; held near its nominal value"
+            else "this recording does not identify it; held near its nominal value"
         )
         at_bound = parameter.is_bound_by(final.values[parameter.name])
         if at_bound:
-            note = "at the bound of what is believed of it: its interval does not count"
+            note = "at its prior bound: its interval is not valid"
         found.append(
             FittedParameter(
                 parameter.name,
@@ -67,8 +67,8 @@ def named_effects(
     sets: tuple[ProbableSet, ...],
     intervals: Mapping[str, Ends] = MappingProxyType({}),
 ) -> tuple[NamedEffect, ...]:
-    """The effects that were named, with the values, statement and probability of each; `intervals` of values that two
-    deviations do not bound."""
+    """The named effects, each with its values, statement and probability; `intervals`: one-sided ones, of values whose
+    standard deviation gives none."""
     found = []
     for member in (member for member in winner.hypothesis.members if member.effect.named):
         effect = composition.as_shown(member.effect)
@@ -90,7 +90,7 @@ def named_effects(
 
 
 def wald(result: Fit, effect: Effect) -> float:
-    """What dropping an effect would cost in chi^2, as the curvature at the fit has it."""
+    """The rise of chi^2 if an effect were removed, predicted by the covariance at the fit (Wald statistic)."""
     off = neutral(effect)
     switches = {f"{effect.id}.{row.name}" for row in effect.parameters if row.switches}
     names = [parameter.name for parameter in result.free if is_one_of(parameter.name, switches)]
@@ -104,10 +104,10 @@ def wald(result: Fit, effect: Effect) -> float:
 
 
 def _statement(effect: Effect, values: Mapping[str, FittedValue]) -> str:
-    """The effect in words, with no more of its values than the recording tells."""
+    """The effect in words, with only those of its values that the recording identifies."""
     unsure = [row for row in effect.parameters if _is_unsure(values[row.name], row)]
     if len(unsure) == len(effect.parameters):
-        unsure = []  # what is known of them together is said elsewhere
+        unsure = []  # their sum or difference, if identified, is added elsewhere
     if not unsure and all(value.interval is None for value in values.values()):
         return effect.describe({name: value.value for name, value in values.items()})
     first = values[effect.parameters[0].name]
@@ -122,12 +122,12 @@ def _statement(effect: Effect, values: Mapping[str, FittedValue]) -> str:
 
 
 def _is_unsure(value: FittedValue, row: Parameter) -> bool:
-    """Whether a value that was fitted may as well be that which leaves it out."""
+    """Whether a fitted value cannot be distinguished from its neutral value."""
     return value.interval is None and abs(value.value - row.nominal) < IDENTIFIED * value.std < float("inf")
 
 
 def _most(value: FittedValue, row: Parameter) -> Quantity:
-    """The largest size that a value may have; of one that no size leaves out, nothing."""
+    """The upper limit of a value's size; no number where its neutral value is not zero."""
     if row.nominal != 0.0:
         return Quantity(float("nan"), value.unit, "a value that is ")
     return Quantity(abs(value.value) + IDENTIFIED * value.std, value.unit, "at most ")
@@ -138,7 +138,7 @@ def _negative(value: float | None) -> float | None:
 
 
 def _bounded(value: FittedValue) -> Quantity:
-    """A value, or the end of its interval that is known."""
+    """A value, or the known end of its one-sided interval."""
     low, high = value.interval or (value.value, value.value)
     if value.value < 0.0:
         low, high = high, low
@@ -150,7 +150,7 @@ def _bounded(value: FittedValue) -> Quantity:
 
 
 def difference_alone(effect: Effect, final: Fit) -> str:
-    """What is added where two values of one unit are known by their difference, or their sum, and neither by itself."""
+    """A note where only the difference or the sum of two values of one unit is identified; else empty."""
     rows = dict(zip(effect.parameter_names(), effect.parameters, strict=True))
     free = [parameter.name for parameter in final.free if parameter.name in rows and rows[parameter.name].switches]
     for first, second in combinations(free, 2):
@@ -170,7 +170,7 @@ def difference_alone(effect: Effect, final: Fit) -> str:
 
 
 def _in_other_recordings(effect: Effect, final: Fit) -> dict[str, FittedValue]:
-    """The values of an effect's parameters that differ between recordings, in all but the first: `force@2`."""
+    """The values of an effect's per-recording parameters in all recordings but the first: `force@2`."""
     units = {name: row.unit for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}
     return {
         parameter.name.removeprefix(f"{effect.id}."): FittedValue(
@@ -182,6 +182,6 @@ def _in_other_recordings(effect: Effect, final: Fit) -> dict[str, FittedValue]:
 
 
 def changed_values(final: Fit, composition: Composition) -> dict[str, float]:
-    """What a simulator needs beside the nominal values of such an actuator to be the fitted plant."""
+    """The fitted values that differ from such an actuator's nominal ones; a simulator needs no others."""
     nominal = composition.places(composition.nominal_values())
     return {name: final.values[name] for name in nominal if final.values[name] != nominal[name]}

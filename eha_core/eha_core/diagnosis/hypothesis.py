@@ -1,7 +1,7 @@
-"""A hypothesis: the effects, named ones and laws in no catalogue, that a model holds beyond the nominal equations.
+"""A hypothesis: the effects and recovered laws that a model adds to the nominal equations.
 
-It is a value, and the same hypothesis wherever it comes from: fits of it replace each other, scores of it add up over
-recordings, and nothing else tells two hypotheses apart.
+It is a value: two hypotheses with the same members are equal, wherever they come from, so that fits of one replace each
+other and its scores add up over recordings.
 """
 
 from __future__ import annotations
@@ -16,15 +16,14 @@ from eha_core.identification.per_recording import base_name, is_one_of
 from eha_core.parameters import NOMINAL, acting_rows
 
 LAW_SIZE = 3
-"""Members that a law in no catalogue counts as, for its curve bends to whatever is there (assumed)."""
+"""Members that a recovered law counts as, because its curve is flexible (assumed)."""
 
 
 @dataclass(frozen=True, order=True)
 class Member:
     """One effect of a hypothesis, by its id.
 
-    `limited` where it acts in an interval only, which is then fitted; `variable`, of a law in no catalogue, what its
-    curve is over.
+    `limited`: it acts in an interval only, which is fitted; `variable`: that of a recovered law's curve, else empty.
     """
 
     id: str
@@ -34,11 +33,11 @@ class Member:
 
     @property
     def size(self) -> int:
-        """What it counts as: 1, one more where its interval was chosen among all, or LAW_SIZE."""
+        """The members that it counts as: 1, one more with a fitted interval, or LAW_SIZE for a recovered law."""
         return LAW_SIZE if self.variable else 1 + self.limited
 
     def span(self, values: Mapping[str, float]) -> tuple[float, float] | None:
-        """From when until when it acts [s] in a model of these values; None where it always does."""
+        """Its active interval [s] in a model with these values; None where it always acts."""
         if not self.limited:
             return None
         begin, end = (values[name] for name in self.effect.acting_names())
@@ -47,7 +46,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A set of effects, each acting always or in an interval, and of laws that are in no catalogue."""
+    """A set of effects, each acting always or in an interval, and of recovered laws."""
 
     members: tuple[Member, ...] = ()
 
@@ -63,12 +62,12 @@ class Hypothesis:
 
     @property
     def size(self) -> int:
-        """What its members count as together."""
+        """The sum of its members' sizes."""
         return sum(member.size for member in self.members)
 
     @property
     def law(self) -> Member | None:
-        """The law that is in no catalogue, if it holds one."""
+        """Its recovered law; None without one."""
         return next((member for member in self.members if member.variable), None)
 
     @property
@@ -78,11 +77,11 @@ class Hypothesis:
 
     @property
     def kinds(self) -> frozenset[str]:
-        """The kinds of law that it holds a form of."""
+        """The kinds of law of which it contains a form."""
         return frozenset(effect.kind for effect in self.effects if effect.kind)
 
     def admits(self, effect: Effect) -> bool:
-        """Whether an effect can be added: not there yet, and no other form of a law that is."""
+        """Whether an effect can be added: neither it nor another form of its law is a member."""
         return effect.id not in self.ids and effect.kind not in self.kinds
 
     def with_effects(self, effects: Iterable[Effect], limited: bool = False, variable: str = "") -> Hypothesis:
@@ -95,7 +94,7 @@ class Hypothesis:
         return Hypothesis(tuple(other for other in self.members if other != member))
 
     def holds(self, other: Hypothesis) -> bool:
-        """Whether it says all that another says, or more."""
+        """Whether it contains every member of another."""
         return set(other.members) <= set(self.members)
 
 
@@ -104,7 +103,7 @@ NOTHING = Hypothesis()
 
 
 def neutral(effect: Effect) -> Mapping[str, float]:
-    """The values (full names) at which an effect is off, and would always act."""
+    """The values (full names) at which an effect is off and its interval unlimited."""
     off = {name: row.nominal for name, row in zip(effect.parameter_names(), effect.parameters, strict=True)}
     return off | {name: row.nominal for name, row in acting_rows(effect).items()}
 
@@ -114,7 +113,7 @@ NOMINAL_NAMES = frozenset(row.name for row in NOMINAL)
 
 
 def without_effect(result: Fit, effect: Effect) -> tuple[dict[str, float], tuple[FreeParameter, ...]]:
-    """A fit's values with one effect off, and what is then free."""
+    """A fit's values with one effect off, and the parameters that remain free."""
     off = neutral(effect)
     values = {name: off.get(base_name(name), value) for name, value in result.values.items()}
     return values, tuple(parameter for parameter in result.free if not is_one_of(parameter.name, off))

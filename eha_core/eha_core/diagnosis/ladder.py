@@ -1,9 +1,9 @@
-"""Stage 5, what each effect is worth: the nominal, the recalibrated and the augmented model, and that without each
-effect.
+"""Stage 5, each effect's contribution: the residuals of the nominal, recalibrated and augmented models, and of the last
+without each effect.
 
-The curvature at the optimum does not tell it: where a valve's overlap or a leak is taken out, the others move so far
-that a quadratic prediction is off by a factor of 5 to 15 (of the residual's RMS, in two sets of the example
-recordings). So the rest is fitted again, once for each effect.
+The curvature at the optimum does not give it: without a valve's overlap or a leak the other parameters move so far that
+a quadratic prediction of the residual's RMS is wrong by a factor of 5 to 15 (two sets of the example recordings). So
+the rest is refitted, once for each effect.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from eha_core.identification.parallel import each
 
 
 def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, Residual]]:
-    """The models from the nominal to the final one; and the residual without each of several effects, most first."""
+    """The residuals of the models from nominal to final, and those without each of several effects, largest first."""
     winner = evidence.decision.winner
     scales = _scales(evidence)
     steps = [
@@ -33,7 +33,7 @@ def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, 
     ]
     members = winner.hypothesis.members
     if members:
-        # the final fit's residuals are over its own noise
+        # the final fit's residuals are already scaled by its own noise levels
         steps.append(Step(AUGMENTED, _residual(evidence, final, [1.0] * len(scales))))
     if len(members) < 2:
         return tuple(steps), {}
@@ -43,7 +43,7 @@ def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, 
 
 
 def _without(evidence: Evidence, winner: Entry, member: Member) -> Fit:
-    """The set without one member: as the search has fitted it, or fitted from where the whole set stands."""
+    """The fit of the set without one member: the search's, or a refit from the whole set's values."""
     known = evidence.comparison.smaller.get(winner.hypothesis.without(member))
     if known is not None:
         return known
@@ -52,7 +52,7 @@ def _without(evidence: Evidence, winner: Entry, member: Member) -> Fit:
 
 
 def _scales(evidence: Evidence) -> list[float]:
-    """What the search took for each channel's noise, over what the final model shows it to be."""
+    """Each channel's noise level in the search, divided by that under the final model."""
     shooting = evidence.calibration.shooting
     final = corrected_noise(shooting, evidence.decision.winner.fit, filtered_channels(evidence.observations))
     return [sampling.noise / noise for sampling, noise in zip(shooting.samplings, final, strict=True)]
@@ -70,7 +70,7 @@ def correlation(final: Fit) -> Correlation:
     count = len(final.free)
     covariance = final.covariance[:count, :count]
     deviations = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-    # a parameter rises with its coordinate, so both have the same correlation
+    # each parameter increases with its coordinate, so both have the same correlation
     matrix = np.clip(covariance / np.outer(deviations, deviations), -1.0, 1.0)
     np.fill_diagonal(matrix, 1.0)
     return Correlation(tuple(parameter.name for parameter in final.free), tuple(map(tuple, matrix.tolist())))

@@ -1,8 +1,8 @@
-"""An unknown law in words: a recovered curve as an expression, and the law that the equations' residuals hold.
+"""An unknown law as an expression: of a recovered curve, or regressed on the equation residuals.
 
-The weak form needs no simulation: what an equation lacks is regressed on functions of the measured states, each
-integrated with the same test functions and freed of what the equation's own coefficients can take over, so that the
-coefficients found are those of the law itself.
+The weak form needs no simulation: an equation's missing part is regressed on functions of the measured states. These
+are integrated with the same test functions and made orthogonal to the equation's own terms, so that the coefficients
+are those of the law itself.
 """
 
 from __future__ import annotations
@@ -20,40 +20,40 @@ from eha_core.weak_form.library import best_wave, powers, searched
 from eha_core.weak_form.terms import RegressionData, Sum, Term, sparsest
 
 SIMPLE = 0.95
-"""R^2 that an expression has to reach."""
+"""R^2 required of an expression."""
 
 PERIODIC = (0.5, 10.0)
-"""Hz; the forces over time that are looked for."""
+"""Hz; frequencies searched for a periodic force over time."""
 
 EXPRESSED = 0.9
-"""R^2 from which a law of the residuals is written out: noise in the states it is over lowers it."""
+"""R^2 from which a law of the residuals is written as an expression; noise in its variable lowers R^2."""
 
 WORTH_A_FORMULA = 0.5
-"""An expression is looked for where a curve explains this share of what the best law before it does."""
+"""An expression is sought only if a curve explains this share of what the best law so far explains."""
 
 FEWEST_WAVES = 1.5
-"""Cycles over the range of the variable: with less, a wave cannot be distinguished from a power."""
+"""Fewest cycles over the range of the variable: fewer cannot be distinguished from a power."""
 
 MOST_WAVES = 0.25
-"""Cycles a knot of a curve: four knots draw a wave."""
+"""Most cycles per knot of a curve: a wave needs four knots."""
 
 MOST_RIPPLES = 15.0
-"""Most cycles over the travel that are looked for in a residual."""
+"""Most cycles over the variable's range that are sought in a residual."""
 
 VIOLATED = 1.5
-"""Chi^2 a degree of freedom above which a residual is looked into."""
+"""Chi^2 per degree of freedom above which a law is sought in an equation's residual."""
 
 MORE = 0.02
-"""R^2 that a law must have over a simpler one before it."""
+"""Increase of R^2 required of a law over a simpler one."""
 
 OWN = 1e-4
-"""A function of which no more than this share is left beside the equation's own terms is one of them."""
+"""A function counts as a combination of the equation's own terms if at most this share of it is orthogonal to them."""
 
 REVERSING = 0.05
-"""Standard deviations of the speed within which its direction counts as reversing."""
+"""Width of the reversal of direction, in standard deviations of the speed."""
 
 DRAWN = 800
-"""Samples of a law that was found as an expression: eight a cycle at 5 Hz over 20 s."""
+"""Samples of an expression's curve: eight per cycle at 5 Hz over 20 s."""
 
 OVERLAP = 2.0
 """Neighbouring test functions overlap: so many of them count as one independent row (assumed)."""
@@ -68,7 +68,7 @@ SYMBOLS = {
 """How each variable is written, and its unit."""
 
 UNITS = {"force": "N", "chamber": "m^3/s", "orifice": "A"}
-"""What a law of each site gives: force on the piston, flow from chamber A to B, opening of the valve."""
+"""Unit of a law at each site: force on the piston, flow from chamber A to B, opening of the valve."""
 
 
 DIRECTION = "direction of motion"
@@ -107,14 +107,14 @@ FORMS = (
     Form("orifice", "spool position"),
     Form("chamber", "position", "pressure difference"),
 )
-"""The laws that are looked for, the simpler ones first. A force over the pressure difference is not among them: the
-balance itself is one, with coefficients that are free."""
+"""The forms of law that are sought, simpler ones first. A force over the pressure difference is not one of them: the
+force balance has that term, with a free coefficient."""
 
 
 def express(x: Array, y: Array, name: str, unit_y: str) -> Expression:
     """The simplest expression of a curve y(x) over the variable `name`, one of SYMBOLS; y in `unit_y`, x in SI.
 
-    No text where fewer than eight points are there, or nothing simple explains SIMPLE of the curve's variance.
+    Its text is empty with fewer than eight points, or where no simple expression reaches an R^2 of SIMPLE.
     """
     total = float(np.sum((y - y.mean()) ** 2)) if len(y) else 0.0
     if len(x) < 8 or not total > 0.0:
@@ -130,7 +130,7 @@ def express(x: Array, y: Array, name: str, unit_y: str) -> Expression:
 
 
 def _library(data: RegressionData, name: str, waves: tuple[float, float]) -> tuple[Term, ...]:
-    """The terms that a law over a variable may have; over time only what comes back, as the rest would be drift."""
+    """The terms that a law over a variable may have; over time only periodic ones, since others would fit drift."""
     symbol = SYMBOLS[name][0]
     if name == "time":
         return (powers(symbol)[0], best_wave(data, symbol, *waves, pitch=False))
@@ -138,10 +138,10 @@ def _library(data: RegressionData, name: str, waves: tuple[float, float]) -> tup
 
 
 def weak_law(alternatives: Sequence[Sequence[EquationResidual]]) -> UnknownLaw | None:
-    """The law that explains most of what the residuals lack; None where they hold, or nothing explains any of it.
+    """The law that explains most of the equation residuals; None where the equations hold, or no law explains them.
 
-    `alternatives`: residuals made with different models, each of the force and then of the chambers. A law is looked
-    for in each of them, and the one that leaves least counts.
+    `alternatives`: for each model, the residual of the force balance, then those of the chambers. A law is sought in
+    each of them, and the one with the smallest residual is returned.
     """
     best: UnknownLaw | None = None
     most = 0.0
@@ -149,7 +149,7 @@ def weak_law(alternatives: Sequence[Sequence[EquationResidual]]) -> UnknownLaw |
         parts = [residuals[:1] if form.site == "force" else residuals[1:] for residuals in alternatives]
         sides = [part for part in parts if part]
         energies = [float(np.mean([residual.chi_square for residual in chosen])) for chosen in sides]
-        # the equation that is violated most comes first, whatever explains a little of another
+        # explained chi^2 is compared, not R^2, so that the most violated equation comes first
         lacking = min(energies, default=0.0)
         if lacking < VIOLATED:
             continue
@@ -162,7 +162,7 @@ def weak_law(alternatives: Sequence[Sequence[EquationResidual]]) -> UnknownLaw |
 
 
 def _law(form: Form, residuals: Sequence[EquationResidual], least_share: float = 0.0) -> UnknownLaw | None:
-    """The best law of a form, as an expression if that is as good as its curve; None if a curve explains too little."""
+    """The best law of a form, as an expression if that is as good as the curve; None if it explains too little."""
     data = _regression_data(form, residuals)
     reach = float(np.ptp(data.at))
     if not reach > 0.0:
@@ -202,14 +202,14 @@ def _regression_data(form: Form, residuals: Sequence[EquationResidual]) -> Regre
 
 
 def _freed(rows: Array, basis: Array) -> Array:
-    """Rows (..., n) without their part along the equation's own terms; zero if that is all there was."""
+    """Rows (..., n) made orthogonal to the equation's own terms; zero where they are combinations of these."""
     left = rows - (rows @ basis) @ basis.T
     kept = np.linalg.norm(left, axis=-1, keepdims=True) > OWN * np.linalg.norm(rows, axis=-1, keepdims=True)
     return np.asarray(np.where(kept, left, 0.0))
 
 
 def _factor(form: Form, residual: EquationResidual) -> Array | float:
-    """What the form's function is multiplied by where it enters a residual."""
+    """The factor of the form's function in a residual: one number, or one for each sample."""
     into = {"continuity_a": -1.0, "continuity_b": 1.0}.get(residual.equation, 1.0)
     if form.site == "orifice":
         return residual.states["flow_an_ampere"]
@@ -222,7 +222,7 @@ def _factor(form: Form, residual: EquationResidual) -> Array | float:
 
 
 def _curve(data: RegressionData) -> tuple[tuple[tuple[float, float], ...], float]:
-    """The function as a curve through evenly spaced knots, and the share that it explains, its freedom paid for."""
+    """The function as a curve through evenly spaced knots, and its adjusted R^2."""
     low, high = np.quantile(data.at, [0.002, 0.998])
     places = np.linspace(low, high, KNOTS)
     away = np.abs(np.clip(data.at, low, high) - places[:, None])
@@ -236,14 +236,14 @@ def _curve(data: RegressionData) -> tuple[tuple[tuple[float, float], ...], float
 
 
 def _drawn(data: RegressionData, found: Sum) -> tuple[tuple[float, float], ...]:
-    """An expression as samples over the range that was visited."""
+    """DRAWN samples of an expression over the visited range."""
     low, high = np.quantile(data.at, [0.002, 0.998])
     places = np.linspace(low, high, DRAWN)
     return tuple(zip(places.tolist(), found.values(places).tolist(), strict=True))
 
 
 def _text(form: Form, found: Sum) -> str:
-    """The expression with the units of what it gives and of what it is over."""
+    """The expression with the units of its value and of its variables."""
     variables = [form.variable, *([form.times] if form.times else [])]
     times = "sign(v)" if form.times == DIRECTION else SYMBOLS[form.times][0] if form.times else ""
     units = [

@@ -1,4 +1,4 @@
-"""Stage 3, locate: which equation is violated, by how much of what is unexplained, where in state space, and when."""
+"""Stage 3, locate: where in state space, and when, a model's residual is largest."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ SLICE = 0.25
 """s; resolution in time of "when"."""
 
 LOUD = 4.0
-"""A slice of the record is named when its residual energy is this many times what noise leaves."""
+"""Mean squared residual, in units of noise, above which a slice of the record is reported."""
 
 
 @dataclass(frozen=True)
 class Region:
-    """A part of state space, the share of the record spent there, and of the unexplained energy."""
+    """A part of state space, and the shares of the record's time and of the unexplained energy that fall into it."""
 
     name: str
     time_share: float
@@ -31,19 +31,19 @@ class Region:
 def whereabouts(
     shooting: Shooting, result: Fit, scales: Scales, recording: int = 1
 ) -> tuple[str, tuple[tuple[float, float], ...]]:
-    """In which part of state space, and when, a fit leaves most of a recording, counted from one."""
+    """The part of state space and the intervals [s] with the largest residuals of a recording, counted from one."""
     alone, of_it = recording_alone(shooting, recording), fit_alone(shooting, result, recording)
     return _where(alone, of_it, scales_alone(shooting, scales, recording)), _when(alone, of_it)
 
 
 def _energy(shooting: Shooting, result: Fit) -> tuple[Array, Array]:
-    """Residual energy beyond the noise at every sample's time, all channels together: times and energies."""
+    """The times [s] and squared residuals of all channels' samples."""
     times = [shooting.times(sampling) for sampling in shooting.samplings]
     return np.concatenate(times), np.concatenate([residual**2 for residual in result.residuals])
 
 
 def _when(shooting: Shooting, result: Fit) -> tuple[tuple[float, float], ...]:
-    """Spans of time in which the residual is loud; one span over everything if that is most of the record."""
+    """The intervals [s] of large residuals; the whole record if they take most of it."""
     times, energy = _energy(shooting, result)
     end = float(shooting.edges[-1]) * shooting.step_size
     edges = np.arange(0.0, end + SLICE, SLICE)
@@ -62,8 +62,8 @@ def _when(shooting: Shooting, result: Fit) -> tuple[tuple[float, float], ...]:
 
 
 def regions(shooting: Shooting, result: Fit, scales: Scales) -> tuple[Region, ...]:
-    """How much of the time and of the unexplained energy fall into each part of state space that an engineer would
-    name."""
+    """The shares of time, and of the worst channel's unexplained energy, in each part of state space that an engineer
+    would name."""
     if not len(scales.rows):
         return ()
     sampling, residual = max(
@@ -87,7 +87,7 @@ def regions(shooting: Shooting, result: Fit, scales: Scales) -> tuple[Region, ..
 
 
 def _where(shooting: Shooting, result: Fit, scales: Scales) -> str:
-    """The region that holds most beyond its share of time, if any stands out."""
+    """The region with the most energy for its share of time, if one stands out."""
     candidates = [region for region in regions(shooting, result, scales) if region.time_share > 0.005]
     best = max(candidates, key=lambda region: region.energy_share / region.time_share, default=None)
     if best is None or best.energy_share < 2.0 * best.time_share or best.energy_share < 0.15:

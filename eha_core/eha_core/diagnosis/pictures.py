@@ -1,4 +1,4 @@
-"""Series for the report: what was measured, and what the models before, calibrated and after make of it."""
+"""Series for the report: the measured channels, and those of the nominal, recalibrated and augmented models."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eha_core.identification.validate import instants_of, split
 
 
 def pictures(evidence: Evidence, before: Fit, calibrated: Fit, after: Fit) -> Pictures:
-    """Measured channels and the three models' at the same times, windows restarted."""
+    """Measured and modelled channels at the same times; the models restart in each window."""
     whole = evidence.calibration.shooting
     shooting = evidence.shown(whole)
     models = [_modelled(shooting, evidence.shown_fit(whole, result)) for result in (before, calibrated, after)]

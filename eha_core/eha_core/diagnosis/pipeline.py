@@ -50,7 +50,7 @@ def examine(
 def _calibrated(
     recordings: Sequence[Recording], model: NominalModel, progress: Progress
 ) -> tuple[NominalModel, tuple[Observation, ...], Calibration]:
-    """The recordings read and aligned, and the nominal equations calibrated; the model with a stroke that suffices."""
+    """The nominal model, with a sufficient stroke, the observations of the recordings, and the calibration."""
     progress("reading and aligning")
     seen = [observe(recording, model.composition) for recording in recordings]
     check_alike(seen)
@@ -64,7 +64,7 @@ def _calibrated(
 def _equations(
     observations: Sequence[Observation], lead: int, calibration: Calibration
 ) -> tuple[tuple[EquationResidual, ...], ...]:
-    """What the equations of the leading recording lack under the calibrated model, and under the nominal one."""
+    """The equation residuals of the lead recording under the recalibrated and under the nominal model."""
     shooting = calibration.shooting
     return tuple(
         equation_residuals(observations[lead - 1], recording_alone(shooting, lead), fit_alone(shooting, result, lead))
@@ -75,7 +75,7 @@ def _equations(
 def diagnose(
     recording: Recording, nominal: Mapping[str, float] | NominalModel, progress: Progress = lambda _: None
 ) -> Diagnosis:
-    """Say whether the nominal plant explains the recording, and what it leaves out if it does not."""
+    """Diagnose whether the nominal plant explains the recording and, if not, which physics is missing."""
     return diagnose_together([recording], nominal, progress)
 
 
@@ -90,17 +90,17 @@ def diagnose_together(
     """The verdict on recordings of one rig, fitted with one set of parameters and effects.
 
     Args:
-        recordings: of the same rig; the report draws the one of which the nominal equations leave most unexplained.
+        recordings: of the same rig; the report shows the one with the largest residual of the recalibrated model.
         nominal: every parameter of the model, and which are unknown or have a value of their own in each recording.
         progress: receives each stage as it begins.
-        jobs: threads that simulate side by side.
+        jobs: threads that simulate in parallel.
         tests: recordings that nothing is fitted to; the result says how well they are predicted.
-        limits: what the test that is proposed has to stay within; by default what the model bears.
+        limits: those of the proposed test; by default the model's own.
 
     Raises:
         RecordingError: a recording cannot be used, or they are driven by different channels.
     """
-    # the simulations share the cores; a linear-algebra library that spins threads of its own only takes them away
+    # the simulations use all cores; threads of the linear-algebra library would only compete for them
     with threadpool_limits(1), side_by_side(jobs):
         model = nominal if isinstance(nominal, NominalModel) else NominalModel(nominal)
         evidence = examine(recordings, model, progress)

@@ -1,8 +1,8 @@
-"""How probable each set of effects is, and so each name: the evidence of the sets that were compared, tempered.
+"""The probability of each set of effects, and so of each name: tempered scores of the sets that were compared.
 
-Two things can be wrong with a name: another set explains the recording as well (its score is near), or the effect gains
-little more than chance and the form of the other laws could (its gain is near what is required of it). Both are turned
-into odds with a scale each, which development cases set; nothing else is assumed of the prior.
+A name can be wrong in two ways: another set explains the recording as well (its score is close), or the effect gains
+little more than chance and the form of the other laws could (its gain is close to the required one). Each is turned
+into odds with a scale that was set on development cases; the prior is otherwise flat.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from eha_core.diagnosis.result import ProbableSet
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison, bounded
 
 TEMPERATURE = TIE / (2.0 * log(COLLECTION / (1.0 - COLLECTION)))
-"""Of the scores' Boltzmann factors: of two sets whose scores are TIE apart the better one holds COLLECTION."""
+"""Temperature of the scores' Boltzmann factors: of two sets whose scores differ by TIE, the better has COLLECTION."""
 
 
 def probable_sets(comparison: ModelComparison, winner: Entry) -> tuple[ProbableSet, ...]:
-    """The fewest sets that together hold COLLECTION of the probability, the most probable first.
+    """The fewest sets that together have COLLECTION of the probability, the most probable first.
 
-    Those of the comparison that do not merely add to the winner, and the winner without each of its members.
+    Candidates are the compared sets that do not merely add to the winner, and the winner without each of its members.
     """
     if not winner.effects:
         return ()
@@ -46,6 +46,6 @@ def probable_sets(comparison: ModelComparison, winner: Entry) -> tuple[ProbableS
 
 
 def probability(sets: tuple[ProbableSet, ...], effect: str) -> float:
-    """The probability of a name: of the sets in the collection that hold it."""
+    """The probability of a name: the share of the collection's probability in sets that contain it."""
     total = sum(each.probability for each in sets)
     return sum(each.probability for each in sets if effect in each.effects) / total if total else 0.0

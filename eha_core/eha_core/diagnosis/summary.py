@@ -24,8 +24,7 @@ def summary(
     event: tuple[float, float] | None = None,
     scale: CommonScale | None = None,
 ) -> str:
-    """What was found in words; first when it happened, if it was an event, and what it leaves, where that is more than
-    noise."""
+    """The findings in words, after the interval of an event and a residual above the noise, where there are any."""
     said = _found_in_words(decision, effects, unknown)
     if scale is not None:
         times = quantity(scale.factor, "-", 3)
@@ -33,20 +32,20 @@ def summary(
     if event is not None:
         begin, end = (quantity(at, "s") for at in event)
         said = (
-            f"The nominal model is at the noise but for {begin} to {end}: an event, or a fault of the recording,"
+            f"The nominal model fails only from {begin} to {end}: an event on the rig, or a fault of the recording,"
             f" happened there. {said}"
         )
     if left.complete or not effects:
         return said
     if left.vague:
-        return f"{said} What is left is noise, but how strong all of this is, the recording does not tell."
+        return f"{said} The residual is noise, but this recording does not determine how strong the effects are."
     most = max(left.times_noise, key=lambda name: left.times_noise[name])
     many = "One effect" if len(effects) == 1 else f"{len(effects)} effects"
     many += " and a law explain" if unknown else " explains" if len(effects) == 1 else " explain"
     rest = (
         f"the residual is {left.times_noise[most]:.3g} times the noise, most in {most.replace('_', ' ')}"
         if left.times_noise[most] >= LEFT_IN_A_CHANNEL
-        else "the residual is small, but no noise"
+        else "the residual is small, but not white noise"
     )
     return f"{many} {100.0 * left.share:.3g} % of the mismatch; {rest}, so more is missing. {said}"
 
@@ -68,16 +67,16 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
         )
         return (
             f"Physics is missing: {kind}; most simply, {named}. Its law cannot be identified from this recording:"
-            f" {forms} explain it alike."
+            f" {forms} explain it equally well."
         )
     if decision.verdict == "ambiguous":
         others = ", ".join(" + ".join(entry.ids) for entry, _ in decision.rivals)
-        return f"Physics is missing, most likely: {named}. This recording cannot tell it from {others}."
+        return f"Physics is missing, most likely: {named}. In this recording it cannot be distinguished from {others}."
     return f"Physics is missing: {named}."
 
 
 def _listed(effects: tuple[NamedEffect, ...]) -> str:
-    """What the effects state, with the probability of each name that is less than sure."""
+    """The effects' statements, each with its probability where that is below CERTAINTY."""
     return "; and ".join(f"{effect.statement}{_doubt(effect)}" for effect in effects)
 
 
@@ -86,7 +85,7 @@ def _doubt(effect: NamedEffect) -> str:
 
 
 def kind_alone(decision: Decision) -> str:
-    """The kind of law, if the winner and all its rivals are the same but for the form of one law; else nothing."""
+    """The kind of law, if the winner and all its rivals differ only in the form of one law; else empty."""
     kinds = set()
     for entry, _ in decision.rivals:
         own, other = (set(explanation.hypothesis.members) for explanation in (decision.winner, entry))
@@ -99,10 +98,10 @@ def kind_alone(decision: Decision) -> str:
 
 def _summary_of_unknown(effects: tuple[NamedEffect, ...], law: UnknownLaw | None) -> str:
     if law is None:
-        return "Something is missing that the catalogue does not name, and no law over the measured states explains it."
+        return "Physics is missing that is not in the catalogue, and no law over the measured states explains it."
     statement = next(effect.statement for effect in every_effect() if effect.site == law.site and not effect.named)
     unknown = f"{statement}, as a function of {law.function_of}"
     if not effects:
         return f"Something is missing: {unknown}."
     named = _listed(effects)
-    return f"Physics is missing: {named}; and beside it a law that the catalogue does not name: {unknown}."
+    return f"Physics is missing: {named}; and a law that is not in the catalogue: {unknown}."

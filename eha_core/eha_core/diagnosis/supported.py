@@ -1,7 +1,7 @@
-"""Stage 5, support: of what was decided, what the recording bears.
+"""Stage 5, support: the decision, limited to what the recording supports.
 
-A search may end beside the best values of the model it names; an effect may be named whose strength no interval parts
-from nothing; and a model may predict worse than the nominal one did before anything was fitted.
+A search may miss the best values of the model that it names; the interval of a named effect's strength may include
+zero; and a model may predict worse than the nominal one before anything was fitted.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from eha_core.identification.profile import Ends, profile_interval
 from eha_core.identification.validate import instants_of, judge
 
 MEMBERS_FIRST = 4
-"""Iterations of the members alone beside nominal values."""
+"""Iterations of the effects' parameters alone, with the plant's parameters at their nominal values."""
 
 BETTER = 2.0
-"""Chi^2 by which the same model must be better elsewhere; a fit ends where an iteration gains a quarter of that."""
+"""Chi^2 by which another minimum of the same model must be lower; a fit ends when an iteration gains a quarter."""
 
 
 def supported(evidence: Evidence, decision: Decision) -> Decision:
-    """The decision with the best values of its model, without what is not identified, and never worse than the nominal
+    """The decision with the best values of its model, without unidentified effects, and never worse than the nominal
     model on held-out data."""
     if decision.verdict in ("missing_physics", "ambiguous"):
         decision = _identified_alone(evidence, _from_nominal_values(evidence, decision))
@@ -41,10 +41,10 @@ def supported(evidence: Evidence, decision: Decision) -> Decision:
 
 
 def _from_nominal_values(evidence: Evidence, decision: Decision) -> Decision:
-    """The decision, its model fitted again from the nominal values where that ends lower.
+    """The decision, with its model refitted from nominal values where that reaches a lower chi^2.
 
-    A calibration without the effect imitates it by the plant's parameters, and the way back may lead through a valley
-    that ends early: behind a filter of 6 ms bulk modulus and stroke stayed off by a half.
+    A calibration without the effect compensates for it by the plant's parameters, and a fit from there may end in
+    another minimum: behind a filter of 6 ms, bulk modulus and stroke stayed wrong by a half.
     """
     winner, calibration = decision.winner, evidence.calibration
     rows = evidence.observation.composition.place_rows
@@ -68,7 +68,7 @@ def _with_winner(evidence: Evidence, decision: Decision, winner: Entry) -> Decis
 
 
 def _identified_alone(evidence: Evidence, decision: Decision) -> Decision:
-    """The decision without the effects that the recording does not tell from nothing."""
+    """The decision without the effects whose strength the recording does not distinguish from zero."""
     problem, variance = evidence.calibration.problem, evidence.comparison.residual_variance
     before, winner = decision.winner, decision.winner
     doubtful = _unidentified(with_residual(problem, winner.fit), winner.hypothesis.members)
@@ -92,7 +92,7 @@ def _unidentified(result: Fit, members: tuple[Member, ...]) -> list[Member]:
 
 
 def chance(evidence: Evidence, result: Fit, effect: Effect) -> float:
-    """Chi^2 that an effect gains by chance in one recording of twenty; more where the residual has a memory."""
+    """The gain in chi^2 that chance exceeds in one recording of twenty; larger where the residual is correlated."""
     problem = evidence.calibration.problem
     names = [name for name in effect.parameter_names() if any(name == parameter.name for parameter in result.free)]
     wide = with_residual(problem, result)
@@ -104,7 +104,7 @@ def chance(evidence: Evidence, result: Fit, effect: Effect) -> float:
 
 
 def one_sided(evidence: Evidence, final: Fit, winner: Entry) -> Mapping[str, Ends]:
-    """The 95 % intervals, from the data's own chi^2, of the strengths that two deviations do not part from nothing."""
+    """The 95 % intervals, by profile likelihood, of the strengths that two deviations do not distinguish from zero."""
     found, problem = {}, evidence.calibration.problem
     for member in _unidentified(final, winner.hypothesis.members):
         effect = member.effect
@@ -132,7 +132,7 @@ def _no_worse_than_nominal(evidence: Evidence, decision: Decision) -> Decision:
 
 
 def _is_at_the_noise(evidence: Evidence, result: Fit) -> bool:
-    """Whether a model leaves noise in every channel."""
+    """Whether a model's residual is noise in every channel."""
     shooting = evidence.calibration.shooting
     noises = corrected_noise(shooting, result, filtered_channels(evidence.observations))
     left = (

@@ -1,4 +1,4 @@
-"""Stage 6, show: how large what was not named may be, from the quadratic model about the set that was."""
+"""Stage 6, show: how large an effect that was not named may be, from the quadratic model about the chosen set."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from eha_core.diagnosis.search.pool import Pool, Trace
 
 
 def undetected(evidence: Evidence, left: Explained, parameters: tuple[FittedParameter, ...]) -> Undetected | None:
-    """The smallest size of each effect not named that would have been found together with those that were, and of each
-    change of a parameter that has not changed; None where more than noise is left, for its cause hides others."""
+    """The smallest detectable size of each effect that was not named, and change of each parameter that did not change;
+    None where the residual is more than noise, because its cause hides others."""
     if not (left.complete or left.vague):
         return None
     at = fitted_model(evidence)
@@ -26,7 +26,7 @@ def undetected(evidence: Evidence, left: Explained, parameters: tuple[FittedPara
 
 
 def fitted_model(evidence: Evidence) -> FittedModel:
-    """The set that was decided on, as the search has fitted it and can add to it."""
+    """The chosen set, as the search fitted it and can extend it."""
     winner, calibration = evidence.decision.winner, evidence.calibration
     own = {parameter.name: parameter for parameter in winner.fit.free}
     plant = tuple(own.get(one.name, one) for one in calibration.fitted.free if "@" not in one.name)

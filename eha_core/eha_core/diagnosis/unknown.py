@@ -1,5 +1,4 @@
-"""A law outside the catalogue: recovered as a curve over whichever variable explains most, alone or beside named
-effects."""
+"""A law outside the catalogue: a curve over the variable that explains most, alone or together with named effects."""
 
 from __future__ import annotations
 
@@ -28,8 +27,8 @@ FULLY_FITTED = 2
 
 @dataclass(frozen=True)
 class Recovery:
-    """The best curve: the effect that carries it, what it is over, the hypothesis (with the named effects beside it),
-    its fit, its score as of an `Entry`, and the share that it explains of what the same effects leave without it."""
+    """The best curve: its effect and variable, the hypothesis (with the named effects), the fit, the score as of an
+    `Entry`, the share that it explains of the same effects' excess chi^2 without it, and its identified knots."""
 
     effect: Effect
     variable: str
@@ -41,16 +40,16 @@ class Recovery:
 
     @property
     def named(self) -> tuple[Effect, ...]:
-        """The effects of the catalogue beside the curve."""
+        """The catalogued effects that were fitted with the curve."""
         return tuple(effect for effect in self.hypothesis.effects if effect.named)
 
 
 def recover(
     problem: Problem, comparison: ModelComparison, scales: Scales, progress: Callable[[str], None] = lambda _: None
 ) -> Recovery | None:
-    """Fit curves where the catalogue's best leaves something over: alone, and beside the effects that are named.
+    """Fit curves if the residual of the best set exceeds the noise: alone, and together with the set's effects.
 
-    None where nothing is left over, or no curve helps.
+    None where the residual is noise, or no curve improves the fit.
     """
     nominal = comparison.nominal.fit
     best = comparison.entries[0] if comparison.entries else comparison.nominal
@@ -61,7 +60,7 @@ def recover(
     progress("recovering an unknown law as a curve")
     bases = [comparison.nominal, *([best] if best.effects and not best.hypothesis.limited else [])]
     found = [_beside(problem, base, comparison, scales, progress) for base in bases]
-    # together with a curve that is not the law either, a name only compensates for the curve's residual
+    # with a curve that is not the law either, a named effect only compensates for the curve's residual
     stands = [
         recovery
         for recovery in found
@@ -71,7 +70,7 @@ def recover(
 
 
 def _of_the_set(best: Entry, comparison: ModelComparison) -> Recovery:
-    """The law that the best set holds."""
+    """The recovered law of the best set."""
     law = best.hypothesis.law
     assert law is not None
     without = comparison.smaller.get(best.hypothesis.without(law), comparison.nominal.fit)
@@ -85,7 +84,7 @@ def _of_the_set(best: Entry, comparison: ModelComparison) -> Recovery:
 def _beside(
     problem: Problem, base: Entry, comparison: ModelComparison, scales: Scales, progress: Callable[[str], None]
 ) -> Recovery | None:
-    """The best curve beside the effects of an entry, of which those go that the curve makes idle."""
+    """The best curve together with an entry's effects, without those that the curve makes unnecessary."""
     fits = []
     for effect, variable, result in _fitted_curves(problem, base, scales, progress):
         law = base.hypothesis.with_effects([effect], variable=variable)
@@ -107,13 +106,13 @@ def _beside(
 def _fitted_curves(
     problem: Problem, base: Entry, scales: Scales, progress: Callable[[str], None]
 ) -> Iterator[tuple[Effect, str, Fit]]:
-    """The curves with the largest predicted gain beside the effects of an entry, fitted."""
+    """The curves with the largest predicted gain together with an entry's effects, fitted."""
     score_tests = []
     for effect, variable, values in _curves(base.fit.values, scales, problem.shooting):
         free = (*base.fit.free, *_knots_free(effect, values, scales))
         score_tests.append((_predicted_gain(problem, base.fit, values, free), effect, variable, values, free))
     score_tests.sort(key=lambda score_test: -score_test[0])
-    beside = f" beside {' and '.join(base.ids)}" if base.ids else ""
+    beside = f" together with {' and '.join(base.ids)}" if base.ids else ""
     for gain, effect, variable, values, free in score_tests[:FULLY_FITTED]:
         if gain > 0.0:
             progress(f"fitting {effect.id} over {variable}{beside}")
@@ -121,7 +120,7 @@ def _fitted_curves(
 
 
 def _without_idle(problem: Problem, hypothesis: Hypothesis, result: Fit) -> tuple[Hypothesis, Fit]:
-    """The hypothesis without the named effects that only made up for the law which a curve now draws."""
+    """The hypothesis without the named effects that only compensated for the law."""
     needed = chance_gain(problem.count(), result.data / result.count)
     for member in hypothesis.members:
         if not member.effect.named:
@@ -166,7 +165,7 @@ def _knots_free(effect: Effect, values: Mapping[str, float], scales: Scales) -> 
 def _predicted_gain(
     problem: Problem, nominal: Fit, values: Mapping[str, float], free: tuple[FreeParameter, ...]
 ) -> float:
-    """The gain in chi^2 that the linearised problem predicts of the curve."""
+    """The reduction of chi^2 that the linearised problem predicts for the curve."""
     q = coordinates(free, values)
     linear = linearise(problem, values, free, q, nominal.states)
     normal, gradient = normal_equations(problem, free, q, nominal.states, linear)
@@ -177,7 +176,7 @@ def _predicted_gain(
 
 
 def _seen(effect: Effect, result: Fit) -> tuple[tuple[float, float], ...]:
-    """The curve's knots that the recording says something about."""
+    """The curve's knots that the recording identifies."""
     lower, upper = result.values[f"{effect.id}.lower"], result.values[f"{effect.id}.upper"]
     places = np.linspace(lower, upper, KNOTS)
     found = []
