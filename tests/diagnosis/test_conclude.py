@@ -11,7 +11,7 @@ from made import explanation
 
 from eha_core.diagnosis import conclude
 from eha_core.diagnosis.calibrate import Calibration
-from eha_core.diagnosis.conclude import _led_by, _ordered, _unknown
+from eha_core.diagnosis.conclude import _law_site_first, _ordered, _unknown
 from eha_core.diagnosis.effect_parameters import free_effect_parameters
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.experiment.discrimination import RATE
@@ -78,11 +78,11 @@ def test_the_site_of_the_named_effect_leads_and_takes_its_span():
 
 def test_the_site_of_a_law_leads_and_is_told_once():
     seen = (Location("chamber", 0.6, "at large pressures", ((1.0, 2.0),)), Location("force", 0.3, "", ()))
-    first, *rest = _led_by(UnknownLaw("force", "velocity", "3e3 v", 0.84, ()), seen)
+    first, *rest = _law_site_first(UnknownLaw("force", "velocity", "3e3 v", 0.84, ()), seen)
     assert (first.site, first.share, first.where, first.when) == ("force", 0.84, "at large pressures", ((1.0, 2.0),))
     assert first.law_over == "velocity"
     assert rest == [seen[0]]
-    (alone,) = _led_by(UnknownLaw("force", "velocity", "3e3 v", 0.84, ()), ())
+    (alone,) = _law_site_first(UnknownLaw("force", "velocity", "3e3 v", 0.84, ()), ())
     assert (alone.where, alone.when) == ("all over the states that were visited", ())
 
 

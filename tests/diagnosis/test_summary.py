@@ -10,7 +10,7 @@ from made import explanation
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import CommonScale, Explained, NamedEffect
 from eha_core.diagnosis.search.comparison import Entry
-from eha_core.diagnosis.summary import kind_alone, summary
+from eha_core.diagnosis.summary import common_kind, summary
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects
 
@@ -39,7 +39,7 @@ def decision(winner, *rivals):
     ],
 )
 def test_what_differs_in_the_form_of_one_law_alone_is_sure_of_its_kind(winner, rivals, kind):
-    assert kind_alone(decision(winner, *rivals)) == kind
+    assert common_kind(decision(winner, *rivals)) == kind
 
 
 def test_the_kind_is_claimed_and_not_the_law():

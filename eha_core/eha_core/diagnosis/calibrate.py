@@ -123,20 +123,20 @@ def at_step(observations: Sequence[Observation], calibration: Calibration, step_
     return replace(calibration, shooting=shooting, problem=problem, nominal=nominal, fitted=again)
 
 
-def calibrate_but_for_the_ends(
+def calibrate_without_faulty_ends(
     observations: Sequence[Observation], model: NominalModel
 ) -> tuple[tuple[Observation, ...], Calibration]:
     """Calibrate, and once more without a recording's last window where only that departs from the model."""
     calibration = calibrate(observations, model)
     rest = tuple(
-        _but_for_its_end(observation, calibration, number) for number, observation in enumerate(observations, 1)
+        _without_faulty_end(observation, calibration, number) for number, observation in enumerate(observations, 1)
     )
     if all(observation is other for observation, other in zip(rest, observations, strict=True)):
         return rest, calibration
     return rest, calibrate(rest, model, calibration.shooting.step_size)
 
 
-def _but_for_its_end(observation: Observation, calibration: Calibration, number: int) -> Observation:
+def _without_faulty_end(observation: Observation, calibration: Calibration, number: int) -> Observation:
     """A recording without its last window, if the model's excess chi^2 is concentrated there."""
     shooting = recording_alone(calibration.shooting, number)
     share = _share_of_last_window(shooting, fit_alone(calibration.shooting, calibration.fitted, number))

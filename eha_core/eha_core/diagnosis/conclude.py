@@ -102,7 +102,7 @@ def _findings(
     steps, without = ladder(evidence, final)
     sets = probable_sets(comparison, winner)
     effects = _named(evidence, winner, final, sets, list(without))
-    location = _led_by(unknown, evidence.location) if unknown else _ordered(evidence.location, winner)
+    location = _law_site_first(unknown, evidence.location) if unknown else _ordered(evidence.location, winner)
     return Diagnosis(
         path=str(recording.path),
         duration=recording.duration,
@@ -273,7 +273,7 @@ def _without_another_curve(evidence: Evidence, unknown: UnknownLaw | None) -> De
     return replace(decision, winner=evidence.comparison.nominal, judged_winner=decision.judged_nominal)
 
 
-def _led_by(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
+def _law_site_first(law: UnknownLaw, location: tuple[Location, ...]) -> tuple[Location, ...]:
     """The law's site first, however well effects of other sites could compensate for the law."""
     where, when = (location[0].where, location[0].when) if location else ("all over the states that were visited", ())
     others = (place for place in location if place.site != law.site)

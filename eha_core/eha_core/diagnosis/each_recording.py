@@ -47,8 +47,8 @@ def predicted_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recordi
     """
     models = {
         "nominal": evidence.nominal,
-        "recalibrated": _of_another(evidence, evidence.comparison.nominal.fit),
-        "augmented": _of_another(evidence, final),
+        "recalibrated": _values_for_another_recording(evidence, evidence.comparison.nominal.fit),
+        "augmented": _values_for_another_recording(evidence, final),
     }
     found = []
     for recording in tests:
@@ -61,7 +61,7 @@ def predicted_recordings(evidence: Evidence, final: Fit, tests: Sequence[Recordi
     return tuple(found)
 
 
-def _of_another(evidence: Evidence, model: Fit) -> Mapping[str, float]:
+def _values_for_another_recording(evidence: Evidence, model: Fit) -> Mapping[str, float]:
     """A fitted model's values for a recording that it was not fitted to."""
     shooting = evidence.calibration.shooting
     count = len(shooting.first_windows)

@@ -55,7 +55,7 @@ class Evidence:
         return fit_alone(shooting, result, self.lead)
 
 
-def telling_most(shooting: Shooting, fitted: Fit) -> int:
+def recording_with_largest_residual(shooting: Shooting, fitted: Fit) -> int:
     """The number, counted from one, of the recording with the largest chi^2 per sample."""
     each = [fit_alone(shooting, fitted, number) for number in range(1, len(shooting.first_windows) + 1)]
     return 1 + int(np.argmax([result.data / max(result.count, 1) for result in each]))

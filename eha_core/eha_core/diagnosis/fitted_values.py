@@ -23,7 +23,7 @@ from eha_core.parameter import Parameter
 from eha_core.plant import Composition
 from eha_core.quantities import Quantity
 
-TOLD_TOGETHER = 4.0
+COMBINED_PRECISION = 4.0
 """Factor by which the difference or sum of two values must be more precise than either, to be reported instead."""
 
 
@@ -78,7 +78,7 @@ def named_effects(
         }
         values |= _in_other_recordings(effect, final)
         active = member.span(final.values)
-        statement = _statement(effect, values) + difference_alone(effect, final)
+        statement = _statement(effect, values) + note_on_sum_or_difference(effect, final)
         statement += f", from {active[0]:.4g} s to {active[1]:.4g} s only" if active else ""
         evidence = winner.score if len(winner.effects) == 1 else wald(final, effect)
         row = NamedEffect(
@@ -149,7 +149,7 @@ def _bounded(value: FittedValue) -> Quantity:
     return Quantity(value.value, value.unit)
 
 
-def difference_alone(effect: Effect, final: Fit) -> str:
+def note_on_sum_or_difference(effect: Effect, final: Fit) -> str:
     """A note where only the difference or the sum of two values of one unit is identified; else empty."""
     rows = dict(zip(effect.parameter_names(), effect.parameters, strict=True))
     free = [parameter.name for parameter in final.free if parameter.name in rows and rows[parameter.name].switches]
@@ -163,7 +163,7 @@ def difference_alone(effect: Effect, final: Fit) -> str:
         for word, sign in (("difference", -1.0), ("sum", 1.0)):
             weights = np.array([1.0, sign])
             together = float(np.sqrt(max(weights @ block @ weights, 0.0)))
-            if uncertain and together * TOLD_TOGETHER < alone and abs(weights @ at) > IDENTIFIED * together:
+            if uncertain and together * COMBINED_PRECISION < alone and abs(weights @ at) > IDENTIFIED * together:
                 known = Quantity(float(weights @ at), rows[first].unit)
                 return f" (of these two values only the {word} is known, {known:3})"
     return ""

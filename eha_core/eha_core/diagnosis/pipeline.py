@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.attribution import attribute
-from eha_core.diagnosis.calibrate import Calibration, calibrate_but_for_the_ends
+from eha_core.diagnosis.calibrate import Calibration, calibrate_without_faulty_ends
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.conclude import conclude
-from eha_core.diagnosis.evidence import Evidence, telling_most
+from eha_core.diagnosis.evidence import Evidence, recording_with_largest_residual
 from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.diagnosis.search.columns import applicable_effects
@@ -33,7 +33,7 @@ def examine(
     model, observations, calibration = _calibrated(recordings, model, progress)
     shooting, fitted = calibration.shooting, calibration.fitted
     scales = characteristic_scales(observations, shooting, fitted)
-    lead = telling_most(shooting, fitted)
+    lead = recording_with_largest_residual(shooting, fitted)
     alternatives = _equations(observations, lead, calibration)
     calibration, comparison = find_sets(observations, calibration, applicable_effects(observations), scales, progress)
     if calibration.shooting.step_size != shooting.step_size:
@@ -57,7 +57,7 @@ def _calibrated(
     for number, observation in enumerate(seen):
         seen[number], model = with_sufficient_stroke(observation, model)
     progress("calibrating the nominal equations")
-    observations, calibration = calibrate_but_for_the_ends(seen, model)
+    observations, calibration = calibrate_without_faulty_ends(seen, model)
     return model, observations, calibration
 
 

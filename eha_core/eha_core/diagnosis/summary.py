@@ -60,7 +60,7 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
     if decision.verdict == "unknown_physics":
         return _summary_of_unknown(effects, unknown)
     named = _listed(effects)
-    kind = kind_alone(decision)
+    kind = common_kind(decision)
     if decision.verdict == "ambiguous" and kind:
         forms = " and ".join(
             " + ".join(ids) for ids in (decision.winner.ids, *(entry.ids for entry, _ in decision.rivals))
@@ -84,7 +84,7 @@ def _doubt(effect: NamedEffect) -> str:
     return f" (probability {100.0 * effect.probability:.0f} %)" if effect.probability < CERTAINTY else ""
 
 
-def kind_alone(decision: Decision) -> str:
+def common_kind(decision: Decision) -> str:
     """The kind of law, if the winner and all its rivals differ only in the form of one law; else empty."""
     kinds = set()
     for entry, _ in decision.rivals:

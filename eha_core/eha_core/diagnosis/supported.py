@@ -36,7 +36,7 @@ def supported(evidence: Evidence, decision: Decision) -> Decision:
     """The decision with the best values of its model, without unidentified effects, and never worse than the nominal
     model on held-out data."""
     if decision.verdict in ("missing_physics", "ambiguous"):
-        decision = _identified_alone(evidence, _from_nominal_values(evidence, decision))
+        decision = _without_unidentified(evidence, _from_nominal_values(evidence, decision))
     return _no_worse_than_nominal(evidence, decision)
 
 
@@ -67,7 +67,7 @@ def _with_winner(evidence: Evidence, decision: Decision, winner: Entry) -> Decis
     return replace(decision, winner=winner, judged_winner=judged)
 
 
-def _identified_alone(evidence: Evidence, decision: Decision) -> Decision:
+def _without_unidentified(evidence: Evidence, decision: Decision) -> Decision:
     """The decision without the effects whose strength the recording does not distinguish from zero."""
     problem, variance = evidence.calibration.problem, evidence.comparison.residual_variance
     before, winner = decision.winner, decision.winner

@@ -77,7 +77,7 @@ def _of_the_set(best: Entry, comparison: ModelComparison) -> Recovery:
     share = (without.data - best.fit.data) / max(without.data - best.fit.count, 1.0)
     return Recovery(
         law.effect, law.variable, best.hypothesis, best.fit, best.score, float(np.clip(share, 0.0, 1.0)),
-        _seen(law.effect, best.fit),
+        _identified_knots(law.effect, best.fit),
     )  # fmt: skip
 
 
@@ -99,7 +99,7 @@ def _beside(
     share = (base.fit.data - result.data) / max(base.fit.data - base.fit.count, 1.0)
     return Recovery(
         effect, variable, hypothesis, result, (nominal.objective - result.objective) / variance - cost,
-        float(np.clip(share, 0.0, 1.0)), _seen(effect, result),
+        float(np.clip(share, 0.0, 1.0)), _identified_knots(effect, result),
     )  # fmt: skip
 
 
@@ -175,7 +175,7 @@ def _predicted_gain(
         return 0.0
 
 
-def _seen(effect: Effect, result: Fit) -> tuple[tuple[float, float], ...]:
+def _identified_knots(effect: Effect, result: Fit) -> tuple[tuple[float, float], ...]:
     """The curve's knots that the recording identifies."""
     lower, upper = result.values[f"{effect.id}.lower"], result.values[f"{effect.id}.upper"]
     places = np.linspace(lower, upper, KNOTS)
