@@ -53,9 +53,9 @@ def hold_against(page: str, document: Document) -> None:
     assert ("How close is the model?" in answers) == (document["verdict"] == "consistent" and bool(judged(document)))
     if "How close is the model?" in answers:
         _close(document, *answers["How close is the model?"])
-    if "What is left?" in answers:
-        _rest(document, re.fullmatch("(.*)", answers["What is left?"][0]))
-        _ratios(document, answers["What is left?"][1])
+    if "How large is the residual?" in answers:
+        _rest(document, re.fullmatch("(.*)", answers["How large is the residual?"][0]))
+        _ratios(document, answers["How large is the residual?"][1])
     if "How sure?" in answers:
         _sure(document, *answers["How sure?"])
 
@@ -88,7 +88,7 @@ def _named(document: Document, match: re.Match[str]) -> None:
     assert ("more that is not named" in text) == (not complete)
     law = document["unknown"]
     assert ("a law over" in text) == (law is not None)
-    assert law is None or f"a law over {law['function_of']} that the catalogue does not name" in text
+    assert law is None or f"a law over {law['function_of']} that is not in the catalogue" in text
     _values(document, match)
 
 
@@ -147,7 +147,7 @@ def _located(document: Document, match: re.Match[str]) -> None:
     first = document["location"][0]
     assert float(match[1]) / 100.0 == round(first["share"], 2)
     assert first["share"] == max(one["share"] for one in document["location"])
-    spans = re.search(r"in (\d+) spans of time, the first from ([\d.]+) s", match[0])
+    spans = re.search(r"in (\d+) intervals, the first from ([\d.]+) s", match[0])
     if spans:
         assert int(spans[1]) == len(first["when"])
         assert abs(float(spans[2]) - first["when"][0][0]) <= 0.051
@@ -163,7 +163,7 @@ def _no_location(document: Document, match: re.Match[str]) -> None:
 def _best(document: Document, match: re.Match[str]) -> None:
     """What the evidence points to has the highest score of all, and by how much the verdict says."""
     assert document["effects"]
-    assert ("a law that the catalogue does not name" in match[0]) == (document["unknown"] is not None)
+    assert ("a law that is not in the catalogue" in match[0]) == (document["unknown"] is not None)
     assert all(title in match[0].lower() for title in titles(document))
     chosen = {one["id"] for one in document["effects"]}
     scores = {frozenset(one["effects"]): one["score"] for one in document["rivals"]}
@@ -221,7 +221,7 @@ def _better(document: Document, answer: str, basis: str) -> None:
     fit = judged(document)[name]
     match = [float(one.replace(",", "")) * SCALES[unit] for one, unit in shown]
     assert np.allclose(match, [fit["rmse_before"], fit["rmse_after"], fit["noise"]], rtol=6e-3)
-    assert ("kept from the fit" in basis) == bool(document["fit"]["held_out"])
+    assert ("held-out" in basis) == bool(document["fit"]["held_out"])
 
 
 def _close(document: Document, answer: str, basis: str) -> None:
@@ -278,7 +278,7 @@ CHECKS: Mapping[str, Mapping[str, Check]] = {
     },
     "locate": {
         r"(\d+) ?% .*": _located,
-        r"No equation is violated|No mismatch is left that an effect would explain": _no_location,
+        r"No equation is violated|No mismatch remains that an effect would explain": _no_location,
     },
     "name": {
         r"The evidence points to (.*)": _best,
@@ -291,9 +291,9 @@ CHECKS: Mapping[str, Mapping[str, Check]] = {
         r"The model stands (.*)": _stands,
         r".*": lambda document, match: (_named_alone(document), _values(document, match))[0],
     },
-    "show": {r"What is left is (.*)": _rest},
+    "show": {r"The residual is (.*)": _rest},
     "next": {
-        r"One more test would tell (.*) from (.*)": _test,
+        r"One more test would distinguish (.*) from (.*)": _test,
         r"(No further experiment is needed|No test is proposed)": _no_test,
     },
 }

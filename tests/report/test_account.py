@@ -14,7 +14,7 @@ WRITTEN = tuple(Path("out") / name for name in ("report.html", "figures", "diagn
 def test_says_what_where_how_sure_and_how_much_better(friction: Diagnosis) -> None:
     text = account(friction, WRITTEN)
     assert "the seals rub with 200 N" in text
-    assert "93 % of what the calibrated model leaves unexplained sits in the force balance" in " ".join(text.split())
+    assert "93 % of the recalibrated model's unexplained error is in the force balance" in " ".join(text.split())
     assert "coulomb_friction (force 200.4 ± 2.5 N; 95 %)" in text
     assert "moving_mass 10.946 ± 0.069 kg (nominal 9.00 kg)" in text
     assert "internal_leakage" not in text  # it did not change

@@ -34,12 +34,12 @@ def diagnosis_with(friction: Diagnosis, ratio: float, whiteness: float) -> Diagn
 @pytest.mark.parametrize(
     ("ratio", "whiteness", "said"),
     [
-        (1.0, 2.0, "What is left is noise"),
-        (1.05, WHITE - 0.01, "What is left is noise"),
-        (1.0, WHITE + 0.01, "What is left is as small as the noise, but not random in position"),
-        (0.4, 61.0, "What is left is as small as the noise, but not random in position"),
-        (1.2, 2.0, "What is left is up to 1.2 times the noise"),
-        (7.0, 90.0, "What is left is up to 7.0 times the noise"),
+        (1.0, 2.0, "The residual is noise"),
+        (1.05, WHITE - 0.01, "The residual is noise"),
+        (1.0, WHITE + 0.01, "The residual is as small as the noise, but not white in position"),
+        (0.4, 61.0, "The residual is as small as the noise, but not white in position"),
+        (1.2, 2.0, "The residual is up to 1.2 times the noise"),
+        (7.0, 90.0, "The residual is up to 7.0 times the noise"),
     ],
 )
 def test_noise_is_claimed_where_size_and_whiteness_bear_it(
@@ -48,7 +48,7 @@ def test_noise_is_claimed_where_size_and_whiteness_bear_it(
     made = diagnosis_with(friction, ratio, whiteness)
     assert left_over(made) == said
     assert {one.name: one for one in report_stages(made)}["show"].headline == said
-    assert is_noise(made) == (said == "What is left is noise")
+    assert is_noise(made) == (said == "The residual is noise")
 
 
 def test_white_noise_is_seldom_called_coloured_and_a_drift_always() -> None:
@@ -77,7 +77,7 @@ def test_an_improvement_is_told_in_the_figures_own_numbers(friction: Diagnosis, 
 
 def test_an_error_that_stays_is_not_told_as_a_change(friction: Diagnosis) -> None:
     text = improvement(diagnosis_with(friction, 90.0, 1.0))
-    assert text == "On data kept from the fit, the position's RMS error is 900 µm, as before; its noise is 10.0 µm."
+    assert text == "On held-out data, the position's RMS error is 900 µm, as before; its noise is 10.0 µm."
 
 
 def test_noise_is_called_a_floor_only_where_no_model_is_below_it(friction: Diagnosis) -> None:
@@ -99,8 +99,8 @@ def test_what_stands_below_it_is_marked_as_likely_and_true(friction: Diagnosis, 
     text = " ".join(supporting(friction))
     assert "moving mass 10.9 kg" in text
     assert "internal leakage" not in text  # it did not change
-    assert "does not tell it from stribeck" not in text
-    assert "does not tell it from Stribeck friction" in " ".join(supporting(ambiguous))
+    assert "distinguished from stribeck" not in text
+    assert "cannot be distinguished from Stribeck friction" in " ".join(supporting(ambiguous))
 
 
 def test_equations_are_said_to_hold_where_their_residuals_are_noise(consistent: Diagnosis) -> None:
@@ -145,16 +145,16 @@ def test_an_explanation_that_is_not_complete_says_so_first(friction: Diagnosis) 
     partly = explaining(friction, explained=part)
     assert "and more that is not named" in headline(partly)
     text = " ".join(supporting(partly))
-    assert "explains 91.2 % of what" in text
+    assert "explains 91.2 % of the recalibrated" in text
     assert (
         "more is missing, most likely in the valve's flow: the residual is up to 3.21 times the noise, in position"
         in text
     )
     whole = explaining(friction, explained=SimpleNamespace(share=0.9996, times_noise={"position": 1.0}, complete=True))
     assert "more" not in headline(whole)
-    assert "explains 99.96 % of what" in " ".join(supporting(whole))
+    assert "explains 99.96 % of the recalibrated" in " ".join(supporting(whole))
     nearly = SimpleNamespace(share=0.9999991, times_noise={"position": 1.0}, complete=True)
-    assert "explains more than 99.99 % of what" in " ".join(supporting(explaining(friction, explained=nearly)))
+    assert "explains more than 99.99 % of the recalibrated" in " ".join(supporting(explaining(friction, explained=nearly)))
 
 
 def test_predictions_stand_in_a_table_in_their_own_units(friction: Diagnosis) -> None:

@@ -23,7 +23,7 @@ from eha_core.diagnosis.result import (
 from eha_core.report.document import as_json, document
 
 STATEMENT = (
-    "90 % of what the calibrated model leaves unexplained sits in the force balance of the piston, near zero speed,"
+    "90 % of the recalibrated model's unexplained error is in the force balance of the piston, near zero speed,"
     " through the whole record"
 )
 KEYS = {

@@ -21,8 +21,8 @@ def test_every_headline_is_true_of_the_numbers(any_diagnosis: Diagnosis) -> None
 
 def test_the_page_answers_what_an_engineer_asks_first(friction: Diagnosis, ambiguous: Diagnosis) -> None:
     answers = key_answers(page(friction))
-    assert list(answers) == ["How much better?", "What is left?", "How sure?"]
-    assert answers["What is left?"][0] == "Noise"
+    assert list(answers) == ["How much better?", "How large is the residual?", "How sure?"]
+    assert answers["How large is the residual?"][0] == "Noise"
     assert answers["How sure?"][0] == "Next explanation 31 behind"
     assert answers["How sure?"][1].endswith("Next: Stribeck friction. Nothing added: 5,321 behind.")
     answer, basis = key_answers(page(ambiguous))["How sure?"]

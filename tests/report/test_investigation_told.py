@@ -95,7 +95,7 @@ def test_the_document_has_every_step_in_si_units(state: Investigation, tmp_path:
 def test_the_terminal_says_the_same(state: Investigation) -> None:
     lines = step_account(state).splitlines()
     assert lines[0] == "Test 2: a square of voltage (amplitude 200 mV, frequency 0.250 Hz) for 10 s"
-    assert lines[-1] == "  left: Coulomb friction (over 99 %)"
+    assert lines[-1] == "  possible: Coulomb friction (over 99 %)"
     account = ending_account(state, Path("out"))
     assert account.startswith("Ended: one set remains. Physics is missing.")
     assert "Named: Coulomb friction (force 20.00 ± 0.98 N), 95 %" in account

@@ -9,7 +9,7 @@ import pytest
 from eha_core.diagnosis.result import Location
 from eha_core.report.location import location_statement
 
-SITS = "93 % of what the calibrated model leaves unexplained sits in the force balance of the piston, near zero speed"
+SITS = "93 % of the recalibrated model's unexplained error is in the force balance of the piston, near zero speed"
 
 
 @pytest.mark.parametrize(
@@ -18,7 +18,7 @@ SITS = "93 % of what the calibrated model leaves unexplained sits in the force b
         ((), ""),
         (((0.0, 12.0),), ", through the whole record"),
         (((2.371, 6.7125),), ", from 2.371 s to 6.713 s"),
-        (((1.04, 1.5), (3.0, 3.25)), ", in 2 spans of time, the first from 1.0 s"),
+        (((1.04, 1.5), (3.0, 3.25)), ", in 2 intervals, the first from 1.0 s"),
     ],
 )
 def test_it_says_how_much_where_and_when(when: tuple[tuple[float, float], ...], ending: str) -> None:
@@ -30,6 +30,6 @@ def test_a_stretch_a_law_and_the_only_equation_are_said_as_such() -> None:
     stretch = location_statement(replace(location, all_of_stretch=True))
     assert stretch == SITS + ", through all of the stretch from 600 s on"
     law = location_statement(replace(location, law_over="velocity", all_of_stretch=True))
-    assert law == "93 % of what is missing in the force balance of the piston is a law over velocity"
+    assert law == "93 % of the missing physics in the force balance of the piston is a law over velocity"
     alone = location_statement(replace(location, alone=True))
-    assert alone == "it sits in the force balance: nothing else was recorded"
+    assert alone == "in the force balance: nothing else was recorded"

@@ -152,10 +152,10 @@ def test_numbers_on_the_page_are_those_of_the_diagnosis(friction: Diagnosis) -> 
     ("kind", "stage", "headline"),
     [
         ("friction", "name", "The evidence points to Coulomb friction"),
-        ("friction", "show", "What is left is noise"),
+        ("friction", "show", "The residual is noise"),
         ("friction", "next", "No further experiment is needed"),
         ("ambiguous", "name", "The best explanation is Coulomb friction, but it is not the only one"),
-        ("ambiguous", "next", "One more test would tell Coulomb friction from Stribeck friction"),
+        ("ambiguous", "next", "One more test would distinguish Coulomb friction from Stribeck friction"),
         ("unknown", "name", "Nothing in the catalogue explains it"),
         ("unknown", "model", "A law over velocity is missing"),
         ("consistent", "locate", "No equation is violated"),
@@ -189,7 +189,7 @@ def test_points_are_explained_where_there_are_some() -> None:
 
 def test_a_per_cent_sign_stands_apart_from_its_number(friction: Diagnosis) -> None:
     words = "".join(_read(page(friction)).words)
-    assert "93\N{NO-BREAK SPACE}% of what the calibrated model leaves unexplained sits in the force balance" in words
+    assert "93\N{NO-BREAK SPACE}% of the recalibrated model's unexplained error is in the force balance" in words
     assert not re.search(r"\d%", words)
 
 
@@ -215,7 +215,7 @@ def test_hypotheses_whose_fits_stopped_short_are_said_to_have(friction: Diagnosi
     def caption(score: float) -> str:
         return evidence_picture(replace(friction, rivals=(*friction.rivals, (("end_stop",), score)))).caption
 
-    assert "left before its fit had come to its end" in caption(-4.6e6)
+    assert "dropped before its fit had converged" in caption(-4.6e6)
     assert "left before" not in caption(-12.0)  # what parameters cost
 
 
@@ -236,7 +236,7 @@ def test_where_nothing_is_named_no_hypothesis_has_the_colour_of_a_name(unknown: 
 def test_an_unknown_law_is_drawn_and_written(unknown: Diagnosis) -> None:
     stage = {one.name: one for one in report_stages(unknown)}["model"]
     assert stage.code == "250 tanh(20 v)"
-    assert "the simulation goes on without it" in " ".join(stage.sentences)
+    assert "the simulation does not include it" in " ".join(stage.sentences)
     assert "may have biased" in " ".join({one.name: one for one in report_stages(unknown)}["calibrate"].sentences)
     assert unknown.unknown is not None
     product = replace(unknown.unknown, function_of="position, times velocity")

@@ -68,6 +68,6 @@ def test_a_residual_that_is_no_noise_is_told_in_place_of_sizes(friction: Diagnos
     bad = replace(friction, explained=left)
     assert undetected_tables(bad) == ()
     assert not_missing(bad) == (
-        "how large what was not named may be is not known, for the residual is no noise: up to 3 times its size, in"
+        "upper limits of further effects are not known, because the residual is up to 3 times the noise, in"
         " position"
     )

@@ -70,11 +70,11 @@ def test_the_table_has_a_row_an_effect_in_their_order(several: Diagnosis) -> Non
 
 def test_what_an_effect_is_worth_is_said_in_the_figures_own_numbers(several: Diagnosis) -> None:
     assert worth(several, "valve_deadband") == (
-        "Without it, the others fitted again, 30.7 times the noise is left; with it 1.00."
+        "Without it, with the others refitted, the residual is 30.7 times the noise; with it 1.00."
     )
     alone = replace(several, effects=several.effects[:1], without={})
     assert worth(alone, "valve_deadband") == (
-        "Without it, the parameters fitted again, 51.5 times the noise is left; with it 1.00."
+        "Without it, with the parameters refitted, the residual is 51.5 times the noise; with it 1.00."
     )
     assert worth(several, "end_stop") == ""
 

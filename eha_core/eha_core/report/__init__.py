@@ -1,1 +1,1 @@
-"""A diagnosis shown to people: on the terminal, as a page, as pictures, and as a recording for other tools."""
+"""Reports of a diagnosis: on the terminal, as a page, as figures, and as a recording for other tools."""

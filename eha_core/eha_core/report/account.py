@@ -27,7 +27,7 @@ _MOST_EFFECTS = 8
 
 
 def account(diagnosis: Diagnosis, written: Sequence[Path] = (), width: int = 100) -> str:
-    """Say what was found, how sure it is, what it improves, and where the files are.
+    """The findings, their uncertainty, the improvement, and where the files are.
 
     It takes 25 lines at most, four more where channels have faults, four for each effect beyond the second, and five
     for a long record.
@@ -111,8 +111,7 @@ def _notes(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _section(label: str, text: str, width: int, more: int = 0) -> list[str]:
-    """The text under its label, cut short where it would fill the screen; the report has it all. It may take so many
-    lines `more` than usual."""
+    """The text beside its label, cut after its usual number of lines and `more`; the report has it all."""
     if not text:
         return []
     wrapped = _cut(text, width - _INDENT, _LONGEST.get(label or "Named", 1) + more)
@@ -120,7 +119,7 @@ def _section(label: str, text: str, width: int, more: int = 0) -> list[str]:
 
 
 def _cut(text: str, width: int, longest: int) -> list[str]:
-    """So many lines at most: as many whole items of a list as fit, with how many are left out; else whole words."""
+    """At most `longest` lines: as many whole items of a list as fit, and the number of those left out; else words."""
     items = text.split("; ")
     lines = wrap(text, width)
     for kept in range(len(items) - 1, 0, -1):

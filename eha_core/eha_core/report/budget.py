@@ -56,13 +56,13 @@ def _told(figure: Told) -> dict[str, float]:
 
 
 def account(budget: Budget) -> str:
-    """The budget as a person reads it on the terminal."""
+    """The budget as text for the terminal."""
     scale = scale_for("m", max(budget.today.value, budget.modelled.value))
     lines = [*wrap(f"{budget.source}: {_task(budget)}", _WIDTH), ""]
     lines += [f"RMSE of the tracking error [{scale.unit}]{'share':>24}{'gain of repair alone':>24}"]
     lines += [_row(_MODELLED, scale, budget.modelled)]
     lines += [_row(_name(row), scale, row.share, row.gain if row.repairable else None) for row in budget.shares]
-    lines += [_row("today, the sum", scale, budget.today), "", "repairs, the one that gains most first; RMSE then"]
+    lines += [_row("today, the sum", scale, budget.today), "", "repairs, the largest gain first; RMSE after each"]
     lines += [_row(f"{k}. {_plain(step.name)}", scale, step.rmse) for k, step in enumerate(budget.order, 1)]
     lines += [""] if budget.remarks else []
     for remark in budget.remarks:
@@ -89,7 +89,7 @@ def _row(name: str, scale: Scale, first: Told, second: Told | None = None) -> st
 
 
 def _shown(figure: Told, scale: Scale) -> str:
-    """Value and half of the interval, with digits as that deserves; without an interval three."""
+    """Value and half of the interval, with the digits that the interval justifies; three digits without one."""
     value, reach = figure.value / scale.factor, figure.reach / scale.factor
     if not reach > 0.0:
         return short(value)
@@ -114,7 +114,7 @@ def write_budget(budget: Budget, folder: Path) -> tuple[Path, ...]:
 
 
 def waterfall(budget: Budget) -> Figure:
-    """The way from today's RMSE, repair by repair, to the repaired rig's; and each departure's share and gain."""
+    """Figure of today's RMSE, repair by repair, down to the repaired rig's; and each departure's share and gain."""
     from matplotlib.figure import Figure  # plotting loads slowly, and a table needs none
 
     from eha_core.report.picture import COLOURS
@@ -133,7 +133,7 @@ def waterfall(budget: Budget) -> Figure:
 
 
 def _steps(budget: Budget) -> list[tuple[str, float, float, str]]:
-    """Rows of the waterfall: name, from where to where [m], and the colour's role."""
+    """Rows of the waterfall: name, begin and end [m], and the colour's role."""
     found = [("today", 0.0, budget.today.value, "before")]
     at = budget.today.value
     for step in budget.order:

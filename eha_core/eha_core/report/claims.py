@@ -1,4 +1,4 @@
-"""What may be claimed of the errors: a sentence stands over figures only where they bear it."""
+"""Sentences about the errors, each written only where the figures support it."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.wording import channel_title, listed
 
 NOISE_ALONE = 1.1
-"""Times the noise; an error below that is as small as noise: its estimate is no better than some per cent (assumed)."""
+"""Times the noise below which an error counts as noise: the noise is known within some per cent at best (assumed)."""
 
 WHITE = 3.5
-"""Standard deviations; the largest of 19 autocorrelations of white noise exceeds this once in a hundred channels."""
+"""Standard deviations that the largest of 19 autocorrelations of white noise exceeds once in a hundred channels."""
 
 VIOLATED = 1.5
 """Mean square of an equation's residual, in units of its noise, above which the equation does not hold (assumed)."""
 
 
 def judged(diagnosis: Diagnosis) -> Mapping[str, ChannelFit]:
-    """The errors on data kept from the fit; on all data where none were kept."""
+    """The errors on held-out data; on all data where none were held out."""
     return diagnosis.held_out or diagnosis.training
 
 
@@ -42,22 +42,22 @@ def coloured(diagnosis: Diagnosis) -> list[str]:
 
 
 def is_noise(diagnosis: Diagnosis) -> bool:
-    """Whether what the final model leaves is as small as the noise and as random."""
+    """Whether the final model's residual is as small as the noise, and white."""
     return largest_ratio(diagnosis) < NOISE_ALONE and not coloured(diagnosis)
 
 
 def left_over(diagnosis: Diagnosis) -> str:
-    """What the final model leaves, as a headline."""
+    """The final model's residual, as a headline."""
     ratio = largest_ratio(diagnosis)
     if is_noise(diagnosis):
-        return "What is left is noise"
+        return "The residual is noise"
     if not ratio >= NOISE_ALONE:
-        return f"What is left is as small as the noise, but not random in {_titles(coloured(diagnosis))}"
-    return f"What is left is up to {ratio:.1f} times the noise"
+        return f"The residual is as small as the noise, but not white in {_titles(coloured(diagnosis))}"
+    return f"The residual is up to {ratio:.1f} times the noise"
 
 
 def left_in_words(diagnosis: Diagnosis) -> str:
-    """How large what the final model leaves is and whether it is white; empty where nothing was judged."""
+    """The size of the final model's residual, and whether it is white; empty where no error is known."""
     ratios = _ratios(diagnosis)
     if not ratios or not diagnosis.whiteness:
         return ""
@@ -76,25 +76,25 @@ def _titles(names: list[str]) -> str:
 
 
 def equations_hold(diagnosis: Diagnosis) -> bool:
-    """Whether every equation that was held against the measured channels leaves noise alone."""
+    """Whether the residual of every equation evaluated with measured channels is noise."""
     residuals = [residual for _, residual in diagnosis.pictures.equations.values() if len(residual)]
     return all(float(np.mean(residual**2)) < VIOLATED for residual in residuals)
 
 
 def told_channel(diagnosis: Diagnosis) -> str:
-    """The channel whose error represents all: the position, or the first that there is; none if it is not known."""
+    """The channel whose error represents all: the position, or else the first; empty if its error is not known."""
     fits = judged(diagnosis)
     name = _leading_channel(fits)
     return name if name and np.isfinite(fits[name].rmse_after) else ""
 
 
 def _leading_channel(fits: Mapping[str, ChannelFit]) -> str:
-    """The position, or the first channel that there is."""
+    """The position, or else the first channel; empty without any."""
     return "position" if "position" in fits else next(iter(fits), "")
 
 
 def calibration_alone(diagnosis: Diagnosis) -> str:
-    """What calibration does to the error of the position, or of the first channel there is; empty if not known."""
+    """The error of the position, or else of the first channel, before and after calibration; empty if not known."""
     fits = judged(diagnosis)
     name = _leading_channel(fits)
     if not name or not np.isfinite(fits[name].rmse_calibrated):
@@ -106,12 +106,12 @@ def calibration_alone(diagnosis: Diagnosis) -> str:
 
 
 def improvement(diagnosis: Diagnosis) -> str:
-    """What the added physics does to the error of the position, or of the first channel there is."""
+    """The error of the representative channel without and with the added physics; empty if not known."""
     name = told_channel(diagnosis)
     if not name:
         return ""
     fit, unit = judged(diagnosis)[name], CHANNEL_KINDS[name].unit
-    where = "On data kept from the fit, the" if diagnosis.held_out else "The"
+    where = "On held-out data, the" if diagnosis.held_out else "The"
     before, after = quantity(fit.rmse_before, unit), quantity(fit.rmse_after, unit)
     noise = quantity(fit.noise, unit)
     if before == after:
@@ -128,7 +128,7 @@ def _at_noise(diagnosis: Diagnosis, name: str, fit: ChannelFit) -> bool:
 
 
 def noise_floor(diagnosis: Diagnosis) -> str:
-    """What the estimated noise means: a floor only where no model is below it."""
+    """What the estimated noise means: it is a lower limit only if no model is below it."""
     below = [name for name, fit in judged(diagnosis).items() if fit.rmse_after * NOISE_ALONE < fit.noise]
     if not below:
         return "Each channel's noise is estimated from the data themselves; no model can be expected to come closer."

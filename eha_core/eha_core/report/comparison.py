@@ -1,4 +1,4 @@
-"""The measured recording and what two models make of it, as one MCAP for PlotJuggler, Foxglove and `ros2 bag play`."""
+"""The measured and the modelled channels as one MCAP for PlotJuggler, Foxglove and `ros2 bag play`."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _PRESSURE_TOPICS = {"pressure_a": "chamber_a/pressure", "pressure_b": "chamber_b
 
 def write_comparison(diagnosis: Diagnosis, path: Path) -> int:
     """Write /measured, /nominal, /recalibrated and /augmented with the simulator's topics below each, and /residual
-    with measured less augmented as plain numbers; return the number of messages.
+    with measured minus augmented as plain numbers; return the number of messages.
 
-    Stamps are the recording's own, so the file lies beside it on one time axis. Pressures are absolute, as their
-    message defines them.
+    Stamps are the recording's own, so that both files share one time axis. Pressures are absolute, as their message
+    defines them.
 
     Raises:
         RecordingError: the file exists already or cannot be written.

@@ -1,4 +1,4 @@
-"""What the page and the figures show, made once for both."""
+"""The contents that the page and the figures share, made once."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Contents:
 
     @property
     def figures(self) -> tuple[Picture, ...]:
-        """The pictures that are written as files: those of a stage's parts stand together on the first screen."""
+        """The pictures that are written as files; those of a stage's parts are all on the first screen."""
         return (*self.first_screen, *(picture for stage in self.stages for picture in stage.pictures))
 
 
 def contents_of(diagnosis: Diagnosis) -> Contents:
-    """Everything that there is to see of a diagnosis."""
+    """All pictures and stages of a diagnosis."""
     found = laws(diagnosis)
     return Contents(pictures(diagnosis, found), report_stages(diagnosis, found))

@@ -1,4 +1,4 @@
-"""A designed test as a table for people, a document for programs, a picture, and what the reference node loads."""
+"""A designed test as a table, a JSON document, a figure, and a parameters file for the reference node."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SCHEMA = "eha.design/1"
 FILE = "test.yaml"
 UNITS = {"position": "m", "speed": "m/s", "pressure": "Pa", "energy": "J", "voltage": "V"}
-"""Of the limits; of the way to a vacuum only the share is told."""
+"""Units of the limits; the approach to a vacuum is only given as a share."""
 
 _WIDTH = 100
 _NAME, _CELL = 34, 34
@@ -58,7 +58,7 @@ def _row(row: Detectable | Noticeable) -> dict[str, Any]:
 
 
 def account(designed: DesignedTest) -> str:
-    """The design as a person reads it on the terminal."""
+    """The design as text for the terminal."""
     lines = [*wrap(_statement(designed), _WIDTH), ""]
     head = ("smallest size found, 95 %", "designed test", "given command")
     lines.append(f"{head[0]:{_NAME + 4}}{head[1]:{_CELL}}{head[2]}")
@@ -97,7 +97,7 @@ def _size(row: Detectable | Noticeable) -> str:
 
 
 def _shares(designed: DesignedTest) -> Iterator[tuple[str, str, str]]:
-    """Each limit that there is in words, and the shares of it that the two tests use."""
+    """Each finite limit in words, and the shares of it that the two tests use."""
     margins = designed.margins
     for name, share in margins.shares[0].items():
         limit = getattr(margins.limits, name, None)
@@ -135,7 +135,7 @@ def write_design(designed: DesignedTest, folder: Path) -> tuple[Path, ...]:
 
 
 def picture(designed: DesignedTest) -> Figure:
-    """The voltage, and position, speed and pressures with their limits: as modelled, and of all moved rigs."""
+    """Figure of voltage, position, speed and pressures with their limits: as modelled, and over the sampled rigs."""
     from matplotlib.figure import Figure  # plotting loads slowly, and a table needs none
 
     from eha_core.report.picture import COLOURS

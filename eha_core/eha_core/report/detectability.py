@@ -1,4 +1,4 @@
-"""A certificate of a planned test as a table for people, as a document for programs, and as a picture."""
+"""A certificate of a planned test as a table, a JSON document and a figure."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SCHEMA = "eha.detect/1"
 
 FULL_SCALES = {"m": "stroke", "A": "rated current", "N": "stall force", "Pa": "supply pressure"}
-"""What a size of each unit is a share of."""
+"""The full scale of which a size of each unit is a share."""
 
 _WIDTH = 100
 _NAME, _SIZE, _BESIDE, _LISTED = 38, 23, 28, 3
@@ -62,7 +62,7 @@ def as_json(certificate: Certificate) -> str:
 
 
 def account(certificate: Certificate) -> str:
-    """The certificate as a person reads it on the terminal."""
+    """The certificate as text for the terminal."""
     more = any(row.with_pressures is not None for row in certificate.effects)
     lines = [*wrap(_test(certificate), _WIDTH), ""]
     head = f"{'smallest size found with 95 % probability':{_NAME + 2 + _SIZE}}"
@@ -130,7 +130,7 @@ def write_certificate(certificate: Certificate, folder: Path) -> tuple[Path, ...
 
 
 def picture(certificate: Certificate) -> Figure:
-    """The smallest size of each effect that is found, over the size that is usual on a bench actuator."""
+    """Figure of each effect's smallest detectable size, divided by its usual size on a bench actuator."""
     from matplotlib.figure import Figure  # plotting loads slowly, and a table needs none
 
     from eha_core.report.picture import COLOURS

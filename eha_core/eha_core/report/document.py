@@ -32,7 +32,7 @@ SCHEMA = "eha.diagnosis/1"
 
 
 def document(diagnosis: Diagnosis) -> dict[str, Any]:
-    """The diagnosis as plain JSON types, SI throughout. A number that is not finite, so not known, becomes null."""
+    """The diagnosis as plain JSON types, SI throughout. A number that is not finite is unknown and becomes null."""
     plain: dict[str, Any] = _plain(
         {
             "schema": SCHEMA,
@@ -109,7 +109,7 @@ def _trace_step(step: TraceStep) -> dict[str, Any]:
 
 
 def _fault(number: int, fault: Fault, recordings: int) -> dict[str, Any]:
-    """A fault of a channel; of several recordings also which one's."""
+    """A fault of a channel; with several recordings, also the recording's number."""
     row = {
         "channel": fault.channel, "fault": fault.fault, "from": fault.start, "to": fault.end, "seen": fault.seen,
         "remedy": fault.remedy, "excluded": fault.excludes,
@@ -137,7 +137,7 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
 
 
 def _value(value: FittedValue) -> dict[str, Any]:
-    """A fitted value; with its interval where two deviations to either side are none."""
+    """A fitted value; with its interval where the standard deviation gives none."""
     row = _rows([value], ("value", "std", "unit"))[0]
     return row if value.interval is None else {**row, "interval": value.interval}
 
@@ -158,7 +158,7 @@ def _fits(fits: Mapping[str, ChannelFit]) -> dict[str, Any]:
 
 
 def _long_records(records: Sequence[LongRecord]) -> dict[str, Any]:
-    """The records of which stretches were fitted; no such word where there is none."""
+    """The long records of which only stretches were fitted; no key without any."""
     found = []
     for record in records:
         row = _rows([record], ("path", "stretches", "window", "passed_over", "departs", "statement"))[0]

@@ -1,5 +1,5 @@
-"""Several recordings, on the terminal and on the page: what each says of the joint model, and how a recording that it
-never saw is predicted."""
+"""Several recordings, on the terminal and on the page: the joint model's error in each, and its predictions of test
+recordings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MODELS = ("nominal", "recalibrated", "augmented")
 
 
 def each_recording(diagnosis: Diagnosis) -> list[str]:
-    """A line for every recording that the model was fitted to, and a table for every one it was only tested on."""
+    """A line for each recording that the model was fitted to, and a table for each that it was only tested on."""
     lines = ["Recordings fitted together"] if diagnosis.together else []
     for recording in diagnosis.together:
         left = ", ".join(
@@ -52,7 +52,7 @@ def _tested(tested: PredictedRecording) -> Iterator[str]:
 
 
 def _row(name: str, composition: Composition) -> Parameter:
-    """What a value of these parts is called, its symbol and its unit; of an effect's, by its full name."""
+    """The declaration (name, symbol, unit) of a parameter of the plant or of an effect, by its full name."""
     for effect in composition.effects:
         if name in effect.parameter_names():
             place = effect.parameter_names().index(name)
@@ -61,7 +61,7 @@ def _row(name: str, composition: Composition) -> Parameter:
 
 
 def recording_tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    """The same for the page: a table of the recordings fitted together, and one for each that was only predicted."""
+    """The same as tables: one of the recordings fitted together, and one for each long or test recording."""
     tables = [_together(diagnosis)] if diagnosis.together else []
     whole = (_whole(record) for record in diagnosis.long_records)
     return (*tables, *whole, *(_prediction(tested) for tested in diagnosis.tests))
@@ -81,11 +81,11 @@ def _together(diagnosis: Diagnosis) -> Table:
     )
     titles = (f"{words(row.name)} {row.symbol}" for row in own.values())
     headings = ("recording", *(f"{channel_title(name)} [× noise]" for name in channels), *titles)
-    return Table(headings, rows, "Recordings fitted together: held-out errors, and the values that are their own")
+    return Table(headings, rows, "Recordings fitted together: held-out errors and per-recording values")
 
 
 def _whole(record: LongRecord) -> Table:
-    """Parts of a long record: how much of each was fitted, and what two models err by in it."""
+    """Parts of a long record: how much of each was fitted, and the errors of two models in it."""
     names = list(record.blocks[0].after) if record.blocks else []
     rows = []
     for part in np.array_split(np.arange(len(record.blocks)), min(MOST_ROWS, max(len(record.blocks), 1))):

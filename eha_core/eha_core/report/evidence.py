@@ -18,15 +18,15 @@ IN_FULL = 2
 """Effects of a hypothesis that are listed; a larger set is listed by how it differs from the one that was named."""
 
 STUB = 1.6
-"""How long the bar of what is not behind at all is drawn, as a factor on the logarithmic axis."""
+"""Length of the best hypothesis' bar, as a factor on the logarithmic axis."""
 
 STOPPED_SHORT = 100.0
-"""How far behind the model that adds nothing a hypothesis is only where its fit was not taken to its end: what its
-parameters cost is less than that (assumed)."""
+"""Evidence behind the recalibrated model from which a hypothesis' fit has not converged: its parameters cost less
+(assumed)."""
 
 COLOURED = "Teal: what was named; ochre: what cannot be distinguished from it."
-UNNAMED = "None of these explains enough of what is missing to be named."
-STOPPED = " What is further behind than the model that adds nothing was left before its fit had come to its end."
+UNNAMED = "None of these explains enough of the mismatch to be named."
+STOPPED = " A hypothesis that is worse than the model that adds nothing was dropped before its fit had converged."
 
 MILLION = 1e6
 
@@ -82,8 +82,9 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
         x_ticks=ticks,
     )
     caption = (
-        "Evidence is the gain in χ² less what the parameters added cost; shown is how far each hypothesis is behind the"
-        f" best. Left of the dotted line the recording cannot tell the two apart. {UNNAMED if unnamed else COLOURED}"
+        "Evidence is the reduction of χ² minus the cost of the added parameters; the bars show how far each hypothesis"
+        " is behind the best. Left of the dotted line, it cannot be distinguished from the best."
+        f" {UNNAMED if unnamed else COLOURED}"
         f"{STOPPED if short else ''} {_screened(diagnosis)}"
     )
     return Picture(name, (Group((panel,)),), title=title, caption=caption)
@@ -108,7 +109,7 @@ def _screened(diagnosis: Diagnosis) -> str:
     blind = [effect.id for effect in left if effect.needs and not set(effect.needs) <= seen]
     weak = [effect.id for effect in left if effect.id not in blind]
     weakly = listed(list(map(effect_title, weak)))
-    remarks = [f"Not in any of these sets, for they gain too little: {weakly}."]
+    remarks = [f"In none of these sets, because they gain too little: {weakly}."]
     if blind:
         remarks.append(f"Not tried, as their channels were not recorded: {listed(list(map(effect_title, blind)))}.")
     return " ".join(remarks if weak else remarks[1:])

@@ -20,13 +20,13 @@ USUAL = {
 
 
 def channels_to_record(diagnosis: Diagnosis, experiment: Experiment) -> tuple[str, ...]:
-    """What the recording had, and what the test asks for beside."""
+    """The recording's channels and those that the test needs."""
     wanted = {*diagnosis.channels, *experiment.record}
     return tuple(name for name in USUAL if name in wanted)
 
 
 def commands(experiment: Experiment, file: str = FILE) -> str:
-    """What to type: on the rig, on the simulator instead, and afterwards."""
+    """The commands that run the test on the rig or on the simulator, and that diagnose it."""
     launch = f"ros2 launch eha_sim_node next_experiment.launch.yaml file:={file}"
     return (
         f"{launch}                  # on the rig, {experiment.duration:g} s\n"
@@ -57,7 +57,7 @@ def _rows(parameters: Mapping[str, object]) -> Iterator[str]:
 
 
 def _scalar(value: object) -> str:
-    """A value of the type it has: ROS takes 3 for an integer, and 1e-3 without a point for text."""
+    """A value in YAML that keeps its type: ROS reads 3 as an integer, and 1e-3 without a point as text."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):

@@ -1,4 +1,4 @@
-"""Draws the same pictures with matplotlib, as PNG files."""
+"""Draws the report's pictures with matplotlib, as PNG files."""
 
 from __future__ import annotations
 
@@ -46,10 +46,11 @@ SHOWN = 75
 PIXELS_PER_INCH = 100.0
 WIDTH = 1100.0
 LEFT, RIGHT, AXIS, TITLE, PANEL_TITLE, UNTITLED, LEGEND_ROW = 66.0, 14.0, 52.0, 40.0, 30.0, 14.0, 30.0
-"""Pixels beside a panel, under the last of a group, above a picture and a panel, and of a row of the legend."""
+"""Pixels left and right of a panel, below a group, above a picture, above a panel with and without a title, and of a
+row of the legend."""
 
 CHARACTER = 6.6
-"""Pixels of a letter beside a row."""
+"""Width of a letter of a row's label [pixels]."""
 
 LEGEND_COLUMNS = 5
 
@@ -71,8 +72,8 @@ def write_figures(pictures: Iterable[Picture], folder: Path) -> tuple[Path, ...]
         path = folder / f"{picture.name}.png"
         figure = drawn(picture)
         figure.set_dpi(RESOLUTION)
-        # drawn once, where savefig would draw everything twice; nothing is translucent, and weak compression of three
-        # colours takes half the time and fewer bytes than a stronger one of four
+        # savefig would draw everything twice; nothing is translucent, and three colour channels with weak compression
+        # take half the time and fewer bytes than four with a stronger one
         canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()
         colours = Image.fromarray(np.asarray(canvas.buffer_rgba())[:, :, :3].copy())
@@ -112,7 +113,7 @@ def drawn(picture: Picture) -> Drawn:
 
 
 def _group(figure: Figure, group: Group, left: float, right: float, ceiling: float, height: float) -> None:
-    """The panels of a group below each other, their left and right ends and the uppermost's title given [pixels]."""
+    """Draw the panels of a group below each other, between `left` and `right` and below `ceiling` [pixels]."""
     shared: Any = None
     for place, panel in enumerate(group.panels):
         bottom = ceiling - _above(panel) - panel.height
@@ -134,14 +135,14 @@ def _height(group: Group) -> float:
 
 
 def _left(group: Group) -> float:
-    """The pixels that the labels beside a group's panels take."""
+    """Width of the labels left of a group's panels [pixels]."""
     names = [name for panel in group.panels for name in panel.row_labels]
     longest = max((len(part) for name in names for part in name.split(" + ")), default=0)
     return LEFT + (CHARACTER * longest - LEFT / 2.0 if longest else 0.0)
 
 
 def legend_below(figure: Figure, handles: Sequence[Any], place: str, columns: int, **options: Any) -> None:
-    """Put a legend under everything that is in a figure: what Matplotlib before 3.7 has no `place` for."""
+    """Put a legend below everything in a figure; Matplotlib before 3.7 has no location for that."""
     height = LEGEND_ROW / PIXELS_PER_INCH * math.ceil(len(handles) / columns) / figure.get_figheight()
     figure.set_layout_engine("constrained", rect=(0.0, height, 1.0, 1.0 - height))
     figure.legend(handles=handles, loc=place, ncols=columns, frameon=False, **options)
@@ -153,7 +154,7 @@ def _draw(axes: Any, panel: Panel) -> None:
         axes.set_ylim(len(panel.names) - 0.4, -0.6)
     for mark in panel.marks:
         _mark(axes, mark)
-    # at a given height: to find one itself, Matplotlib measures every label
+    # at a fixed height: without one, Matplotlib measures every label
     axes.set_title(panel.title, loc="left", y=1.0, fontsize=9.5, fontweight="bold", color=COLOURS["measured"])
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)

@@ -1,4 +1,4 @@
-"""Writes everything that `eha diagnose` leaves in its folder."""
+"""Writes the output files of `eha diagnose`."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from eha_core.report.experiment_file import FILE, experiment_file
 
 def write_report(diagnosis: Diagnosis, folder: Path) -> tuple[Path, ...]:
     """Write report.html, figures/, diagnosis.json, fitted.yaml, comparison.mcap and, where a test is proposed,
-    next_experiment.yaml; files of an earlier run go.
+    next_experiment.yaml; those of an earlier run are removed.
 
-    Returns what was written, most readable first. Raises EhaError where the folder cannot be written to.
+    Returns the paths, the most readable first. Raises EhaError where the folder cannot be written to.
     """
     # plotting loads slowly, and the document alone needs none
     from eha_core.report.comparison import write_comparison

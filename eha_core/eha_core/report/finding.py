@@ -1,4 +1,4 @@
-"""The finding as an engineer would say it: what is missing, how large, how sure, and what it is worth."""
+"""The finding in sentences: what is missing, how large, how sure, and how much of the mismatch it explains."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from eha_core.report.wording import (
 )
 
 NEARLY_ALL = 0.9999
-"""A larger share is stated as more than this one, as its last digits are those of the noise."""
+"""A larger share is stated as "more than" this one, because its last digits are noise."""
 
 MOST_VALUES = 2
-"""Values of one effect that the first sentence gives; the tables have all."""
+"""Values of one effect in the first sentence; the tables have all."""
 
 IN_A_SENTENCE = 3
-"""Effects whose values the first sentence gives; of more it has the names, and a table the values."""
+"""Most effects whose values the first sentence gives; of more it gives the names, and a table the values."""
 
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
 
@@ -60,10 +60,10 @@ def missing(effect: NamedEffect) -> Missing:
 
 
 def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
-    """The parameters that the recording tells from nothing: all but those whose interval holds a neutral zero.
+    """The parameters that the recording identifies: all but those whose interval includes a neutral zero.
 
-    An edge that may be sharp is no finding. An effect of which no parameter is identified keeps them all.
-    A term of a law of given motion that the catalogue does not have keeps them too.
+    A rounded edge that may be sharp is no finding. An effect without an identified parameter keeps all of them, and so
+    does a term of a law of given motion that is not in the catalogue.
     """
     declared = next((entry.parameters for entry in effects() if entry.id == effect.id), ())
     neutral = {row.name for row in declared if row.nominal == 0.0}
@@ -76,7 +76,7 @@ def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
 
 
 def fitted_in_words(fitted: FittedValue) -> str:
-    """A value with its 95 % interval, or the end of that which is known."""
+    """A value with its 95 % interval, or the known end of that."""
     if fitted.interval is not None:
         return bounds(*fitted.interval, fitted.unit)
     return within(fitted.value, fitted.std, fitted.unit, SURE)
@@ -88,7 +88,7 @@ def headline(diagnosis: Diagnosis) -> str:
         return sentence(diagnosis.summary.removeprefix(f"{VERDICT_TITLES[diagnosis.verdict]}: "))
     certain = "The model most likely leaves out" if diagnosis.verdict == "ambiguous" else "The model leaves out"
     law = diagnosis.unknown
-    beside = f", and a law over {law.function_of} that the catalogue does not name" if law else ""
+    beside = f", and a law over {law.function_of} that is not in the catalogue" if law else ""
     more = beside + ("" if is_complete(diagnosis) else ", and more that is not named")
     if len(diagnosis.effects) > IN_A_SENTENCE:
         return f"{certain} {counted(len(diagnosis.effects))} effects{more}: {names_listed(diagnosis)}."
@@ -106,7 +106,7 @@ def names_listed(diagnosis: Diagnosis) -> str:
 
 
 def is_complete(diagnosis: Diagnosis) -> bool:
-    """Whether the named effects leave nothing but noise."""
+    """Whether the residual with the named effects is noise."""
     return diagnosis.explained.complete or diagnosis.explained.vague
 
 
@@ -122,10 +122,9 @@ def effects_listed(diagnosis: Diagnosis) -> str:
 
 
 def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """What everything below it is to be read by: data taken although they cannot be right, a damaged file, holes and
-    faults of channels."""
+    """Warnings above all findings: implausible data that were accepted, a damaged file, gaps and faults of channels."""
     doubts = [remark for remark in diagnosis.remarks if "warning: " in remark]
-    # of several recordings, a remark begins with the path of its own
+    # with several recordings, a remark begins with its recording's path
     shown = [sentence(remark) if remark.startswith("warning") else f"{remark}." for remark in doubts]
     damaged = f"Warning: the file is damaged, and this rests on what could be read: {diagnosis.damaged}."
     faults = (sentence(plain(line)) for line in faults_told(diagnosis))
@@ -133,7 +132,7 @@ def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 
 def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """The sentences below it: the likely causes, changed parameters, and how much of the mismatch is explained."""
+    """The sentences below the headline: likely causes, changed parameters, and the explained share of the mismatch."""
     causes = [(absent.title, absent.cause) for absent in map(missing, diagnosis.effects) if absent.cause]
     likely = "; ".join(f"{cause} ({title})" for title, cause in causes)
     rivals = listed([" + ".join(map(effect_title, alternative.effects)) for alternative in diagnosis.alternatives])
@@ -142,7 +141,7 @@ def supporting(diagnosis: Diagnosis) -> tuple[str, ...]:
     values = listed([f"{words(parameter.name)} {_departure(parameter)}" for parameter in shown])
     found = (
         f"Likely cause{'s' if len(causes) > 1 else ''}: {likely}." if likely else "",
-        f"This recording does not tell it from {rivals}." if rivals else "",
+        f"In this recording it cannot be distinguished from {rivals}." if rivals else "",
         f"Parameters that differ from the nominal model: {values}{' and others' if len(changed) > len(shown) else ''}."
         if changed and not diagnosis.biased
         else "",
@@ -164,17 +163,17 @@ def _departure(parameter: FittedParameter) -> str:
 
 
 def explanation(diagnosis: Diagnosis) -> str:
-    """How much of the mismatch the named effects explain, and where the rest sits, where the diagnosis says so."""
+    """How much of the mismatch the named effects explain, and the likely sites of the rest; empty if not known."""
     explained = diagnosis.explained
     if not explained.times_noise or not diagnosis.effects:
         return ""
     nearly = explained.share >= NEARLY_ALL
     share = f"more than {100.0 * NEARLY_ALL:g} %" if nearly else f"{100.0 * explained.share:.4g} %"
-    said = f"The named physics explains {share} of what the recalibrated model leaves beyond noise"
+    said = f"The named physics explains {share} of the recalibrated model's error beyond the noise"
     if explained.complete:
         return f"{said}."
     if explained.vague:
-        return f"{said}; how strong each of it is, the recording does not tell."
+        return f"{said}; the recording does not determine how strong each effect is."
     name, most = max(explained.times_noise.items(), key=lambda item: item[1])
     sites = listed([SITES[location.site].words for location in explained.left_over])
     where = f", most likely {sites}" if sites else ""

@@ -1,4 +1,4 @@
-"""The pictures of the first screen: the laws, what each model leaves, the evidence, and residuals over time."""
+"""The pictures of the first screen: the laws, each model's residual, the evidence, and residuals over time."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ DOTS = 700
 """Most points of one law."""
 
 SURROUND = 0.12
-"""Of a law's height, that is shown above and below it; points about a reversal lie far outside."""
+"""Share of a law's height that is shown above and below it; points at a reversal lie far outside."""
 
 
 def pictures(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tuple[Picture, ...]:
-    """The laws (those found already, if they are given), what each model leaves, the evidence, and the residuals; those
+    """The laws (`found`, if given), each model's residual, the evidence, and the residuals over time; the last come
     first where a part of the recording was excluded."""
     rivals = bool(diagnosis.rivals)
     title = "How far other explanations are behind"
@@ -63,8 +63,8 @@ def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) ->
     )
     if any(len(law.points_x) for law in found.values()):
         caption += (
-            " Points: the law as the measured channels give it by the law's equation, without any simulation; of a"
-            " force, where the piston neither stops nor reverses."
+            " Points: the law computed from the measured channels by its equation, without simulation; for a force,"
+            " only where the piston neither stops nor reverses."
         )
     return Picture(
         "0-laws", tuple(Group((law_panel(law),)) for law in found.values()), columns, "The missing physics", caption
@@ -72,9 +72,9 @@ def law_picture(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) ->
 
 
 def law_panel(law: Law, height: int = 250) -> Panel:
-    """The law with its band, its points and what the nominal model has in its place."""
+    """The law with its band and points, and the nominal model's law."""
     across = scale_for(law.across.unit, float(np.abs(law.x).max(initial=0.0)))
-    # two axes of one unit are of one scale, so that a slope of one is seen as one
+    # two axes with the same unit have the same scale, so that a slope of one looks like one
     same = law.up.unit == law.across.unit
     up = across if same else scale_for(law.up.unit, float(np.abs(law.y).max(initial=0.0)))
     x, marks = law.x / across.factor, list[Mark]()
@@ -108,9 +108,9 @@ def residual_picture(diagnosis: Diagnosis) -> Picture:
         " of the fit. Grey: two standard deviations of the noise."
     )
     if any(excluded(diagnosis, name) for name in names):
-        caption += " Shaded: excluded, since the recording has a hole or a fault there."
+        caption += " Shaded: excluded, because the recording has a gap or a fault there."
     columns = (1,) * max(1, len(names))
-    title = "Residuals, measured less modelled: nominal model and final model"
+    title = "Residuals, measured minus modelled: nominal model and final model"
     return Picture("0-residuals", groups, columns, title, caption)
 
 

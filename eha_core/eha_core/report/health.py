@@ -1,4 +1,4 @@
-"""What is said and shown of the faults of a recording's channels."""
+"""The faults of a recording's channels, in words and in figures."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ Intervals = tuple[tuple[float, float], ...]
 
 
 def faults_told(diagnosis: Diagnosis) -> Iterator[str]:
-    """One line for each channel and kind of fault, that of several recordings with its number."""
+    """One line for each channel and kind of fault; with several recordings, with the recording's number."""
     for number in sorted({number for number, _ in diagnosis.health}):
         for line in in_words([fault for other, fault in diagnosis.health if other == number]):
             yield f"recording {number}: {line}" if diagnosis.together else line
 
 
 def excluded(diagnosis: Diagnosis, name: str) -> Intervals:
-    """The spans [s] in which a channel of the recording that is drawn was excluded or has a hole, or in which the
-    command was lost."""
+    """The intervals [s] in which a channel of the recording shown was excluded or has a gap, or in which the command
+    was lost."""
     paths = [recording.path for recording in diagnosis.together]
     drawn = paths.index(diagnosis.path) + 1 if diagnosis.path in paths else 1
     compared = diagnosis.pictures.after
@@ -48,11 +48,11 @@ def _is_missing(fault: Fault) -> bool:
 
 def shaded(spans: Intervals) -> tuple[Spans, ...]:
     """The spans as marks of a panel, if there are any."""
-    return (Spans(spans, "excluded: a hole or a fault of the recording"),) if spans else ()
+    return (Spans(spans, "excluded: a gap or a fault of the recording"),) if spans else ()
 
 
 def drawn_line(time: Array, values: Array, spans: Intervals, most: int) -> tuple[Array, Array]:
-    """A line of at most about so many points that does not run through the excluded spans."""
+    """A line of about `most` points that does not cross the excluded intervals."""
     if not spans:
         return thinned(time, values, most)
     edges = [-np.inf, *(edge for span in spans for edge in span), np.inf]

@@ -1,4 +1,4 @@
-"""The report as one page that needs nothing else: words, numbers and pictures to zoom into."""
+"""The report as one self-contained page: text, tables and interactive figures."""
 
 from __future__ import annotations
 
@@ -62,10 +62,10 @@ def write_page(diagnosis: Diagnosis, path: Path, contents: Contents | None = Non
 
 
 UNIT_BEHIND = re.compile(r"(?<=\d)(?: (?=[%°µ×±A-Za-z])|(?=%))|(?<=±) ")
-"""The space between a number and what it counts, which a per cent sign may lack."""
+"""The space between a number and its unit, which a per cent sign may lack."""
 
 FILES = {
-    "fitted.yaml": "starts the simulator with what was found",
+    "fitted.yaml": "starts the simulator with the fitted values",
     "comparison.mcap": "measured, nominal, recalibrated and augmented model and residuals, for PlotJuggler or Foxglove",
     "diagnosis.json": "the result for programs",
 }
@@ -79,12 +79,12 @@ def _key_figure(key_figure: KeyFigure) -> str:
 
 
 def _text(words: str) -> str:
-    """Words to read; a number and its unit stay on one line."""
+    """Text as HTML; a number and its unit stay on one line."""
     return escape(re.sub(UNIT_BEHIND, "\N{NO-BREAK SPACE}", words))
 
 
 def _files(diagnosis: Diagnosis) -> str:
-    """Links to what lies beside the page."""
+    """Links to the files beside the page."""
     test = diagnosis.next_experiment
     proposed = {FILE: "the next experiment, for the reference node"} if test and test.reference else {}
     rows = (f'<li><a href="{name}">{name}</a>: {escape(what)}</li>' for name, what in {**FILES, **proposed}.items())
@@ -92,7 +92,7 @@ def _files(diagnosis: Diagnosis) -> str:
 
 
 def _provenance(diagnosis: Diagnosis) -> str:
-    """Where the page comes from, as a list; empty where the diagnosis does not say."""
+    """The diagnosis' provenance as a list; empty if not known."""
     rows = (f"<dt>{escape(words(name))}</dt><dd>{escape(text)}</dd>" for name, text in diagnosis.provenance.items())
     return "".join(rows)
 
@@ -122,7 +122,7 @@ def _paragraphs(sentences: Iterable[str]) -> str:
 
 
 def _picture(picture: Picture) -> str:
-    """A picture's plots as data beside their places, which the page's script draws."""
+    """A picture's plots as JSON, which the page's script draws."""
     title = f"<h3>{escape(picture.title)}</h3>" if picture.title else ""
     chips = "".join(
         f'<button type="button" data-label="{label}"><i style="background:{colour}"></i>{label}</button>'
@@ -147,7 +147,7 @@ def _picture(picture: Picture) -> str:
 
 
 def _cells(headings: tuple[str, ...], row: tuple[str, ...]) -> str:
-    """Cells that name their column, as a phone shows them below each other."""
+    """Cells labelled with their column, because a phone shows them below each other."""
     return "".join(
         f'<td data-label="{escape(heading)}">{escape(cell)}</td>' for heading, cell in zip(headings, row, strict=True)
     )

@@ -1,4 +1,4 @@
-"""An investigation as lines for people and a document for programs; its page is in `investigation_page`."""
+"""An investigation as text for the terminal and as a JSON document; its page is in `investigation_page`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WIDTH = 100
 
 
 def document(state: Investigation) -> dict[str, Any]:
-    """The investigation as plain JSON types, SI throughout; `ending` is null while it goes on."""
+    """The investigation as plain JSON types, SI throughout; `ending` is null while it runs."""
     limits = {name: value if isfinite(value) else None for name, value in vars(state.limits).items()}
     ending = state.ending
     return {
@@ -46,17 +46,17 @@ def _step(step: Step) -> dict[str, Any]:
 
 
 def step_account(state: Investigation) -> str:
-    """The last step as a person reads it on the terminal."""
+    """The last step as text for the terminal."""
     step, number = state.steps[-1], len(state.steps)
     signal = f"a {step.test.signal.signal} of voltage ({step.test.signal.settings()}) for {step.test.duration:g} s"
     lines = wrap(f"Test {number}: {signal}", _WIDTH, subsequent_indent="  ")
-    for text in (f"for: {step.test.purpose}", f"left: {left_over(step.diagnosis)}"):
+    for text in (f"purpose: {step.test.purpose}", f"possible: {left_over(step.diagnosis)}"):
         lines += wrap(text, _WIDTH, initial_indent="  ", subsequent_indent="    ")
     return "\n".join(lines)
 
 
 def ending_account(state: Investigation, folder: Path) -> str:
-    """How it ended and what was found, as a person reads it on the terminal."""
+    """How it ended and what was found, as text for the terminal."""
     lines = []
     if state.ending is not None:
         text = f"Ended: {ENDINGS[state.ending.kind]}. {state.ending.statement}"

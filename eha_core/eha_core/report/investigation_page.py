@@ -1,4 +1,4 @@
-"""The page of an investigation: each test, what was known before and after it, and which rivals were left."""
+"""The page of an investigation: each test, and the possible sets of effects before and after it."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ table { min-width: min(100%, 760px); } td { white-space: normal; }
 _POINTS = 600  # of a curve: more than its pixels
 _WIDE, _HIGH = 760.0, 92.0  # units of a strip
 _VERDICTS = {"resolved": "consistent", "nothing_more": "ambiguous", "stopped": "unknown_physics"}
-"""How the page's style sheet calls the colour of an ending; the others are the ordinary one's."""
+"""The style sheet's class of each ending; the others have the default one."""
 
 
 def page(state: Investigation) -> str:
-    """The page; it needs nothing else and is whole after each step."""
+    """The page, self-contained and complete after each step."""
     style = (files("eha_core.report") / "page.css").read_text(encoding="utf-8") + _STYLE
     ending = state.ending
     title = ENDINGS[ending.kind] if ending else "the investigation goes on"
     kind = _VERDICTS.get(ending.kind, "parameters") if ending else "parameters"
-    headline = ending.statement if ending else "The next test is chosen by what the sets below disagree on."
+    headline = ending.statement if ending else "The next test is chosen where the predictions of the sets below differ."
     number = len(state.steps)
     tests = f"{number} test{'' if number == 1 else 's'}"
     return "\n".join([
@@ -64,7 +64,7 @@ def _effects(found: Diagnosis | None) -> str:
 
 
 def _step(steps: Sequence[Step], place: int) -> str:
-    """One test: what it is for, what was driven and measured, and the sets before and after it."""
+    """One test: its purpose, the voltage and the measured position, and the possible sets before and after it."""
     step, number = steps[place], place + 1
     before = steps[place - 1].diagnosis if place else None
     test, name = step.test, Path(step.recording.path).name
@@ -120,7 +120,7 @@ def _cells(head: Sequence[str], row: Sequence[str]) -> str:
 
 
 def _strip(channel: Channel, title: str, unit: str, colour: str) -> str:
-    """A channel over time as a small curve, with its span in words."""
+    """A channel over time as a small curve, with its range in words."""
     every = max(1, len(channel.time) // _POINTS)
     time, values = channel.time[::every], channel.values[::every]
     low, high = float(np.min(channel.values)), float(np.max(channel.values))
@@ -138,11 +138,11 @@ def _strip(channel: Channel, title: str, unit: str, colour: str) -> str:
 
 
 def _files(state: Investigation) -> str:
-    """Links to what lies beside the page when the investigation is over."""
+    """Links to the files beside the page once the investigation has ended."""
     if state.ending is None or state.found is None:
         return ""
     links = {"diagnosis/report.html": "the diagnosis of all tests together",
-             "diagnosis/fitted.yaml": "starts the simulator with what was found",
+             "diagnosis/fitted.yaml": "starts the simulator with the fitted values",
              "investigation.json": "the investigation for programs"}  # fmt: skip
     rows = "".join(f'<li><a href="{path}">{path}</a>: {what}</li>' for path, what in links.items())
     return f"<footer><h3>Files beside this page</h3><ul>{rows}</ul></footer>"

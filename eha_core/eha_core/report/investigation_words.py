@@ -1,4 +1,4 @@
-"""What the account and the page of an investigation call sets, effects and steps."""
+"""Sets and effects in words, for the terminal and the page of an investigation."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def effect_in_words(effect: NamedEffect) -> str:
 def left_over(found: Diagnosis) -> str:
     """The sets that are still possible, with their probabilities."""
     sets = [f"{set_title(ids)}{_chance(probability_of(found, ids))}" for ids in sets_of(found)]
-    return sets[0] if len(sets) == 1 else f"{len(sets)} sets are left: {'; '.join(sets)}"
+    return sets[0] if len(sets) == 1 else f"{len(sets)} sets: {'; '.join(sets)}"
 
 
 def _chance(probability: float | None) -> str:

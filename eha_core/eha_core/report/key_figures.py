@@ -26,12 +26,12 @@ class KeyFigure:
 
 
 def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
-    """What is known of: the error with and without the physics, the rest, and the other explanations."""
+    """The error with and without the physics, the residual, and the other explanations, as far as they are known."""
     return tuple(key_figure for part in (_better, _left, _sure) for key_figure in part(diagnosis))
 
 
 def _each_is_needed(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
-    """What is left without the effect that matters least; nothing where that is not more than with it."""
+    """The residual without the effect that matters least; nothing if it is no larger than with all."""
     if not diagnosis.without:
         return
     name, rest = min(diagnosis.without.items(), key=lambda item: item[1].overall)
@@ -40,8 +40,8 @@ def _each_is_needed(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
         yield KeyFigure(
             "How sure?",
             "Each effect is needed",
-            f"Without the one that matters least, {effect_title(name)}, and the others fitted again,"
-            f" {short(rest.overall)} times the noise is left; with all of them {short(whole)}.",
+            f"Without the one that matters least, {effect_title(name)}, and with the others refitted, the residual is"
+            f" {short(rest.overall)} times the noise; with all of them {short(whole)}.",
         )
 
 
@@ -50,7 +50,7 @@ def _better(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
     if not name:
         return
     fit, unit = judged(diagnosis)[name], CHANNEL_KINDS[name].unit
-    where = "on data kept from the fit" if diagnosis.held_out else "on the data of the fit"
+    where = "on held-out data" if diagnosis.held_out else "on the training data"
     noise = f"{where}; the sensor's noise is {quantity(fit.noise, unit)}."
     if diagnosis.verdict == "consistent":  # there is no better model to hold beside the nominal one
         error = f"RMS error of the {channel_title(name)}, nominal model, {noise}"
@@ -66,16 +66,15 @@ def _better(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
 def _left(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
     basis = left_in_words(diagnosis)
     if basis:
-        answer = left_over(diagnosis).removeprefix("What is left is ")
-        yield KeyFigure("What is left?", f"{answer[:1].upper()}{answer[1:]}", basis)
+        answer = left_over(diagnosis).removeprefix("The residual is ")
+        yield KeyFigure("How large is the residual?", f"{answer[:1].upper()}{answer[1:]}", basis)
 
 
 def _sure(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
-    """What the named effects are distinguished from: another explanation of as many effects, or the set without
-    one of them."""
+    """How far the named effects are ahead of another explanation with as many effects, or of the set without one."""
     if diagnosis.alternatives:
         rivals = listed([named(alternative.effects) for alternative in diagnosis.alternatives])
-        yield KeyFigure("How sure?", "Not the only explanation", f"The recording does not tell it from {rivals}.")
+        yield KeyFigure("How sure?", "Not the only explanation", f"It cannot be distinguished from {rivals}.")
         return
     if diagnosis.effects and diagnosis.unknown:  # its score is not among those of the catalogue's sets
         yield from _each_is_needed(diagnosis)
@@ -90,11 +89,11 @@ def _sure(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
         yield from _each_is_needed(diagnosis)
         return
     nearest, score = max(others, key=lambda rival: rival[1])
-    if own - score < TIE:  # then the search calls it ambiguous; a rival that rests on a bound is no rival
+    if own - score < TIE:  # an ambiguous verdict would say so; a rival at a prior bound does not count
         return
     yield KeyFigure(
         "How sure?",
         f"Next explanation {behind_in_words(own - score)}",
-        f"In χ² less the cost of parameters; {TIE:g} tells two apart. Next: {rung(nearest, chosen)}."
+        f"In χ² minus the cost of parameters; {TIE:g} distinguishes two. Next: {rung(nearest, chosen)}."
         f" Nothing added: {behind_in_words(own)}.",
     )

@@ -10,14 +10,14 @@ def location_statement(location: Location) -> str:
     """A location in words."""
     percent, site = f"{100 * location.share:.0f} %", SITES[location.site].words
     if location.alone:
-        return "it sits in the force balance: nothing else was recorded"
+        return "in the force balance: nothing else was recorded"
     if location.law_over:
-        return f"{percent} of what is missing {site} is a law over {location.law_over}"
+        return f"{percent} of the missing physics {site} is a law over {location.law_over}"
     if location.all_of_stretch:
         times = f", through all of the stretch from {location.when[0][0]:.0f} s on"
     else:
         times = _times(location.when)
-    return f"{percent} of what the calibrated model leaves unexplained sits {site}, {location.where}{times}"
+    return f"{percent} of the recalibrated model's unexplained error is {site}, {location.where}{times}"
 
 
 def _times(when: tuple[tuple[float, float], ...]) -> str:
@@ -27,4 +27,4 @@ def _times(when: tuple[tuple[float, float], ...]) -> str:
         return ", through the whole record"
     if len(when) == 1:
         return f", from {when[0][0]:.4g} s to {when[0][1]:.4g} s"
-    return f", in {len(when)} spans of time, the first from {when[0][0]:.1f} s"
+    return f", in {len(when)} intervals, the first from {when[0][0]:.1f} s"

@@ -1,4 +1,4 @@
-"""What `eha diagnose` leaves of a recording whose motion is given: the document and a figure of the law."""
+"""The output files of `eha diagnose` for a recording whose motion is given: the document and a figure of the law."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def write_motion_given(found: Found, folder: Path) -> tuple[Path, ...]:
 
 
 def law_picture(found: Found) -> Picture:
-    """The force over speed and position, and what the law leaves over both, of the recording with the largest force."""
+    """The force and the law's residual over speed and over position, of the recording with the largest force."""
     motion = max(found.motions, key=lambda motion: float(np.std(motion.force)))
     force, left = curve(found.law, motion)
     rows = np.flatnonzero(motion.used)[:: max(1, len(motion.time) // DRAWN)]
@@ -47,7 +47,7 @@ def law_picture(found: Found) -> Picture:
         Group(_panels(motion, rows, x[rows], label, force, left))
         for x, label in ((1e3 * motion.velocity, "velocity [mm/s]"), (1e3 * motion.position, "position [mm]"))
     ]
-    return Picture(NAME, tuple(groups), (1, 1), f"{motion.name}: the force that the motion asks for")
+    return Picture(NAME, tuple(groups), (1, 1), f"{motion.name}: the force that the motion requires")
 
 
 def _panels(motion: Motion, rows, x, label: str, force, left) -> tuple[Panel, Panel]:  # type: ignore[no-untyped-def]
@@ -56,5 +56,5 @@ def _panels(motion: Motion, rows, x, label: str, force, left) -> tuple[Panel, Pa
             (Dots(x, motion.force[rows], "measured", "measured"), Line(x, force[rows], "after", "law", 1.0)),
             label, "force [N]", "Measured force and the law", 320,
         ),
-        Panel((Dots(x, left[rows], "other", "residual"),), label, "force [N]", "What the law leaves", 160),
+        Panel((Dots(x, left[rows], "other", "residual"),), label, "force [N]", "Residual of the law", 160),
     )  # fmt: skip

@@ -64,7 +64,7 @@ def error_figure(levels: Sequence[Level]) -> Figure:
 
 
 def rmse_figure(levels: Sequence[Level], sweep: Sweep | None = None) -> Figure:
-    """Figure 5: RMSE against internal leakage, computed beside printed and the closed form."""
+    """Figure 5: RMSE against internal leakage, as computed, as printed and by the closed form."""
     figure = Figure(figsize=(7.0, 4.6), layout="constrained")
     axes = figure.add_subplot()
     leakages = [level.internal_leakage for level in levels]

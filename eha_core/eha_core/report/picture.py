@@ -1,4 +1,4 @@
-"""What a picture shows, apart from how it is drawn: the page draws it with Plotly, the figures with matplotlib."""
+"""The content of a picture, independent of how it is drawn: the page uses Plotly, the files matplotlib."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ COLOURS = {
     "after": "#1d7a8c",
     "other": "#9aa7b2",
 }
-"""By role; distinguished without colour vision too, by lightness."""
+"""By role; they differ in lightness, so that they can be distinguished without colour vision."""
 
 FEW_DOTS = 500
 
@@ -66,7 +66,7 @@ class Upright:
 
 @dataclass(frozen=True)
 class Dots:
-    """Many single points; without a `diameter` [pixels] few are drawn larger."""
+    """Points of a `diameter` [pixels]; without one, a few points are drawn larger than many."""
 
     x: Array
     y: Array
@@ -114,7 +114,7 @@ class Cells:
 
 @dataclass(frozen=True)
 class Band:
-    """Values between `low` and `high` that need no explanation."""
+    """A horizontal band between `low` and `high`, as of noise."""
 
     low: float
     high: float
@@ -134,9 +134,9 @@ Mark = Line | Dots | Ribbon | Upright | Intervals | Bars | Cells | Band | Spans
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes; `height` in the page's pixels; ranges where not all should be seen at first.
+    """One pair of axes; `height` in the page's pixels; ranges where not all should be visible at first.
 
-    `x_ticks` are places with their labels, where the axis is no plain number.
+    `x_ticks` are places with their labels, where the axis does not show plain numbers.
     """
 
     marks: tuple[Mark, ...]
@@ -155,7 +155,7 @@ class Panel:
 
     @property
     def row_labels(self) -> tuple[str, ...]:
-        """The names as they stand beside the rows: numbered where the columns have no more room than a number's."""
+        """The rows' labels: numbered where the columns have room for a number only."""
         numbered = any(isinstance(mark, Cells) for mark in self.marks)
         return tuple(f"{name}  {place}" if numbered else name for place, name in enumerate(self.names, start=1))
 
@@ -189,7 +189,7 @@ class Picture:
 
 
 def on_paper(colour: str) -> str:
-    """What a ribbon of this colour looks like on white."""
+    """The colour of a translucent ribbon on white."""
     parts = (int(colour[place : place + 2], 16) for place in (1, 3, 5))
     return "#" + "".join(f"{round(255 - TRANSLUCENT * (255 - part)):02x}" for part in parts)
 

@@ -21,13 +21,13 @@ from matplotlib.transforms import IdentityTransform
 
 GRID, FRAME, TEXT = "#edf0f2", "#c9d1d7", "#5c6b78"
 LINE, PAD, LABEL_PAD = 0.8, 3.5, 4.0
-"""Points: width of the grid and the frame, from the frame to the ticks' labels, from those to the axis' label."""
+"""Points: width of the grid and the frame, distance from the frame to the tick labels, from these to the axis label."""
 
 TICK_SIZE, LABEL_SIZE = 8.0, 9.0
-"""Points of the letters."""
+"""Font sizes [points]."""
 
 LINE_SPACING = 1.2
-"""From one line of a label to the next, in heights of a letter."""
+"""Line spacing of a label, in heights of a letter."""
 
 
 def plain_axes(
@@ -38,8 +38,8 @@ def plain_axes(
     Args:
         box: left, bottom, width and height in parts of the figure.
         shared: axes whose horizontal axis these share.
-        labelled: whether texts stand below them.
-        grid: whether lines run across at each tick.
+        labelled: whether the horizontal axis has labels.
+        grid: whether grid lines are drawn at each tick.
     """
     axes: Any = figure.add_axes(box, sharex=shared)
     axes.set_axis_off()
@@ -54,7 +54,7 @@ def set_ticks(axis: Any, places: Sequence[float], texts: Sequence[str]) -> None:
 
 
 class Scales(Artist):
-    """The grid, the left and the lower edge, and the texts beside them; see `plain_axes`."""
+    """The grid, the left and the lower edge, and their labels; see `plain_axes`."""
 
     def __init__(self, labelled: bool, grid: bool) -> None:
         super().__init__()
@@ -65,7 +65,7 @@ class Scales(Artist):
         """Draw on a renderer."""
         axes: Any = self.axes
         box, pad = axes.bbox, renderer.points_to_pixels(PAD)
-        # by the letters' size matplotlib decides how many ticks there are
+        # matplotlib chooses the number of ticks by the font size
         with matplotlib.rc_context({"xtick.labelsize": TICK_SIZE, "ytick.labelsize": TICK_SIZE}):
             (xs, across), (ys, up) = _ticks(axes.xaxis), _ticks(axes.yaxis)
         xs = axes.transData.transform([(x, axes.viewLim.y0) for x in xs])[:, 0] if len(xs) else xs
@@ -87,7 +87,7 @@ class Scales(Artist):
 
 
 def _ticks(axis: Any) -> tuple[Any, list[str]]:
-    """Where an axis has ticks within its limits, and their texts."""
+    """The places of an axis' ticks within its limits, and their labels."""
     places = np.asarray(axis.get_majorticklocs(), dtype=np.float64)
     texts = axis.get_major_formatter().format_ticks(places)
     low, high = sorted(axis.get_view_interval())
@@ -114,7 +114,7 @@ def _lines(renderer: Any, colour: str, lines: Sequence[tuple[tuple[float, float]
 
 
 class _Texts:
-    """Writes texts on a renderer, placed as matplotlib places those of its axes; each returns what it takes there."""
+    """Writes texts on a renderer where matplotlib would place those of its axes; each method returns the size taken."""
 
     def __init__(self, renderer: Any) -> None:
         self._renderer = renderer
@@ -128,7 +128,7 @@ class _Texts:
         return size
 
     def _line(self, font: FontProperties) -> tuple[float, float]:
-        """A line's height and how much of it is below its letters' feet."""
+        """A line's height, and its descent below the baseline."""
         if id(font) not in self._lines:
             self._lines[id(font)] = self._size("lp", font)[1:]
         return self._lines[id(font)]
@@ -137,7 +137,7 @@ class _Texts:
         self._renderer.draw_text(self._pen, x, abs(self._height - y), text, font, angle)
 
     def beside(self, right: float, middle: float, text: str, font: FontProperties) -> float:
-        """Lines that end at `right`, around a height; returns the widest."""
+        """Lines that end at `right`, centred at `middle`; returns the largest width."""
         height, descent = self._line(font)
         lines, widest = text.split("\n"), 0.0
         y = middle - 0.5 * (height - descent) + 0.5 * LINE_SPACING * height * (len(lines) - 1)
@@ -148,7 +148,7 @@ class _Texts:
         return widest
 
     def below(self, centre: float, top: float, text: str, font: FontProperties) -> float:
-        """A text under a height; returns how tall it is."""
+        """A text below `top`; returns its height."""
         if not text:
             return 0.0
         height, descent = self._line(font)
@@ -156,7 +156,7 @@ class _Texts:
         return height
 
     def above(self, left: float, bottom: float, text: str, font: FontProperties) -> None:
-        """A text on top of a height."""
+        """A text above `bottom`."""
         if text:
             self._write(left, bottom + self._line(font)[1], text, font)
 

@@ -1,7 +1,7 @@
-"""Draws pictures for the page, in the form that Plotly's JavaScript reads: traces, axes and shapes as plain data.
+"""Draws pictures for the page as Plotly's JSON: traces, axes and shapes as plain data.
 
-They are written down here instead of being built with Plotly's Python classes, which check every field again on every
-drawing and take longer over a page than all the rest of it.
+Plotly's Python classes are not used: they check every field of every drawing, which takes longer than all the rest of a
+page.
 """
 
 from __future__ import annotations

@@ -15,17 +15,17 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.version import __version__
 
 FROM_RECORDING = "the parameters that the recording carries, or the catalogue's"
-"""What the nominal model is where no file gave it."""
+"""The nominal model's origin where no file was given."""
 
 _BLOCK = 1 << 20
 
 
 class Recorded(Protocol):
-    """What was read from a path."""
+    """Something that was read from a path."""
 
     @property
     def path(self) -> Path:
-        """Where it was read from."""
+        """The path that it was read from."""
 
 
 def with_provenance(

@@ -1,4 +1,4 @@
-"""A diagnosis as a Python session or a notebook handles it: values, a summary in tables, plots, and files."""
+"""A diagnosis for a Python session or a notebook: values, a summary in tables, plots, and files."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ def drawn(picture: Picture) -> Drawn:
 
 
 class Plots:
-    """The report's pictures, one a method; each returns a matplotlib figure, which a notebook shows."""
+    """The report's pictures, one for each method, as matplotlib figures that a notebook shows."""
 
     def __init__(self, diagnosis: Diagnosis) -> None:
         self._diagnosis = diagnosis
         self._stages = {stage.name: stage for stage in report_stages(diagnosis)}
 
     def recording(self) -> Drawn:
-        """What was recorded, with the spans that were kept from the fit."""
+        """The recorded channels, with the held-out intervals."""
         return self._picture("read")
 
     def parameters(self) -> Drawn:
-        """The fitted parameters of the nominal model beside their nominal values, with 95 % intervals."""
+        """The fitted parameters of the nominal model as departures from their nominal values, with 95 % intervals."""
         return self._picture("calibrate")
 
     def equations(self) -> Drawn:
-        """What each equation lacks, over time and over what it depends on most."""
+        """Each equation's residual, over time and over the variable that it depends on most."""
         return self._picture("locate")
 
     def evidence(self) -> Drawn:
@@ -57,25 +57,25 @@ class Plots:
         return drawn(picture) if picture else self._picture("model")
 
     def ladder(self) -> Drawn:
-        """What is left from the nominal model to the noise, one effect added after another."""
+        """The residual of each model, from the nominal one over those without one effect to the complete set."""
         picture = ladder_picture(self._diagnosis)
         if picture is None:
-            raise EhaError("there is nothing to plot here: this diagnosis does not say what each model leaves")
+            raise EhaError("there is nothing to plot here: this diagnosis has no residual for each model")
         return drawn(picture)
 
     def correlation(self) -> Drawn:
-        """How the errors of the fitted parameters depend on each other."""
+        """The correlation of the fitted parameters' errors."""
         picture = correlations(self._diagnosis)
         if picture is None:
             raise EhaError("there is nothing to plot here: fewer than two parameters were fitted")
         return drawn(picture)
 
     def residuals(self) -> Drawn:
-        """Measured less modelled over time, of the nominal and of the final model."""
+        """The residuals of the nominal and of the final model over time."""
         return drawn(residual_picture(self._diagnosis))
 
     def overlays(self) -> Drawn:
-        """Measured and modelled, and the difference, on the data kept from the fit."""
+        """Measured and modelled channels, and the residuals, on the held-out data."""
         return self._picture("show")
 
     def whiteness(self) -> Drawn:
@@ -96,7 +96,7 @@ class MotionPlots:
         self._found = found
 
     def law(self) -> Drawn:
-        """The force over speed and position, and what the law leaves."""
+        """The force and the law's residual, over speed and over position."""
         from eha_core.report.motion_given import law_picture
 
         return drawn(law_picture(self._found))
@@ -106,7 +106,7 @@ class MotionPlots:
 
 
 class Results:
-    """What `diagnose` found.
+    """The result of `diagnose`.
 
     Attributes:
         diagnosis: the whole result, frozen.
@@ -122,7 +122,7 @@ class Results:
 
     @property
     def effects(self) -> tuple[NamedEffect, ...]:
-        """The effects that the model leaves out, each with its parameters and their standard deviations."""
+        """The missing effects, each with its parameters and their standard deviations."""
         return self.diagnosis.effects
 
     @property
@@ -132,7 +132,7 @@ class Results:
 
     @property
     def alternatives(self) -> tuple[Alternative, ...]:
-        """Other explanations that this recording cannot tell apart from `effects`."""
+        """Other explanations that this recording cannot distinguish from `effects`."""
         return self.diagnosis.alternatives
 
     @property
@@ -159,7 +159,7 @@ class Results:
         return document(self.diagnosis)
 
     def to_json(self, path: str | Path | None = None) -> str:
-        """The text of diagnosis.json, written to `path` too where one is given."""
+        """The text of diagnosis.json; also written to `path`, if given."""
         text = as_json(self.diagnosis)
         if path is not None:
             Path(path).write_text(text, encoding="utf-8")
@@ -179,7 +179,7 @@ class Results:
 
 
 class MotionResults(Results):
-    """What `diagnose` found where the motion is given and the force is the answer."""
+    """The result of `diagnose` where the motion is given and the force is the response."""
 
     def __init__(self, found: Found) -> None:
         super().__init__(found.diagnosis)

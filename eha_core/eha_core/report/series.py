@@ -1,4 +1,4 @@
-"""Series made ready to be looked at: thinned without losing peaks, and asked what they depend on."""
+"""Series prepared for plots: thinned without losing peaks, and tested for dependence on other variables."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def thinned(time: Array, values: Array, most: int = DRAWN) -> tuple[Array, Array
 
 
 def pieces(time: Array, values: Array, spans: Iterable[tuple[float, float]], most: int = DRAWN) -> tuple[Array, Array]:
-    """The parts inside the spans, thinned, with a NaN between them so that no line joins them."""
+    """The parts inside the intervals, thinned, with a NaN between them so that no line joins them."""
     found = [slice(*np.searchsorted(time, span)) for span in spans]
     budget = max(20, most // max(len(found), 1))
     times, parts = [], []
@@ -62,9 +62,9 @@ class Dependence:
 def strongest_dependence(
     time: Array, residual: Array, variables: Mapping[str, Array], most_bins: int = 24
 ) -> Dependence | None:
-    """The variable whose bins of equal count explain most of the residual; None where there is no variable.
+    """The variable whose bins of equal count explain most of the residual; None without any variable.
 
-    The share is corrected for what as many bins explain of pure noise.
+    The share is an adjusted R^2: it is corrected for what as many bins explain of pure noise.
     """
     found = []
     bins = min(most_bins, max(4, len(time) // 25))
@@ -88,7 +88,7 @@ def strongest_dependence(
 
 
 def autocorrelation(time: Array, residual: Array, lags: int) -> tuple[Array, Array]:
-    """Correlation of a residual with itself `lags` sampling periods later; samples that are missing are left out.
+    """Autocorrelation of a residual at up to `lags` sampling periods; missing samples are skipped.
 
     Returns the lags [s] from one period on, and the correlations.
     """

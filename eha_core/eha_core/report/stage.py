@@ -1,4 +1,4 @@
-"""What a stage of the report is."""
+"""A stage of the report, its parts and tables, and what the stages share."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Part:
-    """One of several findings of a stage, beside its picture."""
+    """One of several findings of a stage, with its picture."""
 
     title: str
     sentences: tuple[str, ...]
@@ -34,7 +34,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage: its name, what it found as a headline, a few sentences, and what there is to look at."""
+    """A stage: its name, the finding as a headline, a few sentences, and pictures, tables, code and parts."""
 
     name: str
     title: str
@@ -52,7 +52,7 @@ def adds_physics(diagnosis: Diagnosis) -> bool:
 
 
 def models_told(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """The models that have errors of their own: without added physics, the recalibrated one is the final one."""
+    """The models with errors of their own: without added physics the recalibrated model is the final one."""
     return ("nominal", "recalibrated", "augmented")[: 3 if adds_physics(diagnosis) else 2]
 
 
@@ -67,7 +67,7 @@ def judged_spans(diagnosis: Diagnosis) -> tuple[tuple[float, float], ...]:
 
 
 def violated(diagnosis: Diagnosis) -> tuple[Spans, ...]:
-    """The spans in which the first location departs, unless that is nearly all the time."""
+    """The intervals of the first location, unless they cover nearly the whole record."""
     when = diagnosis.location[0].when if diagnosis.location else ()
     covered = sum(end - start for start, end in when)
     begin, end = diagnosis.drawn

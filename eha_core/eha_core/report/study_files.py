@@ -1,4 +1,4 @@
-"""The files of a study: its document and its picture, in a folder."""
+"""The files of a study: its JSON document and its figure, in a folder."""
 
 from __future__ import annotations
 

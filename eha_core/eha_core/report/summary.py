@@ -128,7 +128,7 @@ def _notes(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _columns(table: Table, rule: str) -> list[str]:
-    """Rows under their headings: names to the left, numbers to the right, the first column as wide as is left."""
+    """Rows below their headings: names left-aligned, numbers right-aligned, the first column takes the free width."""
     rows = [table.headings, *table.rows]
     widths = [max(len(row[place]) for row in rows) + 2 for place in range(1, len(table.headings))]
     first = max(WIDTH - sum(widths), max(len(row[0]) for row in rows))

@@ -1,4 +1,4 @@
-"""How large what was not named may be: a line for the terminal and the first screen, and the report's table."""
+"""Upper limits of effects that were not named: a line for the terminal and the first screen, and the report's table."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from eha_core.report.stage import Table, adds_physics
 from eha_core.report.wording import channel_title, effect_title, words
 
 MENTIONED = ("internal_leakage", "external_leakage", "coulomb_friction", "constant_load")
-"""What a line names: the leaks, friction and loads that a bench is first asked about; the table has all."""
+"""The effects in the line: the leaks, friction and loads that matter first on a bench; the table has all."""
 
 
 def not_missing(diagnosis: Diagnosis) -> str:
-    """That nothing more is missing than was named, or less than so much; why that is not known; or nothing."""
+    """The upper limits of MENTIONED effects that were not named; why they are not known; or empty."""
     if diagnosis.undetected is None:
         return _why_not(diagnosis)
     sizes = [f"{title} {size}" for title, size in _mentioned(diagnosis)]
@@ -24,14 +24,14 @@ def not_missing(diagnosis: Diagnosis) -> str:
 
 
 def _why_not(diagnosis: Diagnosis) -> str:
-    """Nothing of a diagnosis that explains all, or does not say how much it explains."""
+    """Why no upper limits are known; empty where the residual is noise or not known."""
     explained = diagnosis.explained
     if explained.complete or explained.vague or not explained.times_noise:
         return ""
     name, most = max(explained.times_noise.items(), key=lambda item: item[1])
     return (
-        f"how large what was not named may be is not known, for the residual is no noise: up to {most:.3g} times its"
-        f" size, in {channel_title(name)}"
+        f"upper limits of further effects are not known, because the residual is up to {most:.3g} times the noise, in"
+        f" {channel_title(name)}"
     )
 
 
@@ -61,7 +61,7 @@ def _leak(row: Detectable | Noticeable) -> str:
 
 
 def undetected_tables(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    """The smallest size of each effect that was not named, and of each change of a parameter that was not reported."""
+    """Tables of the smallest detectable sizes of effects that were not named and of parameter changes."""
     found = diagnosis.undetected
     if found is None:
         return ()

@@ -1,6 +1,6 @@
-"""Writes whole topics as one MCAP with the profile `ros2`: their messages are laid out as arrays, not one by one.
+"""Writes complete topics as one MCAP with the profile `ros2`; the messages are serialised as arrays, not one by one.
 
-`RecordingWriter` takes messages as they come and outlives a killed process; here everything is known beforehand.
+`RecordingWriter` writes messages as they arrive, so that a killed process loses little; here all are known beforehand.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ CHUNK = 1 << 20
 _HEAD = np.dtype(
     [("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")]
 )
-"""What stands before a message's data."""
+"""The fields before a message's data."""
 
 _COUNTED = 9  # bytes of a record's opcode and length, which its length leaves out
 
@@ -79,7 +79,7 @@ class _Messages:
 
 
 def write_topics(path: Path, topics: Sequence[Topic], parameters: Mapping[str, object]) -> int:
-    """Write the topics to a new file, with the parameters in force as a metadata record; return how many messages.
+    """Write the topics to a new file, with `parameters` as a metadata record; return the number of messages.
 
     Raises:
         RecordingError: the file exists already or cannot be written.
@@ -161,14 +161,14 @@ def _bytes_of(records: Sequence[Any]) -> bytes:
 
 
 def _chunk_edges(starts: Integers) -> list[int]:
-    """The first message of each chunk, and behind the last the number of messages."""
+    """The first message of each chunk, and the number of messages."""
     count = len(starts) - 1
     first = np.flatnonzero(np.diff(starts[:-1] // CHUNK, prepend=-1)) if count else np.empty(0, np.int64)
     return [*first.tolist(), count]
 
 
 def _write_chunk(file: Any, messages: _Messages, rows: slice, declared: bytes) -> ChunkIndex:
-    """Write the messages of these rows behind `declared`, compressed, and the index of each channel."""
+    """Write `declared` and the messages of these rows, compressed, and the index of each channel."""
     stamps, channels = messages.stamps[rows], messages.channels[rows]
     starts = messages.starts[rows.start : rows.stop + 1]
     data = declared + messages.data[starts[0] : starts[-1]].tobytes()
@@ -227,7 +227,7 @@ _GROUPS = (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.STATISTICS, Opcode.CHUNK_INDEX,
 
 
 def _write_summary(file: Any, groups: Sequence[Sequence[Any]]) -> None:
-    """Write the records of `_GROUPS` again or for the first time, where each group begins, and the file's end."""
+    """Write the summary section: the records of `_GROUPS`, the offset of each group, and the footer."""
     begin = file.count
     summary: Any = RecordBuilder()
     offsets = []

@@ -53,7 +53,7 @@ LAW_AXES = {
     ("chamber", "pressure difference"): ("flow from chamber A to B", "m^3/s", "Pa"),
     ("chamber", "position, times pressure difference"): ("conductance from chamber A to B", "m^3/(s Pa)", "m"),
 }
-"""What a recovered law gives, its unit, and the unit of what it is over."""
+"""A recovered law's quantity, its unit, and the unit of its variable."""
 
 
 _PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck"}
@@ -70,7 +70,7 @@ def capital(text: str) -> str:
 
 
 def channel_title(name: str) -> str:
-    """A channel in an engineer's words; of several recordings, with the number of its own."""
+    """A channel in an engineer's words; with several recordings, with the recording's number."""
     base, numbered, number = name.partition("@")
     title = _CHANNEL_TITLES.get(base, words(base))
     return f"{title}, recording {number}" if numbered else title
@@ -116,7 +116,7 @@ def percent(share: float) -> str:
 
 
 def probable(probability: float) -> str:
-    """A probability in whole per cent; of what is next to sure only that, for nobody knows it better."""
+    """A probability in whole per cent, "over 99 %" at most: it is not known better."""
     return "over 99 %" if probability > 0.99 else percent(probability)
 
 

@@ -1,5 +1,5 @@
-"""What each effect is worth: what the nominal, the recalibrated and the augmented model leave, and that without each
-effect."""
+"""Each effect's contribution: the residuals of the nominal, recalibrated and augmented models, and of the last without
+each effect."""
 
 from __future__ import annotations
 
@@ -19,33 +19,33 @@ from eha_core.report.wording import capital, channel_title, effect_title
 TITLES = {NOMINAL: "nominal model", RECALIBRATED: "recalibrated, nothing added"}
 ROLES = {NOMINAL: "before", RECALIBRATED: "calibrated"}
 STUB = 0.012
-"""Of the axis; what is at the noise would have no bar at all."""
+"""Shortest bar, as a share of the axis; a model at the noise would have none."""
 
 LEAST_DECADES = 2
-"""Of the axis; on a shorter one the numbers of what is at the noise stand on the dotted line."""
+"""Shortest axis; on a shorter one the number of a model at the noise would be on the dotted line."""
 
 BESIDE = 3 * "\N{EN SPACE}"
 
 ROW, FRAME = 30, 56
-"""Pixels of a bar and of what is about the bars."""
+"""Pixels of a bar and of the frame around the bars."""
 
 
 def ladder_picture(diagnosis: Diagnosis) -> Picture | None:
-    """What each model leaves, from the nominal one over the set without each of its effects to the whole set."""
+    """The residual of each model, from the nominal one over the set without each of its effects to the complete set."""
     rows = [row for row in _models(diagnosis) if np.isfinite(row[1].overall)]
     if not rows:
         return None
     caption = (
-        "RMS of what each model leaves over the noise, all channels together. All but the nominal model are fitted. The"
-        f" axis begins at the noise. Dotted: {LEFT_IN_A_CHANNEL:g} times the noise; an explanation counts as complete"
-        " if every channel is below that and the residual is white."
+        "RMS residual of each model in units of the noise, all channels together. All but the nominal model are fitted."
+        f" The axis begins at the noise. Dotted: {LEFT_IN_A_CHANNEL:g} times the noise; an explanation counts as"
+        " complete if every channel is below that and the residual is white."
     )
-    title = "What is left, from the nominal model to the noise"
+    title = "Residual, from the nominal model to the complete explanation"
     return Picture("0-ladder", (Group((_bars(rows),)),), title=title, caption=caption)
 
 
 def _models(diagnosis: Diagnosis) -> list[tuple[str, Residual, str]]:
-    """Each model's name, what it leaves and its role: those without one effect stand before the whole."""
+    """Each model's name, residual and role; those without one effect come before the complete set."""
     rows = [(_title(diagnosis, step.added), step.residual, ROLES.get(step.added, "after")) for step in diagnosis.steps]
     without = [(f"without {effect_title(name)}", left, "other") for name, left in diagnosis.without.items()]
     return [*rows[:2], *without, *rows[2:]]
@@ -65,7 +65,7 @@ def _bars(rows: Sequence[tuple[str, Residual, str]]) -> Panel:
     decades = max(LEAST_DECADES, int(np.ceil(np.log10(values.max()))))
     end = 1.16 * decades
     lengths = np.maximum(np.log10(np.maximum(values, 1e-3)), STUB * end)
-    # beside the dotted line, not on it
+    # right of the dotted line, not on it
     texts = tuple(f"{BESIDE if value < 2.0 else ''}{short(value)}" for value in values)
     bars = Bars(tuple(name for name, _, _ in rows), lengths, tuple(role for _, _, role in rows), texts)
     threshold = Upright(float(np.log10(LEFT_IN_A_CHANNEL)), "")
@@ -89,12 +89,12 @@ def effect_table(diagnosis: Diagnosis) -> Table:
         rows.append(tuple(row))
     headings: tuple[str, ...] = ("missing effect", "value (95 % interval)", "where")
     if diagnosis.without:
-        headings += ("left without it [×\N{NO-BREAK SPACE}noise]",)
+        headings += ("residual without it [×\N{NO-BREAK SPACE}noise]",)
     return Table(headings, tuple(rows), "What is missing, what matters most first")
 
 
 def step_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    """What each model leaves in each channel, over its noise."""
+    """The residual of each model in each channel, in units of the noise."""
     if not diagnosis.steps:
         return ()
     names = list(diagnosis.steps[0].residual.times_noise)
@@ -103,19 +103,19 @@ def step_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
         for title, residual, _ in _models(diagnosis)
     ]
     headings = ("model", *(channel_title(name) for name in names), "all channels")
-    return (Table(headings, tuple(rows), "What each model leaves, times the noise"),)
+    return (Table(headings, tuple(rows), "Residual of each model, times the noise"),)
 
 
 def worth(diagnosis: Diagnosis, effect: str) -> str:
-    """What is left without an effect and with it, in a sentence; empty if not known."""
+    """The residual without an effect and with it, in a sentence; empty if not known."""
     left = {step.added: step.residual for step in diagnosis.steps}
     if AUGMENTED not in left:
         return ""
     if effect in diagnosis.without:
-        without, fitted = diagnosis.without[effect], "the others fitted again"
+        without, fitted = diagnosis.without[effect], "with the others refitted"
     elif [one.id for one in diagnosis.effects] == [effect] and not diagnosis.without:
-        without, fitted = left[RECALIBRATED], "the parameters fitted again"
+        without, fitted = left[RECALIBRATED], "with the parameters refitted"
     else:
         return ""
     whole = short(left[AUGMENTED].overall)
-    return f"Without it, {fitted}, {short(without.overall)} times the noise is left; with it {whole}."
+    return f"Without it, {fitted}, the residual is {short(without.overall)} times the noise; with it {whole}."

@@ -1,7 +1,7 @@
 """The missing physics as laws in SI units: force over velocity, flow over pressure difference, opening over spool.
 
-A law has three parts: the curve as fitted with its 95 % band, what the nominal model has in its place, and, where an
-equation holds it, points that the measured channels give for it.
+A law has three parts: the fitted curve with its 95 % band, the nominal model's curve, and, where an equation contains
+the law, points computed from the measured channels.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ _SITES: dict[str, Callable[[Models, NamedEffect], Law | None]] = {
 
 
 def laws(diagnosis: Diagnosis) -> dict[str, Law]:
-    """The law of each named effect that has one by its id, or the unknown law, in the order of the diagnosis.
+    """The law of each named effect that has one, by its id and in the diagnosis' order, or the recovered law.
 
-    A dead time or a hysteresis has none: it is no function of one quantity.
+    A dead time or a hysteresis has none, because it is not a function of one quantity.
     """
     models = Models(diagnosis)
     if diagnosis.unknown is not None:

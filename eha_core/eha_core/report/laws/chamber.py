@@ -18,7 +18,7 @@ DIFFERENCE = Axis("pressure difference A − B", "Pa")
 PRESSURE = Axis("chamber pressure", "Pa")
 POSITION = Axis("piston position", "m")
 BULK_A, CROSS, CONDUCTANCE, LEAK_A = 1, 5, 6, 7
-"""Where these stand among what a contribution returns; see `eha_core.plant.hooks`."""
+"""Places of these among the values that a contribution returns; see `eha_core.plant.hooks`."""
 
 
 def law(models: Models, effect: NamedEffect) -> Law | None:
@@ -51,8 +51,8 @@ def quantities(
     b: Array,
     places: Array | None = None,
 ) -> list[Array]:
-    """What the continuity equations are made of at these pressures, with one effect or none, in the middle of the
-    stroke or at these places."""
+    """The quantities in the continuity equations at these pressures, with one effect or none, in the middle of the
+    stroke or at `places`."""
     p = models.fitted
     rows = []
     places = 0.0 * a if places is None else places
@@ -78,7 +78,7 @@ def _across(models: Models, effect: NamedEffect, title: str, x: Array, middle: f
     y, low, high = band(effect, evaluate, SURE * models.deviation("internal_leakage") * x)
     nominal = models.nominal["internal_leakage"] * x
     if np.array_equal(y, quantities(models, None, {}, middle + 0.5 * x, middle - 0.5 * x)[CROSS]):
-        return None  # an area, say, which is no flow
+        return None  # the effect changes no flow, but for example an area
     points_x, points_y = NOTHING, NOTHING
     if models.grid is not None and models.spool is not None:
         _, _, a, b = models.modelled
@@ -100,7 +100,7 @@ def _along(models: Models, effect: NamedEffect, title: str, x: Array) -> Law:
         lost = lost_flows(models, models.grid)
         place, a, b = models.on_grid(models.diagnosis.pictures.measured)
         driving = models.grid.average(a - b)
-        strong = np.abs(driving) > np.median(np.abs(driving))  # where little drives the flow, little is known of it
+        strong = np.abs(driving) > np.median(np.abs(driving))  # a small pressure difference hardly determines the flow
         points_x = models.grid.average(place)[strong]
         points_y = ((flow + 0.5 * (lost[0] - lost[1])) / driving)[strong]
     nominal = 0.0 * x + models.nominal["internal_leakage"]
@@ -131,7 +131,7 @@ def _bulk(models: Models, effect: NamedEffect, title: str, x: Array) -> Law:
 
 
 def lost_flows(models: Models, grid: Grid) -> tuple[Array, Array]:
-    """What more leaves each chamber than the final model says, the mean under each test function [m^3/s]."""
+    """The flow out of each chamber beyond that of the final model, averaged with each test function [m^3/s]."""
     measured = models.on_grid(models.diagnosis.pictures.measured)
     x, _, a, b = models.modelled
     assert models.spool is not None
@@ -142,8 +142,8 @@ def lost_flows(models: Models, grid: Grid) -> tuple[Array, Array]:
 
 
 def _lost_volume(grid: Grid, models: Models, side: float, x: Array, a: Array, b: Array) -> Array:
-    """What flows into a chamber (A: side 1, B: -1) by the nominal valve, less what its motion and oil take in,
-    integrated under each test function [m^3]."""
+    """The nominal valve's flow into a chamber (A: side 1, B: -1) minus the flow that its motion and the compression of
+    its oil take up, integrated with each test function [m^3]."""
     p, spool = models.fitted, models.spool
     assert spool is not None
     own, area = (a, p["piston_area"]) if side > 0.0 else (b, p["piston_area_b"])

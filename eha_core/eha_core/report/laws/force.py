@@ -21,7 +21,7 @@ SETTLED = 4000
 
 
 class Beside(NamedTuple):
-    """What some effects act upon: the nominal damping [N s/m], and the pressure across the piston [Pa]."""
+    """Quantities that some effects depend on: the nominal damping [N s/m], and the pressure across the piston [Pa]."""
 
     damping: float
     pressure: float
@@ -32,7 +32,7 @@ POSITION = Axis("position", "m")
 
 
 def law(models: Models, effect: NamedEffect) -> Law | None:
-    """The force against motion, with the viscous or the spring force that the nominal model has on the same axis."""
+    """The force against motion, together with the nominal model's viscous or spring force over the same axis."""
     velocity, position = models.state("velocity"), models.state("position")
     if not len(velocity):
         return None
@@ -54,14 +54,14 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
 
 
 def _beside(models: Models) -> Beside:
-    """The fitted damping, and the pressure that usually stands across the piston."""
+    """The fitted damping, and the median pressure across the piston."""
     a, b = models.state("pressure_a"), models.state("pressure_b")
     pressure = float(np.median(np.abs(a - b))) if len(a) and len(a) == len(b) else 0.0
     return Beside(models.fitted["damping_coefficient"], pressure)
 
 
 def _hangs_on_velocity(effect: NamedEffect, velocity: Array, position: Array, beside: Beside) -> bool:
-    """Whether the effect changes more over the speeds that were reached than over the positions."""
+    """Whether the effect's force varies more over the visited speeds than over the visited positions."""
     values = values_of(effect)
     v, x = span_of(velocity), span_of(position)
     over_velocity = np.ptp(opposing(effect, values, 0.0 * v, v, beside))
@@ -71,7 +71,7 @@ def _hangs_on_velocity(effect: NamedEffect, velocity: Array, position: Array, be
 def opposing(
     effect: NamedEffect, values: Mapping[str, float], position: Array, velocity: Array, beside: Beside
 ) -> Array:
-    """The force that an effect sets against motion at steady speeds [N], beyond that of the nominal damping."""
+    """The force of an effect against motion at steady speeds [N], beyond that of the nominal damping."""
     call, slots = contribution(effect)
     parameters = in_order(effect, values)
     found = np.empty(len(velocity))
@@ -99,13 +99,13 @@ def _points(models: Models, effect: NamedEffect, over_velocity: bool) -> tuple[A
     beyond = beyond - missing_force(grid, models.fitted, x, a, b)
     name, state = ("damping_coefficient", v) if over_velocity else ("spring_stiffness", x)
     across = grid.average(state)
-    # where the piston stops or turns under a test function, its mean is neither the one side's friction nor the other's
+    # if the piston stops or reverses under a test function, the mean mixes the friction of both directions
     kept = models.keeps_moving
     return across[kept], (own + beyond + models.fitted[name] * across)[kept]
 
 
 def _along(effect: NamedEffect, values: Mapping[str, float], position: Array, velocity: Array, beside: Beside) -> Array:
-    """The effect's force along a motion, read off its curve: what its own state lags behind stays in the residual."""
+    """The effect's force along a motion, from its steady curve; the lag of its own state stays in the residual."""
     if np.ptp(velocity) == 0.0 or not contribution(effect)[1]:
         return opposing(effect, values, position, velocity, beside)
     table = span_of(velocity)
@@ -113,7 +113,7 @@ def _along(effect: NamedEffect, values: Mapping[str, float], position: Array, ve
 
 
 def missing_force(grid: Grid, values: Mapping[str, float], x: Array, a: Array, b: Array) -> Array:
-    """The force against motion [N] that the nominal terms lack under each test function."""
+    """The force against motion [N] missing from the nominal terms, averaged with each test function."""
     pressures = grid.integrate(grid.weight, values["piston_area"] * a - values["piston_area_b"] * b)
     inertia = values["moving_mass"] * grid.integrate(grid.curvature, x)
     viscous = -values["damping_coefficient"] * grid.integrate(grid.slope, x)

@@ -1,4 +1,4 @@
-"""What a law shows, and how the uncertainty of its parameters becomes a band."""
+"""A law as it is drawn, and its band from the uncertainty of its parameters."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CURVE = 241
 """Points of a curve."""
 
 ON_BOUND = 0.01
-"""Standard deviations from a bound within which a parameter rests on it."""
+"""Standard deviations from a bound within which a parameter counts as being on it."""
 
 SHOWN = (0.002, 0.998)
 """Quantiles of the visited states between which a law is drawn."""
@@ -42,9 +42,9 @@ class Law:
     Attributes:
         title: what it is, in an engineer's words.
         across, up: the quantities x and y.
-        x, y, low, high: the fitted curve and its 95 % band; the band is the curve where nothing is known of it.
-        nominal: what the nominal model has there, over `x`; empty where it has nothing to compare.
-        points_x, points_y: what the measured channels give; empty where no equation holds it.
+        x, y, low, high: the fitted curve and its 95 % band; the band is the curve where its width is not known.
+        nominal: the nominal model's curve over `x`; empty where it has none.
+        points_x, points_y: points computed from the measured channels; empty where no equation contains the law.
     """
 
     title: str
@@ -60,7 +60,7 @@ class Law:
 
 
 def span_of(values: Array, through_zero: bool = True) -> Array:
-    """Places to draw a curve at, over the visited range; with zero from both sides, where laws may jump."""
+    """The x values of a curve over the visited range, with one on either side of zero, where laws may jump."""
     low, high = (float(quantile) for quantile in np.quantile(values, SHOWN))
     places: Array = np.linspace(low, high, CURVE, dtype=np.float64)
     if not through_zero or not low < 0.0 < high:
@@ -72,8 +72,8 @@ def span_of(values: Array, through_zero: bool = True) -> Array:
 def band(effect: NamedEffect, evaluate: Evaluate, more: Array | float = 0.0) -> tuple[Array, Array, Array]:
     """A curve and its 95 % band, from the standard deviation of each of the effect's parameters.
 
-    The parameters' contributions are added as independent ones; `more` is a half width from other parameters. What
-    rests on a bound counts as known: its deviation is that of a straight line, and the bound is where the line ends.
+    The parameters' contributions are added as independent ones; `more` is a half width from other parameters. A
+    parameter at a bound counts as known, because its standard deviation assumes that it can move to both sides.
     """
     declared = import_module(f"eha_core.effects.{effect.id}").EFFECT.parameters
     bounds = {row.name: (row.lower, row.upper) for row in declared}

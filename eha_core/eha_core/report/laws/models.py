@@ -1,9 +1,9 @@
-"""The models behind a diagnosis, and the weak form that measured channels are held against them in.
+"""The models of a diagnosis, and the weak form in which they are compared with measured channels.
 
 Each equation is multiplied by a smooth test function in time and integrated by parts, so that no measured channel is
-differentiated (see `eha_core.weak_form.grid`). A law's point is the law itself under that test function plus what
-the equation's residual, measured less modelled, adds to it: the component-plus-residual plot of W. A. Larsen and
-S. J. McCleary, Technometrics 14 (1972). All other terms of the equation, named effects included, cancel out.
+differentiated (see `eha_core.weak_form.grid`). A law's point is the law averaged with that test function plus the
+equation's residual, measured minus modelled: the component-plus-residual plot of W. A. Larsen and S. J. McCleary,
+Technometrics 14 (1972). All other terms of the equation, named effects included, cancel out.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from eha_core.parameters import nominal_values
 from eha_core.weak_form.grid import HOPS, Grid, make_grid
 
 POINT_WIDTH = 0.02
-"""s, half the width of a point's test function: some ten samples, and short against the time between reversals."""
+"""s; half width of a point's test function: some ten samples, and short compared with the time between reversals."""
 
 SLOWEST = 0.2
-"""Of its mean speed; a piston that comes below that under a test function stops or turns there."""
+"""Share of its mean speed under a test function below which the piston counts as stopping or reversing there."""
 
 LIQUID = ("position", "pressure_a", "pressure_b")
 
 
 class Models:
-    """What the laws are made of: parameter values, and channels on one grid."""
+    """The data of the laws: parameter values, and channels on one grid."""
 
     def __init__(self, diagnosis: Diagnosis) -> None:
         self.diagnosis = diagnosis
@@ -68,7 +68,7 @@ class Models:
 
     @cached_property
     def keeps_moving(self) -> NDArray[np.bool_]:
-        """The test functions under which the piston goes one way all the time."""
+        """The test functions under which the piston keeps moving in one direction."""
         assert self.grid is not None
         speed = np.abs(self.modelled[1])
         under = np.lib.stride_tricks.sliding_window_view(speed, len(self.grid.weight))
@@ -89,7 +89,7 @@ class Models:
         return found if np.isfinite(found) else 0.0
 
     def state(self, name: str) -> Array:
-        """The values that a state took: by the final model where it is known, else by the calibrated one, else none."""
+        """A state's values in the final model, else in the recalibrated one; empty where neither has them."""
         known = ("position", "velocity", "pressure_a", "pressure_b")
         if self.grid is not None and name in known:
             return self.modelled[known.index(name)]

@@ -15,7 +15,7 @@ from eha_core.report.wording import capital, effect_title
 
 SPOOL = Axis("spool position", "A")
 LEAST_DROP = 0.05
-"""Of the supply pressure; an orifice with less across it tells little of its opening."""
+"""Share of the supply pressure; a smaller pressure drop hardly determines an orifice's opening."""
 
 
 def law(models: Models, effect: NamedEffect) -> Law | None:
@@ -37,14 +37,14 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
 
 
 def opening(effect: NamedEffect, values: Mapping[str, float], spool: Array) -> Array:
-    """The opening with the effect, a change of gain counted as one of the opening [A]."""
+    """The opening with the effect [A]; a change of gain counts as a change of opening."""
     call, parameters = contribution(effect)[0], in_order(effect, values)
     rows = [call(place, 1.0, 0.0, place, *parameters) for place in spool.tolist()]
     return np.array([opened * gain for opened, gain, _ in rows], dtype=np.float64)
 
 
 def _points(models: Models, x: Array, y: Array) -> tuple[Array, Array]:
-    """Both chambers' flows say how far the ports are open; where the pressures bear them, their mean does."""
+    """The mean of the openings that both chambers' flows give, where both pressure drops are large enough."""
     grid, spool = models.grid, models.spool
     if grid is None or spool is None:
         return NOTHING, NOTHING

@@ -1,4 +1,4 @@
-"""Laws of a sensor: what it shows beyond what is there."""
+"""Laws of a sensor: its error over the true value."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UNITS = {"position": "m", "velocity": "m/s", "pressure_a": "Pa", "pressure_b": "
 
 
 def law(models: Models, effect: NamedEffect) -> Law | None:
-    """The error of the sensor that the effect moves most; None where it has a memory, so a lag or play."""
+    """The error of the sensor that the effect changes most; None for an effect with memory, such as a lag or play."""
     if contribution(effect)[1]:
         return None
     pictures = models.diagnosis.pictures
@@ -35,16 +35,16 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     y, low, high = band(effect, evaluate)
     points_x, left = spread(at[name], pictures.measured[name] - at[name])
     title = capital(effect_title(effect.id))
-    across, up = Axis(channel_title(name), UNITS[name]), Axis("Shown less true", UNITS[name])
+    across, up = Axis(channel_title(name), UNITS[name]), Axis("Shown minus true", UNITS[name])
     return Law(title, across, up, x, y, low, high, 0.0 * x, points_x, np.interp(points_x, x, y) + left)
 
 
 UNIT = {"position": 1e-5, "velocity": 1e-3, "pressure_a": 1e4, "pressure_b": 1e4}
-"""What an error of each sensor is compared in: a usual noise [its unit]."""
+"""Usual noise of each sensor, in which its error is compared [its unit]."""
 
 
 def error(effect: NamedEffect, values: Mapping[str, float], name: str, true: Array) -> Array:
-    """What a sensor shows beyond the true values."""
+    """The error of a sensor at these true values."""
     call, parameters = contribution(effect)[0], in_order(effect, values)
     place = SENSED.index(name)
     shown = []

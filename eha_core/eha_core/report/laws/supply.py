@@ -19,7 +19,7 @@ FLOW = Axis("flow through the valve", "m^3/s")
 
 
 def law(models: Models, effect: NamedEffect) -> Law | None:
-    """The steady pressure over a steady flow. No equation of the chambers holds it alone, so it has no points."""
+    """The steady pressure over a steady flow, without points: no equation of the chambers contains it alone."""
     velocity = models.state("velocity")
     if not len(velocity):
         return None

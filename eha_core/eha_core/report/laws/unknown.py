@@ -1,4 +1,4 @@
-"""A law that the catalogue does not know, as it was recovered."""
+"""A recovered law that is not in the catalogue."""
 
 from __future__ import annotations
 

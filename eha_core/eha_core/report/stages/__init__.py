@@ -1,4 +1,4 @@
-"""The report's stages, one file each: every one makes a `Stage` from the diagnosis."""
+"""The report's stages, one file each, which makes a `Stage` from the diagnosis."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from eha_core.report.stages import calibrate, locate, model, name, next_experime
 
 
 def report_stages(diagnosis: Diagnosis, found: Mapping[str, Law] | None = None) -> tuple[Stage, ...]:
-    """The stages in the order in which the diagnosis came to its verdict, with the laws if they are found already."""
+    """The stages in the order of the diagnosis; `found`: the laws, if already known."""
     found = laws(diagnosis) if found is None else found
     return (
         read.stage(diagnosis),

@@ -1,4 +1,4 @@
-"""Stage 2, calibrate: what the nominal equations can do with their own parameters free."""
+"""Stage 2, calibrate: how well the nominal equations fit with their own parameters free."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ MOST_NAMED = 4
 """Changed parameters that the headline names; more are counted."""
 
 UNCHANGED_SEEN = 50.0
-"""Per cent; wider intervals of parameters that did not change run out of the picture."""
+"""Per cent; wider intervals of unchanged parameters are cut off at the plot's edge."""
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
-    """How far wrong values alone explain the recording."""
+    """How much of the mismatch other parameter values alone explain."""
     changed = [parameter for parameter in diagnosis.parameters if parameter.changed]
     if len(changed) > MOST_NAMED:
         headline = f"{len(changed)} parameters of the nominal model have to change"
@@ -30,7 +30,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
     else:
         headline = "No parameter of the nominal model has to change"
     sentences = [
-        "Before any physics is called missing, the parameters of the nominal equations are set free within their"
+        "Before any physics is called missing, the parameters of the nominal equations are fitted within their prior"
         " bounds, so that a wrong value is not taken for a missing effect.",
         calibration_alone(diagnosis),
     ]
@@ -38,10 +38,10 @@ def stage(diagnosis: Diagnosis) -> Stage:
     if held:
         stay = "it stays near its nominal value" if len(held) == 1 else "they stay near their nominal values"
         sentences.append(
-            f"This recording says little about {listed([words(parameter.name) for parameter in held])}; {stay}."
+            f"This recording hardly identifies {listed([words(parameter.name) for parameter in held])}; {stay}."
         )
     if diagnosis.biased and changed:
-        sentences.append("What is missing may have biased these values: do not take them for the rig's.")
+        sentences.append("The missing physics may have biased these values: do not take them for the rig's.")
     picture = _picture(diagnosis.parameters)
     return Stage(
         "calibrate", "Calibrate", headline, tuple(sentences), (picture,) if picture else (), (_table(diagnosis),)
@@ -69,7 +69,7 @@ def _picture(parameters: tuple[FittedParameter, ...]) -> Picture | None:
     panel = Panel(marks, "departure from the nominal value [%]", height=60 + 24 * len(shown), x_range=(-limit, limit))
     caption = (
         "Fitted parameters of the final model as departures from nominal, with 95 % intervals; changed ones in colour."
-        " An interval that ends at the plot's edge goes on beyond it."
+        " An interval that ends at the plot's edge continues beyond it."
     )
     return Picture("2-calibrate", (Group((panel,)),), caption=caption)
 

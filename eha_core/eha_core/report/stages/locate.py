@@ -28,30 +28,31 @@ from eha_core.report.wording import (
     words,
 )
 
-NOISE = Band(-2.0, 2.0, "what noise alone makes (2 standard deviations)")
+NOISE = Band(-2.0, 2.0, "noise alone (2 standard deviations)")
 MENTIONED_SHARE = 0.1
-"""Of the unexplained; another site that could take away less is only in the table."""
+"""Share of the unexplained error; another site that could explain less is only in the table."""
 
 SIGNIFICANT_SHARE = 0.03
-"""Of the variance; a dependence that explains less is not worth a headline."""
+"""Share of the variance; a dependence that explains less is not reported."""
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
-    """What calibration leaves, by equation and by channel, over time and over what it depends on most."""
+    """The residual after calibration, by equation and by channel, over time and over the variable that it depends on
+    most."""
     if not diagnosis.location:
         holds = equations_hold(diagnosis)
-        headline = "No equation is violated" if holds else "No mismatch is left that an effect would explain"
-        sentences = ["What calibration leaves is examined for structure, in time and over every state of the actuator."]
+        headline = "No equation is violated" if holds else "No mismatch remains that an effect would explain"
+        sentences = ["The residual of calibration is examined for structure, in time and over every state."]
     else:
         headline = capital(location_statement(diagnosis.location[0]))
         sentences = ["This is the mismatch that no choice of the nominal parameters removes."]
         sentences.append(_others(diagnosis))
         when = diagnosis.location[0].when
         if 1 < len(when) <= 6:
-            sentences.append(f"It departs from {listed([span(interval) for interval in when])}.")
+            sentences.append(f"It is largest from {listed([span(interval) for interval in when])}.")
     pictures = (
         _picture("3-locate", "Each equation, evaluated with the measured channels", diagnosis, _equations(diagnosis)),
-        _picture("3-locate-channels", "Each channel less the recalibrated model", diagnosis, _channels(diagnosis)),
+        _picture("3-locate-channels", "Each channel minus the recalibrated model", diagnosis, _channels(diagnosis)),
     )
     return Stage(
         "locate",
@@ -64,12 +65,12 @@ def stage(diagnosis: Diagnosis) -> Stage:
 
 
 def _others(diagnosis: Diagnosis) -> str:
-    """What effects of other sites could take away: the sites overlap, so the shares do not add up to one."""
+    """The shares that effects at other sites could explain: the sites overlap, so the shares do not add up to one."""
     weighty = [location for location in diagnosis.location[1:] if location.share > MENTIONED_SHARE]
     others = [f"{SITES[location.site].words} ({percent(location.share)})" for location in weighty]
     if not others:
         return ""
-    return f"Sites overlap in what they could explain: an effect {listed(others)} would take some away, too."
+    return f"Sites overlap in what they could explain: an effect {listed(others)} would also reduce the error."
 
 
 def _equations(diagnosis: Diagnosis) -> Iterator[tuple[str, Array, Array]]:
@@ -100,7 +101,7 @@ def _picture(name: str, title: str, diagnosis: Diagnosis, rows: Iterator[tuple[s
         if diagnosis.pictures.variables
         else "how often each value occurs"
     )
-    caption = f"Each over time, and beside or below it {right}."
+    caption = f"Each over time, and next to it {right}."
     return Picture(name, tuple(groups), (3, 2), title, caption)
 
 

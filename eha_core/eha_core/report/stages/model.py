@@ -1,4 +1,4 @@
-"""Stage 5, model: what was found, with its parameters and their uncertainty."""
+"""Stage 5, model: the named effects or the recovered law, with parameters and their uncertainty."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from eha_core.report.wording import (
 )
 from eha_core.report.worth import step_table, worth
 
-WITHOUT = "It was found from the equations of the measured channels; the simulation goes on without it."
+WITHOUT = "It was found from the equations of the measured channels; the simulation does not include it."
 
 
 LAW_HEIGHT = 240  # pixels
@@ -40,13 +40,13 @@ CELL = 22
 """Pixels of a row of correlations."""
 
 TOLD_TOGETHER = 0.9
-"""Correlation from which two parameters are said to be identified only together (a common rule of thumb)."""
+"""Correlation from which two parameters count as identified only together (a common rule of thumb)."""
 
 MOST_PAIRS = 4
 
 
 def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
-    """The named physics effect by effect in words, equations, numbers and laws, or the recovered law as a curve."""
+    """Each named effect in words, equation, numbers and law; or the recovered law as a curve."""
     if not diagnosis.effects:
         return _without_names(diagnosis)
     pictures = tuple(
@@ -67,7 +67,7 @@ def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
 
 
 def _without_names(diagnosis: Diagnosis) -> Stage:
-    """The recovered law alone, or the model as it stands."""
+    """The recovered law alone, or the model without added physics."""
     if diagnosis.unknown:
         headline, facts, formula = _recovered(diagnosis.unknown, diagnosis.biased)
         return Stage("model", "Model", headline, facts, code=formula)
@@ -86,7 +86,7 @@ def _recovered(law: UnknownLaw, biased: bool) -> tuple[str, tuple[str, ...], str
 
 
 def _part(diagnosis: Diagnosis, place: int, effect: NamedEffect, found: Mapping[str, Law]) -> Part:
-    """One effect: what it is, how large, where it acts, what it is worth, and its law."""
+    """One effect: its statement, values, site, contribution and law."""
     details = missing(effect)
     title = f"{place}. {capital(details.title)}: {', '.join(details.values)}"
     acts = f"It acts {SITES[effect.site].words}. The name is {probable(effect.probability)} probable."
@@ -97,15 +97,15 @@ def _part(diagnosis: Diagnosis, place: int, effect: NamedEffect, found: Mapping[
 
 
 def correlations(diagnosis: Diagnosis) -> Picture | None:
-    """How the fitted parameters' errors depend on each other."""
+    """The correlation matrix of the fitted parameters' errors; None of fewer than two."""
     names, matrix = diagnosis.correlation.names, diagnosis.correlation.matrix
     if len(names) < 2:
         return None
     titles = tuple(_parameter_title(name) for name in names)
     panel = Panel((Cells(titles, np.array(matrix), -1.0, 1.0),), height=CELL * len(names))
     caption = (
-        "Correlation of the fitted parameters' errors. Near 1 or -1, this recording tells only a combination of the"
-        " two, and either may be wrong with the other."
+        "Correlation of the fitted parameters' errors. Near 1 or -1, this recording identifies only a combination of"
+        " the two, and either may be wrong with the other."
     )
     return Picture(
         "5-model-correlation", (Group((panel,)),), title="What is identified only together", caption=caption
@@ -113,8 +113,7 @@ def correlations(diagnosis: Diagnosis) -> Picture | None:
 
 
 def _told_together(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """The pairs of parameters that hardly can be distinguished, one of the missing physics among them, the closest
-    first."""
+    """The strongly correlated pairs with a parameter of the missing physics, the strongest first, as a sentence."""
     names, matrix = diagnosis.correlation.names, diagnosis.correlation.matrix
     pairs = [
         (abs(matrix[row][column]), names[row], names[column])
@@ -128,7 +127,7 @@ def _told_together(diagnosis: Diagnosis) -> tuple[str, ...]:
         f"{_parameter_title(name)} with {_parameter_title(other)} ({size:.2f})"
         for size, name, other in sorted(pairs, reverse=True)[:MOST_PAIRS]
     ]
-    return (f"Strongly correlated, so less sure each than together: {listed(shown)}.",)
+    return (f"Strongly correlated, and therefore less certain each than together: {listed(shown)}.",)
 
 
 def _parameter_title(name: str) -> str:
@@ -137,7 +136,7 @@ def _parameter_title(name: str) -> str:
 
 
 def _collapse(diagnosis: Diagnosis) -> Picture | None:
-    """The channel whose mismatch hung most on a variable, over that variable, without and with the physics."""
+    """The mismatch of one channel over the variable on which it depended most, without and with the physics."""
     pictures, fits = diagnosis.pictures, judged(diagnosis)
     found = []
     for name, after in pictures.after.items():
@@ -155,7 +154,7 @@ def _collapse(diagnosis: Diagnosis) -> Picture | None:
     marks = (NOISE, Dots(x, old, "calibrated", LABELS["calibrated"]), Dots(x, new, "after", LABELS["after"]))
     panel = Panel(marks, f"{variable_title(dependence.variable)} [{scale.unit}]", "in units of noise", height=330)
     title = f"Mismatch of the {channel_title(name)}, without and with the added physics"
-    return Picture("5-model", (Group((panel,)),), title=title, caption="What the added physics takes away.")
+    return Picture("5-model", (Group((panel,)),), title=title, caption="The mismatch that the added physics removes.")
 
 
 def _intervals(diagnosis: Diagnosis) -> Picture | None:

@@ -11,33 +11,33 @@ from eha_core.report.wording import listed, probable
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
-    """Which of the catalogue's effects were tried, and how far the winner is ahead."""
+    """The sets of effects that were fitted, and how far the winner is ahead."""
     sentences = [
-        "A linear model of all effects at once says which sets should explain most. Those were fitted with every"
-        " nominal parameter free. An effect has to gain more than its own parameters cost."
+        "A linear model of all effects at once predicts which sets explain most. Those were fitted with every nominal"
+        " parameter free. An effect has to gain more than its own parameters cost."
     ]
     pictures = (evidence_picture(diagnosis),) if diagnosis.rivals else ()
     if not pictures:
-        sentences.append("Too little is expected of every effect of the catalogue; none was fitted.")
+        sentences.append("The predicted gain of every effect in the catalogue is too small; none was fitted.")
     elif not adds_physics(diagnosis):
         sentences.append(_why_none(diagnosis))
     if diagnosis.alternatives:
         rivals = listed([named(alternative.effects) for alternative in diagnosis.alternatives])
-        sentences.append(f"This recording does not tell it from {rivals}: see the next experiment.")
+        sentences.append(f"In this recording it cannot be distinguished from {rivals}: see the next experiment.")
     return Stage("name", "Name", _headline(diagnosis), tuple(sentences), pictures, _sets(diagnosis))
 
 
 def _sets(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    """The sets that together hold 95 % of the probability."""
+    """Table of the sets that together have 95 % of the probability."""
     chosen = {effect.id for effect in diagnosis.effects}
     rows = tuple((rung(set(each.effects), chosen), probable(each.probability)) for each in diagnosis.sets)
-    return (Table(("set", "probability"), rows, "Sets that together hold 95 % of the probability"),) if rows else ()
+    return (Table(("set", "probability"), rows, "Sets that together have 95 % of the probability"),) if rows else ()
 
 
 def _why_none(diagnosis: Diagnosis) -> str:
     """Why no effect was named although some were fitted."""
     gained = any(effects and score > ENOUGH for effects, score in diagnosis.rivals)
-    missed = "what gains more rests on a bound, or does not on data kept from the fit" if gained else "none does"
+    missed = "those that do are at a prior bound or do not on held-out data" if gained else "none does"
     return f"To be named, one has to gain {ENOUGH:.0f}; {missed}."
 
 
@@ -53,7 +53,7 @@ def _headline(diagnosis: Diagnosis) -> str:
         "parameters": "Other parameter values suffice; no physics has to be added",
         "missing_physics": f"The evidence points to {winner}",
         "ambiguous": f"The best explanation is {winner}, but it is not the only one",
-        "unknown_physics": f"The evidence points to {winner} and a law that the catalogue does not name"
+        "unknown_physics": f"The evidence points to {winner} and a law that is not in the catalogue"
         if count
         else "Nothing in the catalogue explains it",
     }[diagnosis.verdict]

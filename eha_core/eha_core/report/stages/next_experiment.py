@@ -1,4 +1,4 @@
-"""Stage 7, next experiment: the test that would separate what this recording cannot."""
+"""Stage 7, next experiment: the test that would separate explanations which this recording cannot."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def stage(diagnosis: Diagnosis) -> Stage:
     experiment = diagnosis.next_experiment
     if experiment is None:
         if diagnosis.verdict in ("ambiguous", "unknown_physics"):
-            return Stage("next", "Next experiment", "No test is proposed", ("A longer or faster test may tell more.",))
-        sentences = ("No explanations are left that a further test would have to tell apart.",)
+            return Stage("next", "Next experiment", "No test is proposed", ("A longer or faster test may show more.",))
+        sentences = ("There are no rival explanations that a further test would have to distinguish.",)
         return Stage("next", "Next experiment", "No further experiment is needed", sentences)
     reference = experiment.reference
     if not reference:
@@ -35,11 +35,11 @@ def stage(diagnosis: Diagnosis) -> Stage:
     return Stage(
         "next",
         "Next experiment",
-        f"One more test would tell {' from '.join(effect_title(effect) for effect in experiment.separates[:2])}",
+        f"One more test would distinguish {' from '.join(effect_title(effect) for effect in experiment.separates[:2])}",
         (
             sentence(statement),
             f"It lasts {experiment.duration:g} s; record {recorded}.",
-            f"{FILE} beside this page holds it for the reference node. Then diagnose both recordings together:",
+            f"{FILE} beside this page is the test for the reference node. Then diagnose both recordings together:",
         ),
         (_picture(reference, experiment.duration),),
         code=commands(experiment),

@@ -16,7 +16,7 @@ from eha_core.report.wording import capital, channel_title, channels_listed, pla
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
-    """What was recorded, how noisy it is, and what could not be looked at."""
+    """The recorded channels, their noise and faults, and the equations that could not be examined."""
     used = channels_listed(_channels(diagnosis))
     sentences = [
         f"{Path(diagnosis.path).name} was read and its channels were put on one clock.",
@@ -38,13 +38,13 @@ def stage(diagnosis: Diagnosis) -> Stage:
 
 
 def _channels(diagnosis: Diagnosis) -> list[str]:
-    """What was used, causes before effects."""
+    """The channels that were used, inputs before outputs."""
     return sorted(diagnosis.pictures.measured, key=list(CHANNEL_KINDS).index)
 
 
 def _picture(diagnosis: Diagnosis) -> Picture:
     pictures = diagnosis.pictures
-    shaded = (Spans(pictures.held_out, "held out to judge the models"),) if pictures.held_out else ()
+    shaded = (Spans(pictures.held_out, "held-out data"),) if pictures.held_out else ()
     panels = []
     for name in _channels(diagnosis):
         scale = scale_for(CHANNEL_KINDS[name].unit, float(abs(pictures.measured[name]).max()))
@@ -54,7 +54,7 @@ def _picture(diagnosis: Diagnosis) -> Picture:
     return Picture(
         "1-read",
         (Group(tuple(panels)),),
-        caption="The recording; models are judged on the shaded parts after a fit to the others.",
+        caption="The recording; the models are fitted to the unshaded parts and evaluated on the shaded ones.",
     )
 
 

@@ -21,9 +21,9 @@ LAGS = 60
 
 
 def stage(diagnosis: Diagnosis) -> Stage:
-    """Before, calibrated and after, against the noise floor; and whether the residual is noise."""
-    kept = "Parts of the recording were kept from the fit, and the models are judged on them."
-    fitted = "The models are judged on the data they were fitted to."
+    """The errors of the nominal, recalibrated and augmented models, and whether the residual is noise."""
+    kept = "Parts of the recording were held out from the fit, and the models are evaluated on them."
+    fitted = "The models are evaluated on the data that they were fitted to."
     sentences = (kept if diagnosis.held_out else fitted, improvement(diagnosis), *_of_sizes(diagnosis))
     return Stage(
         "show",
@@ -39,12 +39,12 @@ def stage(diagnosis: Diagnosis) -> Stage:
 
 
 def _of_sizes(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """What the tables of smallest sizes rest on."""
+    """The assumptions behind the tables of smallest sizes."""
     if diagnosis.undetected is None:
         return ()
     return (
-        "What was not named is absent, or smaller than the last tables say: sizes of one effect at a time, with the"
-        " model and the noise that were found, from the search's quadratic model of this recording.",
+        "An effect that was not named is absent or smaller than in the last tables. These assume one further effect at"
+        " a time, the fitted model and noise, and the search's quadratic model of this recording.",
     )
 
 
@@ -61,7 +61,7 @@ def error_table(diagnosis: Diagnosis) -> Table:
 
 
 def prediction_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    """RMSE of the final model where no state was fitted to the data: run ahead from measured states, and freely."""
+    """RMSE of the final model without fitted states: predicted ahead from measured states, and free-running."""
     if not diagnosis.prediction:
         return ()
     ahead = list(next(iter(diagnosis.prediction.values())).ahead)
@@ -79,14 +79,14 @@ def _overlays(diagnosis: Diagnosis) -> Picture:
     for name in diagnosis.pictures.after:
         groups += [_whole(diagnosis, name), _close_up(diagnosis, name)]
     caption = (
-        "The held-out spans with the residual in them, and beside or below them where the recalibrated model is worst."
-        " Drawn are the final models; for the errors in the table they were fitted again without these spans."
+        "The held-out intervals with the residual below, and next to them the one where the recalibrated model is"
+        " worst. The lines are the final models; the errors in the table are of models refitted without these intervals."
     )
     return Picture("6-show", tuple(groups), (3, 2), "Measured and modelled", caption)
 
 
 def _models(diagnosis: Diagnosis, name: str) -> list[tuple[str, Array]]:
-    """The models of a channel by role; where nothing was added, the calibrated one is the final one."""
+    """The models of a channel by role; without added physics the recalibrated model is the final one."""
     models = [(role, getattr(diagnosis.pictures, role)) for role in MODELS]
     if not adds_physics(diagnosis):
         del models[MODELS.index("after")]
@@ -150,13 +150,13 @@ def _whiteness(diagnosis: Diagnosis) -> Picture:
         "6-show-whiteness",
         tuple(groups),
         (1,) * min(3, max(1, len(groups))),
-        "Is anything left to explain?",
-        "Autocorrelation of the residual. White noise stays in the band; what leaves it is not noise alone.",
+        "Is the residual white?",
+        "Autocorrelation of the residual. White noise stays within the band.",
     )
 
 
 def _over_input(diagnosis: Diagnosis) -> tuple[Picture, ...]:
-    """Each channel's residual over the voltage at its time; none where no voltage was recorded."""
+    """Each channel's residual over the voltage at the same time; empty where no voltage was recorded."""
     pictures, groups = diagnosis.pictures, []
     if "voltage_command" not in pictures.measured:
         return ()
@@ -174,5 +174,5 @@ def _over_input(diagnosis: Diagnosis) -> tuple[Picture, ...]:
         title = capital(channel_title(name))
         groups.append(Group((Panel(tuple(marks), f"voltage [{across.unit}]", up.unit, title, 220),)))
     columns = (1,) * min(3, max(1, len(groups)))
-    caption = "Measured less modelled over the voltage: a residual that depends on the input is not noise."
+    caption = "Measured minus modelled over the voltage: a residual that depends on the input is not noise."
     return (Picture("6-show-input", tuple(groups), columns, "Does the residual depend on the input?", caption),)
