@@ -128,7 +128,7 @@ def residual(position: float, pressure: float) -> Residual:
 
 @pytest.fixture(scope="session")
 def several(friction: Diagnosis) -> Diagnosis:
-    """Three effects, with what each is worth; the overlap's edge is not distinguished from a sharp one."""
+    """Three effects, with the residual without each; the overlap's edge is not distinguished from a sharp one."""
     overlap = {"half_width": FittedValue(5.96e-5, 4.3e-7, "A"), "rounding": FittedValue(0.0, 3.2e-5, "A")}
     effects = (
         NamedEffect("valve_deadband", "orifice", "opening = ...", overlap, 9000.0, "the lands overlap: 59.6 µA"),

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from eha_core.diagnosis.result import ChannelFit, Diagnosis, Location
-from eha_core.report.claims import WHITE, equations_hold, improvement, is_noise, left_over, noise_floor
+from eha_core.report.claims import WHITE, equations_hold, improvement, is_noise, noise_floor, residual_headline
 from eha_core.report.finding import headline, supporting
 from eha_core.report.stages import report_stages
 
@@ -46,7 +46,7 @@ def test_noise_is_claimed_where_size_and_whiteness_bear_it(
     friction: Diagnosis, ratio: float, whiteness: float, said: str
 ) -> None:
     made = diagnosis_with(friction, ratio, whiteness)
-    assert left_over(made) == said
+    assert residual_headline(made) == said
     assert {one.name: one for one in report_stages(made)}["show"].headline == said
     assert is_noise(made) == (said == "The residual is noise")
 
@@ -145,16 +145,16 @@ def test_an_explanation_that_is_not_complete_says_so_first(friction: Diagnosis) 
     partly = explaining(friction, explained=part)
     assert "and more that is not named" in headline(partly)
     text = " ".join(supporting(partly))
-    assert "explains 91.2 % of the recalibrated" in text
+    assert "explains 91.2 % of the" in text
     assert (
         "more is missing, most likely in the valve's flow: the residual is up to 3.21 times the noise, in position"
         in text
     )
     whole = explaining(friction, explained=SimpleNamespace(share=0.9996, times_noise={"position": 1.0}, complete=True))
     assert "more" not in headline(whole)
-    assert "explains 99.96 % of the recalibrated" in " ".join(supporting(whole))
+    assert "explains 99.96 % of the" in " ".join(supporting(whole))
     nearly = SimpleNamespace(share=0.9999991, times_noise={"position": 1.0}, complete=True)
-    assert "explains more than 99.99 % of the recalibrated" in " ".join(supporting(explaining(friction, explained=nearly)))
+    assert "explains more than 99.99 % of the" in " ".join(supporting(explaining(friction, explained=nearly)))
 
 
 def test_predictions_stand_in_a_table_in_their_own_units(friction: Diagnosis) -> None:

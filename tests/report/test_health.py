@@ -11,7 +11,7 @@ from eha_core.health import Fault
 from eha_core.report.account import account
 from eha_core.report.finding import warnings
 from eha_core.report.first_screen import pictures, residual_picture
-from eha_core.report.health import excluded, faults_told
+from eha_core.report.health import excluded, fault_lines
 from eha_core.report.picture import Band, Line, Spans
 from eha_core.report.stages import read
 from eha_core.report.summary import summarise
@@ -36,14 +36,14 @@ def test_the_terminal_names_channel_span_and_remedy_before_the_verdict(friction:
 
 def test_a_hole_of_several_channels_is_told_once(friction: Diagnosis) -> None:
     holes = [replace(HOLE, channel=name) for name in ("voltage_command", "position", "pressure_a")]
-    (line,) = faults_told(ill(friction, *holes))
+    (line,) = fault_lines(ill(friction, *holes))
     assert line.startswith("voltage_command, position, pressure_a: no sample for 0.5 s, from 4 s to 4.5 s")
 
 
 def test_of_several_recordings_the_number_is_told(friction: Diagnosis) -> None:
     two = tuple(RecordingFit(path, {}, {}) for path in ("a.mcap", friction.path))
     several = replace(friction, together=two, health=((1, FROZEN), (2, HOLE)))
-    assert [line.partition(":")[0] for line in faults_told(several)] == ["recording 1", "recording 2"]
+    assert [line.partition(":")[0] for line in fault_lines(several)] == ["recording 1", "recording 2"]
     assert excluded(several, "position") == ((4.0, 4.5),)
 
 

@@ -11,10 +11,10 @@ from eha_core.quantities import quantity, scale_for, short, within
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.each_recording import each_recording
-from eha_core.report.finding import fitted_in_words, told_parameters
-from eha_core.report.health import faults_told
+from eha_core.report.finding import fitted_in_words, identified_parameters
+from eha_core.report.health import fault_lines
 from eha_core.report.location import location_statement
-from eha_core.report.stage import errors_told, models_told
+from eha_core.report.stage import compared_models, model_errors
 from eha_core.report.undetected import not_missing
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
@@ -49,7 +49,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
         "Recording",
         f"{Path(diagnosis.path).name}: {diagnosis.duration:.1f} s of {channels_listed(diagnosis.channels)}",
     )
-    yield "Health", "; ".join(faults_told(diagnosis))
+    yield "Health", "; ".join(fault_lines(diagnosis))
     yield "Verdict", diagnosis.summary
     for record in diagnosis.long_records:
         yield "Whole", record.statement
@@ -72,7 +72,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
 
 
 def _named(effect: NamedEffect) -> str:
-    values = [f"{name} {fitted_in_words(fitted)}" for name, fitted in told_parameters(effect).items()]
+    values = [f"{name} {fitted_in_words(fitted)}" for name, fitted in identified_parameters(effect).items()]
     return f"{effect.id} ({', '.join(values)}; 95 %)"
 
 
@@ -94,9 +94,9 @@ def _improvement(diagnosis: Diagnosis) -> list[str]:
     if not fits:
         return []
     heading = f"{'RMSE on held-out data' if diagnosis.held_out else 'RMSE':30}"
-    lines = [heading + "".join(f"{column:>13}" for column in (*models_told(diagnosis), "noise"))]
+    lines = [heading + "".join(f"{column:>13}" for column in (*compared_models(diagnosis), "noise"))]
     for name, fit in list(fits.items())[:4]:
-        values = (*errors_told(diagnosis, fit), fit.noise)
+        values = (*model_errors(diagnosis, fit), fit.noise)
         scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
         title = f"{channel_title(name)} [{scale.unit}]"
         lines.append(f"  {title:28}" + "".join(f"{short(value / scale.factor):>13}" for value in values))

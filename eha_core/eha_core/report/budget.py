@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from eha_core.error_budget import Budget, Share
 from eha_core.error_budget.rig import PARAMETERS
-from eha_core.error_budget.shares import Figure as Told
+from eha_core.error_budget.shares import Figure as Value
 from eha_core.quantities import Scale, quantity, scale_for, short
 from eha_core.report.study_files import write_study
 
@@ -35,12 +35,12 @@ def document(budget: Budget) -> dict[str, Any]:
             "parameters": {row.name: getattr(task.signal, row.name) for row in task.signal.parameters()},
             "duration": task.duration, "skip": task.skip, "rate": task.rate, "command_limit": task.command_limit,
         },
-        "today": _told(budget.today),
-        "modelled": _told(budget.modelled),
-        "repaired": _told(budget.repaired),
+        "today": _value(budget.today),
+        "modelled": _value(budget.modelled),
+        "repaired": _value(budget.repaired),
         "shares": [{"name": row.name, "statement": row.statement, "repairable": row.repairable,
-                    "share": _told(row.share), "gain": _told(row.gain)} for row in budget.shares],
-        "order": [{"name": step.name, "rmse": _told(step.rmse)} for step in budget.order],
+                    "share": _value(row.share), "gain": _value(row.gain)} for row in budget.shares],
+        "order": [{"name": step.name, "rmse": _value(step.rmse)} for step in budget.order],
         "subsets": [{"departures": list(names), "rmse": rmse} for names, rmse in budget.subsets.items()],
         "remarks": list(budget.remarks),
     }  # fmt: skip
@@ -51,7 +51,7 @@ def as_json(budget: Budget) -> str:
     return json.dumps(document(budget), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _told(figure: Told) -> dict[str, float]:
+def _value(figure: Value) -> dict[str, float]:
     return {"value": figure.value, "reach": figure.reach}
 
 
@@ -84,11 +84,11 @@ def _task(budget: Budget) -> str:
     return f"a {task.signal.name} ({settings}) of {drive}, counted from {task.skip:g} s to {task.duration:g} s"
 
 
-def _row(name: str, scale: Scale, first: Told, second: Told | None = None) -> str:
+def _row(name: str, scale: Scale, first: Value, second: Value | None = None) -> str:
     return f"  {name:30}{_shown(first, scale):>24}{_shown(second, scale) if second else '':>24}".rstrip()
 
 
-def _shown(figure: Told, scale: Scale) -> str:
+def _shown(figure: Value, scale: Scale) -> str:
     """Value and half of the interval, with the digits that the interval justifies; three digits without one."""
     value, reach = figure.value / scale.factor, figure.reach / scale.factor
     if not reach > 0.0:

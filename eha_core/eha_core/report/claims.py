@@ -46,7 +46,7 @@ def is_noise(diagnosis: Diagnosis) -> bool:
     return largest_ratio(diagnosis) < NOISE_ALONE and not coloured(diagnosis)
 
 
-def left_over(diagnosis: Diagnosis) -> str:
+def residual_headline(diagnosis: Diagnosis) -> str:
     """The final model's residual, as a headline."""
     ratio = largest_ratio(diagnosis)
     if is_noise(diagnosis):
@@ -56,7 +56,7 @@ def left_over(diagnosis: Diagnosis) -> str:
     return f"The residual is up to {ratio:.1f} times the noise"
 
 
-def left_in_words(diagnosis: Diagnosis) -> str:
+def residual_in_words(diagnosis: Diagnosis) -> str:
     """The size of the final model's residual, and whether it is white; empty where no error is known."""
     ratios = _ratios(diagnosis)
     if not ratios or not diagnosis.whiteness:
@@ -81,7 +81,7 @@ def equations_hold(diagnosis: Diagnosis) -> bool:
     return all(float(np.mean(residual**2)) < VIOLATED for residual in residuals)
 
 
-def told_channel(diagnosis: Diagnosis) -> str:
+def representative_channel(diagnosis: Diagnosis) -> str:
     """The channel whose error represents all: the position, or else the first; empty if its error is not known."""
     fits = judged(diagnosis)
     name = _leading_channel(fits)
@@ -107,7 +107,7 @@ def calibration_alone(diagnosis: Diagnosis) -> str:
 
 def improvement(diagnosis: Diagnosis) -> str:
     """The error of the representative channel without and with the added physics; empty if not known."""
-    name = told_channel(diagnosis)
+    name = representative_channel(diagnosis)
     if not name:
         return ""
     fit, unit = judged(diagnosis)[name], CHANNEL_KINDS[name].unit

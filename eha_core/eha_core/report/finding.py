@@ -9,7 +9,7 @@ from importlib import import_module
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, FittedValue, NamedEffect
 from eha_core.effects import SITES, effects
 from eha_core.quantities import bounds, quantity, within
-from eha_core.report.health import faults_told
+from eha_core.report.health import fault_lines
 from eha_core.report.stage import SURE
 from eha_core.report.undetected import not_missing
 from eha_core.report.wording import (
@@ -48,7 +48,7 @@ class Missing:
 def missing(effect: NamedEffect) -> Missing:
     """A named effect in words."""
     declared = import_module(f"eha_core.effects.{effect.id}").EFFECT
-    shown = told_parameters(effect)
+    shown = identified_parameters(effect)
     switching = [row.name for row in declared.parameters if row.switches and row.name in shown]
     values = []
     for name in switching[:MOST_VALUES]:
@@ -59,7 +59,7 @@ def missing(effect: NamedEffect) -> Missing:
     return Missing(effect_title(effect.id), tuple(values), cause if colon else "", when)
 
 
-def told_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
+def identified_parameters(effect: NamedEffect) -> Mapping[str, FittedValue]:
     """The parameters that the recording identifies: all but those whose interval includes a neutral zero.
 
     A rounded edge that may be sharp is no finding. An effect without an identified parameter keeps all of them, and so
@@ -127,7 +127,7 @@ def warnings(diagnosis: Diagnosis) -> tuple[str, ...]:
     # with several recordings, a remark begins with its recording's path
     shown = [sentence(remark) if remark.startswith("warning") else f"{remark}." for remark in doubts]
     damaged = f"Warning: the file is damaged, and this rests on what could be read: {diagnosis.damaged}."
-    faults = (sentence(plain(line)) for line in faults_told(diagnosis))
+    faults = (sentence(plain(line)) for line in fault_lines(diagnosis))
     return (*shown, *([damaged] if diagnosis.damaged else ()), *faults)
 
 

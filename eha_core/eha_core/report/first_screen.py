@@ -11,6 +11,7 @@ from eha_core.identification.numbers import Array
 from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
+from eha_core.report.contribution import ladder_picture
 from eha_core.report.evidence import evidence_picture
 from eha_core.report.health import Intervals, drawn_line, excluded, shaded
 from eha_core.report.laws import Law, laws
@@ -18,7 +19,6 @@ from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel
 from eha_core.report.series import spread
 from eha_core.report.stage import adds_physics
 from eha_core.report.wording import capital, channel_title
-from eha_core.report.worth import ladder_picture
 
 RIVALS = 5
 """Hypotheses that the first screen compares; stage 4 has more."""

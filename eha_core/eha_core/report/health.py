@@ -15,7 +15,7 @@ from eha_core.report.series import pieces, thinned
 Intervals = tuple[tuple[float, float], ...]
 
 
-def faults_told(diagnosis: Diagnosis) -> Iterator[str]:
+def fault_lines(diagnosis: Diagnosis) -> Iterator[str]:
     """One line for each channel and kind of fault; with several recordings, with the recording's number."""
     for number in sorted({number for number, _ in diagnosis.health}):
         for line in in_words([fault for other, fault in diagnosis.health if other == number]):

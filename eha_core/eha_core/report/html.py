@@ -14,6 +14,7 @@ from plotly.offline import get_plotlyjs
 
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.report.contents import Contents, contents_of
+from eha_core.report.contribution import effect_table
 from eha_core.report.experiment_file import FILE
 from eha_core.report.finding import headline, supporting, warnings
 from eha_core.report.key_figures import KeyFigure, key_figures
@@ -22,7 +23,6 @@ from eha_core.report.plotly_drawing import figure
 from eha_core.report.stage import Part, Stage, Table
 from eha_core.report.stages.show import error_table
 from eha_core.report.wording import VERDICT_TITLES, words
-from eha_core.report.worth import effect_table
 
 
 def page(diagnosis: Diagnosis, contents: Contents | None = None) -> str:

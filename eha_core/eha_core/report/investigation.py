@@ -12,7 +12,7 @@ from eha_core.errors import EhaError
 from eha_core.investigation import ENDINGS, Investigation, Step
 from eha_core.investigation.ending import sets_of
 from eha_core.report.investigation_page import page
-from eha_core.report.investigation_words import effect_in_words, left_over, probability_of
+from eha_core.report.investigation_words import effect_in_words, possible_sets, probability_of
 
 SCHEMA = "eha.investigation/1"
 PAGE, DOCUMENT = "investigation.html", "investigation.json"
@@ -50,7 +50,7 @@ def step_account(state: Investigation) -> str:
     step, number = state.steps[-1], len(state.steps)
     signal = f"a {step.test.signal.signal} of voltage ({step.test.signal.settings()}) for {step.test.duration:g} s"
     lines = wrap(f"Test {number}: {signal}", _WIDTH, subsequent_indent="  ")
-    for text in (f"purpose: {step.test.purpose}", f"possible: {left_over(step.diagnosis)}"):
+    for text in (f"purpose: {step.test.purpose}", f"possible: {possible_sets(step.diagnosis)}"):
         lines += wrap(text, _WIDTH, initial_indent="  ", subsequent_indent="    ")
     return "\n".join(lines)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eha_core.diagnosis.result import Diagnosis, NamedEffect
 from eha_core.investigation.ending import sets_of
-from eha_core.report.finding import fitted_in_words, told_parameters
+from eha_core.report.finding import fitted_in_words, identified_parameters
 from eha_core.report.wording import effect_title, probable, words
 
 
@@ -20,11 +20,13 @@ def set_title(ids: tuple[str, ...]) -> str:
 
 def effect_in_words(effect: NamedEffect) -> str:
     """An effect with its values and their 95 % intervals."""
-    values = ", ".join(f"{words(name)} {fitted_in_words(value)}" for name, value in told_parameters(effect).items())
+    values = ", ".join(
+        f"{words(name)} {fitted_in_words(value)}" for name, value in identified_parameters(effect).items()
+    )
     return f"{effect_title(effect.id)} ({values})"
 
 
-def left_over(found: Diagnosis) -> str:
+def possible_sets(found: Diagnosis) -> str:
     """The sets that are still possible, with their probabilities."""
     sets = [f"{set_title(ids)}{_chance(probability_of(found, ids))}" for ids in sets_of(found)]
     return sets[0] if len(sets) == 1 else f"{len(sets)} sets: {'; '.join(sets)}"

@@ -11,7 +11,7 @@ from eha_core.diagnosis.criteria import TIE
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import quantity, short
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.claims import judged, left_in_words, left_over, told_channel
+from eha_core.report.claims import judged, representative_channel, residual_headline, residual_in_words
 from eha_core.report.evidence import behind_in_words, named, rung
 from eha_core.report.wording import channel_title, effect_title, listed
 
@@ -46,7 +46,7 @@ def _each_is_needed(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
 
 
 def _better(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
-    name = told_channel(diagnosis)
+    name = representative_channel(diagnosis)
     if not name:
         return
     fit, unit = judged(diagnosis)[name], CHANNEL_KINDS[name].unit
@@ -64,9 +64,9 @@ def _better(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
 
 
 def _left(diagnosis: Diagnosis) -> Iterator[KeyFigure]:
-    basis = left_in_words(diagnosis)
+    basis = residual_in_words(diagnosis)
     if basis:
-        answer = left_over(diagnosis).removeprefix("The residual is ")
+        answer = residual_headline(diagnosis).removeprefix("The residual is ")
         yield KeyFigure("How large is the residual?", f"{answer[:1].upper()}{answer[1:]}", basis)
 
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from eha_core.diagnosis.result import Alternative, Diagnosis, FittedParameter, Location, NamedEffect
 from eha_core.errors import EhaError
 from eha_core.motion_given import Found
+from eha_core.report.contribution import ladder_picture
 from eha_core.report.document import as_json, document
 from eha_core.report.first_screen import law_picture, residual_picture
 from eha_core.report.picture import Picture
 from eha_core.report.stages import report_stages
 from eha_core.report.stages.model import correlations
 from eha_core.report.summary import Summary, summarise
-from eha_core.report.worth import ladder_picture
 
 if TYPE_CHECKING:
     from eha_core.report.figures import Drawn

@@ -51,14 +51,14 @@ def adds_physics(diagnosis: Diagnosis) -> bool:
     return bool(diagnosis.effects or diagnosis.unknown)
 
 
-def models_told(diagnosis: Diagnosis) -> tuple[str, ...]:
+def compared_models(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The models with errors of their own: without added physics the recalibrated model is the final one."""
     return ("nominal", "recalibrated", "augmented")[: 3 if adds_physics(diagnosis) else 2]
 
 
-def errors_told(diagnosis: Diagnosis, fit: ChannelFit) -> tuple[float, ...]:
-    """The RMSE of each of `models_told` in a channel."""
-    return (fit.rmse_before, fit.rmse_calibrated, fit.rmse_after)[: len(models_told(diagnosis))]
+def model_errors(diagnosis: Diagnosis, fit: ChannelFit) -> tuple[float, ...]:
+    """The RMSE of each of `compared_models` in a channel."""
+    return (fit.rmse_before, fit.rmse_calibrated, fit.rmse_after)[: len(compared_models(diagnosis))]
 
 
 def judged_spans(diagnosis: Diagnosis) -> tuple[tuple[float, float], ...]:

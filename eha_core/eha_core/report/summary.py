@@ -13,9 +13,9 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import scale_for, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
-from eha_core.report.finding import told_parameters
-from eha_core.report.health import faults_told
-from eha_core.report.stage import SURE, Table, errors_told, models_told
+from eha_core.report.finding import identified_parameters
+from eha_core.report.health import fault_lines
+from eha_core.report.stage import SURE, Table, compared_models, model_errors
 from eha_core.report.undetected import not_missing
 from eha_core.report.wording import VERDICT_TITLES, channel_title, channels_listed, plain, sentence
 
@@ -64,7 +64,7 @@ def summarise(diagnosis: Diagnosis) -> Summary:
     name, channels = Path(diagnosis.path).name, channels_listed(diagnosis.channels)
     facts = (
         ("Recording", f"{name}, {diagnosis.duration:.1f} s: {channels}"),
-        *(("Health", sentence(plain(fault))) for fault in faults_told(diagnosis)),
+        *(("Health", sentence(plain(fault))) for fault in fault_lines(diagnosis)),
         ("Verdict", VERDICT_TITLES[diagnosis.verdict]),
         ("Finding", diagnosis.summary),
         *(("Not found", text) for text in (not_missing(diagnosis),) if text),
@@ -77,7 +77,7 @@ def _effects(diagnosis: Diagnosis) -> Table:
     rows = tuple(
         _row(f"{effect.id}.{name}", fitted.value, fitted.std, fitted.unit)
         for effect in diagnosis.effects
-        for name, fitted in told_parameters(effect).items()
+        for name, fitted in identified_parameters(effect).items()
     )
     return Table(("missing physics", "value", "std err", "[0.025", "0.975]", "unit"), rows, "Missing physics")
 
@@ -107,11 +107,11 @@ def _errors(diagnosis: Diagnosis) -> Table:
     rows = []
     for name, fit in judged(diagnosis).items():
         scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
-        values = (*errors_told(diagnosis, fit), fit.noise)
+        values = (*model_errors(diagnosis, fit), fit.noise)
         cells = [short(value / scale.factor) for value in values]
         rows.append((channel_title(name), *cells, scale.unit, short(fit.rmse_after / fit.noise)))
     title = "RMSE on held-out data" if diagnosis.held_out else "RMSE"
-    models = models_told(diagnosis)
+    models = compared_models(diagnosis)
     return Table((title, *models, "noise", "unit", f"{models[-1]} / noise"), tuple(rows), title)
 
 

@@ -37,7 +37,7 @@ def law(models: Models, effect: NamedEffect) -> Law | None:
     if not len(velocity):
         return None
     beside = _beside(models)
-    over_velocity = _hangs_on_velocity(effect, velocity, position, beside)
+    over_velocity = _depends_on_velocity(effect, velocity, position, beside)
     name, axis = ("damping_coefficient", VELOCITY) if over_velocity else ("spring_stiffness", POSITION)
     x = span_of(velocity if over_velocity else position)
 
@@ -60,7 +60,7 @@ def _beside(models: Models) -> Beside:
     return Beside(models.fitted["damping_coefficient"], pressure)
 
 
-def _hangs_on_velocity(effect: NamedEffect, velocity: Array, position: Array, beside: Beside) -> bool:
+def _depends_on_velocity(effect: NamedEffect, velocity: Array, position: Array, beside: Beside) -> bool:
     """Whether the effect's force varies more over the visited speeds than over the visited positions."""
     values = values_of(effect)
     v, x = span_of(velocity), span_of(position)

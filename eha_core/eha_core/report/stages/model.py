@@ -11,7 +11,8 @@ from eha_core.diagnosis.result import Diagnosis, NamedEffect, UnknownLaw
 from eha_core.effects import SITES
 from eha_core.quantities import interval, scale_for, with_deviation
 from eha_core.report.claims import judged
-from eha_core.report.finding import IN_A_SENTENCE, effects_listed, missing, names_listed, told_parameters
+from eha_core.report.contribution import contribution, step_table
+from eha_core.report.finding import IN_A_SENTENCE, effects_listed, identified_parameters, missing, names_listed
 from eha_core.report.first_screen import law_panel
 from eha_core.report.laws import Law
 from eha_core.report.picture import LABELS, Cells, Dots, Group, Intervals, Panel, Picture
@@ -29,7 +30,6 @@ from eha_core.report.wording import (
     variable_title,
     words,
 )
-from eha_core.report.worth import step_table, worth
 
 WITHOUT = "It was found from the equations of the measured channels; the simulation does not include it."
 
@@ -39,7 +39,7 @@ LAW_HEIGHT = 240  # pixels
 CELL = 22
 """Pixels of a row of correlations."""
 
-TOLD_TOGETHER = 0.9
+STRONG_CORRELATION = 0.9
 """Correlation from which two parameters count as identified only together (a common rule of thumb)."""
 
 MOST_PAIRS = 4
@@ -58,7 +58,7 @@ def stage(diagnosis: Diagnosis, found: Mapping[str, Law]) -> Stage:
         "model",
         "Model",
         capital(headline),
-        (*facts, "Started with fitted.yaml, the simulator has this physics.", *_told_together(diagnosis)),
+        (*facts, "Started with fitted.yaml, the simulator has this physics.", *_strong_correlations(diagnosis)),
         pictures,
         (_table(diagnosis), *step_table(diagnosis)),
         parts=tuple(_part(diagnosis, place, effect, found) for place, effect in enumerate(diagnosis.effects, start=1)),
@@ -93,7 +93,8 @@ def _part(diagnosis: Diagnosis, place: int, effect: NamedEffect, found: Mapping[
     law = found.get(effect.id)
     panel = replace(law_panel(law, LAW_HEIGHT), title="") if law else None
     pictures = (Picture(f"5-law-{effect.id}", (Group((panel,)),)),) if panel else ()
-    return Part(title, (sentence(effect.statement), acts, worth(diagnosis, effect.id)), pictures, effect.equation)
+    sentences = sentence(effect.statement), acts, contribution(diagnosis, effect.id)
+    return Part(title, sentences, pictures, effect.equation)
 
 
 def correlations(diagnosis: Diagnosis) -> Picture | None:
@@ -112,14 +113,14 @@ def correlations(diagnosis: Diagnosis) -> Picture | None:
     )
 
 
-def _told_together(diagnosis: Diagnosis) -> tuple[str, ...]:
+def _strong_correlations(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The strongly correlated pairs with a parameter of the missing physics, the strongest first, as a sentence."""
     names, matrix = diagnosis.correlation.names, diagnosis.correlation.matrix
     pairs = [
         (abs(matrix[row][column]), names[row], names[column])
         for row in range(len(names))
         for column in range(row)
-        if abs(matrix[row][column]) > TOLD_TOGETHER and "." in names[row] + names[column]
+        if abs(matrix[row][column]) > STRONG_CORRELATION and "." in names[row] + names[column]
     ]
     if not pairs:
         return ()
@@ -178,7 +179,7 @@ def _intervals(diagnosis: Diagnosis) -> Picture | None:
 def _table(diagnosis: Diagnosis) -> Table:
     rows = []
     for effect in diagnosis.effects:
-        details = told_parameters(effect)
+        details = identified_parameters(effect)
         for name, fitted in effect.parameters.items():
             deviation = with_deviation(fitted.value, fitted.std, fitted.unit)
             note = "" if name in details else "not distinguished from zero"

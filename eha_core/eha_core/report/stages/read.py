@@ -8,7 +8,7 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged, noise_floor
-from eha_core.report.health import drawn_line, excluded, faults_told
+from eha_core.report.health import drawn_line, excluded, fault_lines
 from eha_core.report.picture import Group, Line, Mark, Panel, Picture, Spans
 from eha_core.report.series import DRAWN
 from eha_core.report.stage import Stage, Table
@@ -22,7 +22,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
         f"{Path(diagnosis.path).name} was read and its channels were put on one clock.",
         noise_floor(diagnosis),
     ]
-    sentences += [sentence(plain(fault)) for fault in faults_told(diagnosis)]
+    sentences += [sentence(plain(fault)) for fault in fault_lines(diagnosis)]
     if diagnosis.damaged:
         sentences.append(f"The file is damaged, and the diagnosis rests on what could be read: {diagnosis.damaged}.")
     sentences += [sentence(plain(f"Not examined: {note}")) for note in diagnosis.not_examined]

@@ -8,11 +8,11 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.identification.numbers import Array
 from eha_core.quantities import Scale, quantity, scale_for, short
 from eha_core.recording import CHANNEL_KINDS
-from eha_core.report.claims import improvement, judged, left_over
+from eha_core.report.claims import improvement, judged, residual_headline
 from eha_core.report.each_recording import recording_tables
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture
 from eha_core.report.series import autocorrelation, pieces, spread
-from eha_core.report.stage import Stage, Table, adds_physics, errors_told, judged_spans, models_told
+from eha_core.report.stage import Stage, Table, adds_physics, compared_models, judged_spans, model_errors
 from eha_core.report.undetected import undetected_tables
 from eha_core.report.wording import capital, channel_title
 
@@ -28,7 +28,7 @@ def stage(diagnosis: Diagnosis) -> Stage:
     return Stage(
         "show",
         "Show",
-        left_over(diagnosis),
+        residual_headline(diagnosis),
         sentences,
         (_overlays(diagnosis), _whiteness(diagnosis), *_over_input(diagnosis)),
         (
@@ -53,10 +53,10 @@ def error_table(diagnosis: Diagnosis) -> Table:
     rows = []
     for name, fit in judged(diagnosis).items():
         scale = scale_for(CHANNEL_KINDS[name].unit, fit.noise)
-        cells = [f"{short(value / scale.factor)}{scale.suffix}" for value in (*errors_told(diagnosis, fit), fit.noise)]
+        cells = [f"{short(value / scale.factor)}{scale.suffix}" for value in (*model_errors(diagnosis, fit), fit.noise)]
         rows.append((channel_title(name), *cells, short(fit.rmse_after / fit.noise)))
     title = "RMSE on held-out data" if diagnosis.held_out else "RMSE"
-    models = models_told(diagnosis)
+    models = compared_models(diagnosis)
     return Table(("channel", *models, "noise", f"{models[-1]} / noise"), tuple(rows), title)
 
 
@@ -80,7 +80,7 @@ def _overlays(diagnosis: Diagnosis) -> Picture:
         groups += [_whole(diagnosis, name), _close_up(diagnosis, name)]
     caption = (
         "The held-out intervals with the residual below, and next to them the one where the recalibrated model is"
-        " worst. The lines are the final models; the errors in the table are of models refitted without these intervals."
+        " worst. The lines are the final models; the table has the errors of models refitted without these intervals."
     )
     return Picture("6-show", tuple(groups), (3, 2), "Measured and modelled", caption)
 

@@ -106,7 +106,7 @@ def step_table(diagnosis: Diagnosis) -> tuple[Table, ...]:
     return (Table(headings, tuple(rows), "Residual of each model, times the noise"),)
 
 
-def worth(diagnosis: Diagnosis, effect: str) -> str:
+def contribution(diagnosis: Diagnosis, effect: str) -> str:
     """The residual without an effect and with it, in a sentence; empty if not known."""
     left = {step.added: step.residual for step in diagnosis.steps}
     if AUGMENTED not in left:

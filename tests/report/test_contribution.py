@@ -1,4 +1,4 @@
-"""Several effects listed one by one: the order, the values, and what each is worth."""
+"""Several effects listed one by one: the order, the values, and what each contributes."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import pytest
 
 from eha_core.diagnosis.result import Diagnosis, FittedValue
 from eha_core.report.account import account
-from eha_core.report.claims import left_in_words
+from eha_core.report.claims import residual_in_words
+from eha_core.report.contribution import contribution, effect_table, ladder_picture, step_table
 from eha_core.report.evidence import rung
-from eha_core.report.finding import headline, told_parameters, warnings
+from eha_core.report.finding import headline, identified_parameters, warnings
 from eha_core.report.html import page
 from eha_core.report.picture import Bars, Cells, Upright
 from eha_core.report.stages import report_stages
 from eha_core.report.summary import summarise
-from eha_core.report.worth import effect_table, ladder_picture, step_table, worth
 
 
 def bars_of(diagnosis: Diagnosis) -> Bars:
@@ -68,15 +68,15 @@ def test_the_table_has_a_row_an_effect_in_their_order(several: Diagnosis) -> Non
     assert [row[0] for row in steps.rows[-2:]] == ["without constant load", "with all of them"]
 
 
-def test_what_an_effect_is_worth_is_said_in_the_figures_own_numbers(several: Diagnosis) -> None:
-    assert worth(several, "valve_deadband") == (
+def test_the_contribution_of_an_effect_is_said_in_the_figures_own_numbers(several: Diagnosis) -> None:
+    assert contribution(several, "valve_deadband") == (
         "Without it, with the others refitted, the residual is 30.7 times the noise; with it 1.00."
     )
     alone = replace(several, effects=several.effects[:1], without={})
-    assert worth(alone, "valve_deadband") == (
+    assert contribution(alone, "valve_deadband") == (
         "Without it, with the parameters refitted, the residual is 51.5 times the noise; with it 1.00."
     )
-    assert worth(several, "end_stop") == ""
+    assert contribution(several, "end_stop") == ""
 
 
 def test_the_story_has_a_part_for_each_effect_with_its_law(several: Diagnosis) -> None:
@@ -119,11 +119,11 @@ def test_a_hypothesis_that_swaps_one_effect_is_told_by_the_swap() -> None:
 
 def test_what_is_not_told_from_nothing_is_no_finding(several: Diagnosis) -> None:
     overlap = several.effects[0]
-    assert set(told_parameters(overlap)) == {"half_width"}
+    assert set(identified_parameters(overlap)) == {"half_width"}
     gradual = {**overlap.parameters, "rounding": FittedValue(9e-5, 3.2e-5, "A")}
-    assert set(told_parameters(replace(overlap, parameters=gradual))) == {"half_width", "rounding"}
+    assert set(identified_parameters(replace(overlap, parameters=gradual))) == {"half_width", "rounding"}
     neither = {name: FittedValue(1e-9, 1e-5, "A") for name in overlap.parameters}
-    assert set(told_parameters(replace(overlap, parameters=neither))) == {"half_width", "rounding"}
+    assert set(identified_parameters(replace(overlap, parameters=neither))) == {"half_width", "rounding"}
     for text in (account(several), str(summarise(several)), headline(several)):
         assert "rounding" not in text
     table = {one.name: one for one in report_stages(several)}["model"].tables[0]
@@ -132,12 +132,12 @@ def test_what_is_not_told_from_nothing_is_no_finding(several: Diagnosis) -> None
 
 
 def test_what_is_left_is_said_with_its_size_and_its_colour(several: Diagnosis) -> None:
-    text = left_in_words(several)
+    text = residual_in_words(several)
     ratios = [one.rmse_after / one.noise for one in several.held_out.values()]
     assert text.startswith(f"{min(ratios):.2f} to {max(ratios):.2f} times the noise, and white")
     assert "largest autocorrelation 1.1 standard deviations" in text
     drifting = replace(several, whiteness={"position": 8.0, "pressure_a": 1.0})
-    assert "not white in position: largest autocorrelation 8.0" in left_in_words(drifting)
+    assert "not white in position: largest autocorrelation 8.0" in residual_in_words(drifting)
 
 
 def test_a_recording_taken_as_it_is_and_a_damaged_one_are_announced_first(several: Diagnosis) -> None:
