@@ -46,8 +46,8 @@ def test_from_effects_and_limits_to_a_test_that_the_reference_node_plays(
 @pytest.mark.parametrize(
     "words, told",
     [
-        ([], "give a --command, or what a test is to be designed --for"),
-        (["--command", "sine", "--within", "limits.yaml"], "only then --within counts"),
+        ([], "give --command, or the effects of a designed test with --for"),
+        (["--command", "sine", "--within", "limits.yaml"], "--"),
         (["--for", ",", "--duration", "3"], "no effect is named"),
         ([*QUICK, "--within", "nowhere.yaml"], "limits file nowhere.yaml: cannot be read"),
     ],

@@ -76,7 +76,7 @@ def test_the_workers_of_a_dask_scheduler_do_the_same(
         (["--dask", "tcp://127.0.0.1:9"], "give --each too"),
         (["--each", "--json", "-"], "--json takes one diagnosis"),
         ([str(BAGS / "rig_as_modelled.mcap"), "--each"], "two recordings would both write to"),
-        (["--each", "--test", str(BAGS / "rig_cut_short.mcap")], "--test is predicted by one model"),
+        (["--each", "--test", str(BAGS / "rig_cut_short.mcap")], "--test needs one model"),
         (["--each", "--dask", "tcp://127.0.0.1:9"], "no scheduler answers there"),
     ],
 )

@@ -24,14 +24,14 @@ UNUSABLE = 2
 """Exit status where the input or the arguments cannot be used."""
 
 CLEAR_LINE = "\r\x1b[K"
-"""Takes away what stands in a terminal's last line."""
+"""Terminal codes that clear the current line."""
 
 _INTERRUPTED = 130
-_UNREAD = 141  # what a shell reports of a program that SIGPIPE ended
+_UNREAD = 141  # a shell's exit status of a program that SIGPIPE ended
 
 
 class _Parser(argparse.ArgumentParser):
-    """Refuses arguments in one line."""
+    """Reports wrong arguments in one line."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(UNUSABLE, f"{self.prog}: {message}; see `{self.prog} --help`\n")
@@ -48,7 +48,7 @@ def _module(verb: str) -> str:
 
 
 def _list_verbs(parser: argparse.ArgumentParser, known: Sequence[str]) -> None:
-    """Give each verb with the first sentence of its module, which is read and not imported: that takes no time."""
+    """Add each verb with the first sentence of its module, which is read but not imported, to save time."""
     subparsers = parser.add_subparsers(dest="verb", metavar="VERB")
     for verb in known:
         source = resources.files(__name__).joinpath(f"{_module(verb)}.py").read_text(encoding="utf-8")
@@ -60,7 +60,7 @@ def main(words: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status; `words` defaults to those of the process."""
     words = sys.argv[1:] if words is None else words
     known = verbs()
-    description = "Simulates an electro-hydraulic actuator, and says what a model leaves out of a recording."
+    description = "Simulates an electro-hydraulic actuator, and finds from recordings which physics a model is missing."
     parser = _Parser(prog="eha", description=description)
     parser.add_argument("--version", action="version", version=f"eha {__version__}")
     completing = "_ARGCOMPLETE" in os.environ
@@ -83,7 +83,7 @@ def main(words: Sequence[str] | None = None) -> int:
 
         autocomplete(parser)
     arguments = parser.parse_args(words)
-    # what a line of progress has left on a terminal goes first
+    # clear a progress line on the terminal first
     logging.basicConfig(format=f"{CLEAR_LINE if sys.stderr.isatty() else ''}eha {arguments.verb}: %(message)s")
     try:
         status: int = modules[arguments.verb].run(arguments)
@@ -95,7 +95,7 @@ def main(words: Sequence[str] | None = None) -> int:
         print(f"eha {arguments.verb}: interrupted", file=sys.stderr)
         return _INTERRUPTED
     except BrokenPipeError:
-        # The reader, `head` perhaps, has seen enough; what is still buffered must not fail again when Python ends.
+        # The reader, such as `head`, has closed the pipe; flushing the buffer must not fail again when Python ends.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _UNREAD
     return status

@@ -1,4 +1,4 @@
-"""Asks on a terminal, one by one, what a file leaves open of its channels."""
+"""Asks the open questions on a file's channels on a terminal, one by one."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class NoMoreAnswers(Exception):
 
 
 def answered(suggestions: Suggestions) -> Suggestions:
-    """The suggestions with every question answered by a person; the rest stays open when the answers end."""
+    """The suggestions with the user's answers; questions after the last answer stay open."""
     certain = list(suggestions.certain)
     left: list[Question] = []
     questions = list(suggestions.questions)
@@ -55,7 +55,7 @@ def _chosen(question: Question, readings: Sequence[Reading | None]) -> Reading |
 
 
 def _completed(reading: Reading) -> Reading:
-    """A reading with its open numbers said."""
+    """A reading with its missing numbers, as the user gives them."""
     if reading.rate is not None and not isfinite(reading.rate):
         return replace(reading, rate=_number("rows in a second", "500 Hz", {"hz": 1.0, "khz": 1e3, "": 1.0}))
     points = []

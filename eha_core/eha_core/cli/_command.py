@@ -1,4 +1,4 @@
-"""A command as the words of a command line say it: a signal, or a file that has it among its channels."""
+"""A command as given on the command line: a signal, or a file with that channel."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from eha_core.recording.recording import FloatArray
 from eha_core.signals import from_text, signals
 
 SIGNAL_DURATION = 10.0
-"""s; of a signal, which has no end of its own."""
+"""s; default duration of a signal."""
 
 Samples = tuple[FloatArray, FloatArray]
 
 
 def is_signal(words: str) -> bool:
-    """Whether the words name a signal, and no file of that name is there."""
+    """Whether the words name a signal, and no file has that name."""
     return words.partition(":")[0] in signals() and not Path(words).exists()
 
 

@@ -1,4 +1,4 @@
-"""Paths that a verb was given, checked before work begins: an hour's diagnosis must not end at a closed folder."""
+"""Checks of paths before work begins: a diagnosis of an hour must not fail at a folder that cannot be written to."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from eha_core.errors import EhaError, RecordingError
 
 
 def require_recordings(paths: Iterable[Path]) -> None:
-    """Raise RecordingError for the first path at which there is nothing."""
+    """Raise RecordingError for the first path that does not exist."""
     for path in paths:
         if not path.exists():
             raise RecordingError(f"{path}: there is no such file or folder")
@@ -43,7 +43,7 @@ def _closed(path: Path, code: int, option: str) -> EhaError:
 
 
 def write_json(path: Path, text: str) -> Path:
-    """Write a document where --json says; EhaError where that is not possible."""
+    """Write a document to the path of --json. Raises EhaError where that is not possible."""
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:

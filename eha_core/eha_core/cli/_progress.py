@@ -1,4 +1,4 @@
-"""How far a diagnosis is: one line on a terminal, a line now and then where standard error is a file."""
+"""The progress of a diagnosis: one line on a terminal, or a line every few seconds where standard error is a file."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ PHASES = {
     "whole record": ("judging",),
     "report": ("writing",),
 }
-"""What a diagnosis goes through, and how the messages of each phase begin; all others are the search's."""
+"""The phases of a diagnosis, and how the messages of each begin; all other messages belong to the search."""
 
 NOW_AND_THEN = 10.0
 """s between two lines in a file (assumed: an hour's diagnosis is a screenful)."""
 
 WIDTH = 100
-"""Characters of the line on a terminal: a longer one would leave its beginning behind."""
+"""Most characters of the line on a terminal: a longer one would wrap, and its beginning could not be cleared."""
 
 
 class Progress:
-    """Shows what is being tried, and the residual.
+    """Shows the current step and its residual.
 
     Args:
-        long: whether a whole record will be judged.
+        long: whether a whole long record will be evaluated.
         log: a file that gets every message, with the seconds since the start.
-        out: where lines go, standard error by default.
-        clock: s.
+        out: stream of the lines, standard error by default.
+        clock: returns the time [s].
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Progress:
         self._log = _opened(log) if log else None
 
     def __call__(self, message: str) -> None:
-        """Tell one message."""
+        """Show one message."""
         passed = self._clock() - self._began
         if self._log:
             print(f"{passed:7.1f} s  {self.placed(message)}", file=self._log, flush=True)
@@ -64,7 +64,7 @@ class Progress:
             print(f"eha diagnose: {passed:.0f} s {self.placed(message)}", file=self._out, flush=True)
 
     def placed(self, message: str) -> str:
-        """A message with the phases that are done and those that are left."""
+        """A message with the phases that are done and those that remain."""
         names = [name for name in PHASES if self.long or name != "whole record"]
         at = next((name for name in names if message.startswith(PHASES[name] or "\0")), "search")
         done = names.index(at)
@@ -73,7 +73,7 @@ class Progress:
         return f"[{bar}] {at}: {message}" + (f"; left: {left}" if left else "")
 
     def end(self) -> None:
-        """Take the line away."""
+        """Clear the line."""
         if self._out.isatty():
             print(CLEAR_LINE, end="", file=self._out, flush=True)
         if self._log:

@@ -1,4 +1,4 @@
-"""What the verbs of studies share: a table on the terminal, a document and a picture in a folder."""
+"""Output that the verbs of studies share: a table on the terminal, a document and a figure in a folder."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def check_outputs(arguments: argparse.Namespace, folder: Path) -> None:
 def present(
     arguments: argparse.Namespace, folder: Path, table: str, text: str, write: Callable[[Path], tuple[Path, ...]]
 ) -> int:
-    """Print the table, or the document `text` where --json is -, and `write` what --json and --out ask for."""
+    """Print the table, or the document `text` where --json is -, and `write` the files of --json and --out."""
     if arguments.json == "-":
         print(text, end="")
         return 0

@@ -1,4 +1,4 @@
-"""`eha budget`: say what each effect that was found costs in tracking error, and what its repair would gain."""
+"""`eha budget`: compute how much each effect that was found adds to the tracking error, and what its repair gains."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from eha_core.cli._paths import require_recordings
 from eha_core.cli._study import check_outputs, present
 from eha_core.errors import EhaError, ParameterError
 
-# what simulates or plots is imported where it is used: the help and a refusal need none of it
+# modules that simulate or plot are imported where they are used: help and errors do not need them
 if TYPE_CHECKING:
     from eha_core.error_budget import Rig, Task
 
@@ -22,15 +22,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Add the verb."""
     parser = subparsers.add_parser(
         "budget",
-        help="say what each effect found costs in tracking error",
-        description="Simulates a motion with every subset of the effects that a diagnosis found, and shares the"
-        " tracking RMSE out among them so that the shares add up to it. Prints what each repair alone would gain, and"
-        " the order of repairs that gains fastest.",
-        epilog="The controller is made for the rig as modelled. The error is that of the true position, whatever the"
-        " sensors say; effects that acted over an interval of the recording are taken to act always.",
+        help="compute how much each effect that was found adds to the tracking error",
+        description="Simulates a motion with every subset of the effects that a diagnosis found, and divides the"
+        " tracking RMSE into shares of the effects that add up to it. Prints the gain of each repair alone, and the"
+        " order of repairs that reduces the error fastest.",
+        epilog="The controller is designed for the rig as modelled. The error is that of the true position, whatever"
+        " the sensors show; effects that acted over an interval of the recording are assumed to act always.",
     )
     add = parser.add_argument
-    add("source", nargs="?", type=Path, metavar="RECORDING|diagnosis.json", help="what was found; a recording is"
+    add("source", nargs="?", type=Path, metavar="RECORDING|diagnosis.json", help="a diagnosis, or a recording that is"
         " diagnosed first")  # fmt: skip
     add("--set", action="append", default=[], metavar="NAME=VALUE", help="in place of a diagnosis: an effect's value or"
         " a leakage that departs from the model; may be given again")  # fmt: skip
@@ -42,7 +42,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("--command", metavar="SIGNAL", help="in place of controller and reference: a voltage [V], open loop; the error"
         " is then the difference from the rig as modelled")  # fmt: skip
     add("--duration", type=float, metavar="S", help="length of the motion (default 4 s, of a voltage 10 s)")
-    add("--skip", type=float, metavar="S", help="seconds at the start that do not count (default 1, of a voltage 0)")
+    add("--skip", type=float, metavar="S", help="seconds to ignore at the start (default 1, of a voltage 0)")
     add("--rate", type=float, default=500.0, metavar="HZ", help="commands and samples a second (default 500)")
     add("--command-limit", type=float, default=10.0, metavar="V", help="largest voltage (default 10)")
     add("--out", type=Path, metavar="DIR", help=f"folder for budget.json and budget.png (default {_FOLDER})")
@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    """Raise EhaError for arguments that do not go together, before any work is done."""
+    """Raise EhaError for arguments that contradict each other, before any work is done."""
     if (arguments.source is None) == (not arguments.set):
         raise EhaError("give a diagnosis.json or a recording, or departures from the model with --set NAME=VALUE")
     if (arguments.reference is None) == (arguments.command is None):

@@ -1,4 +1,4 @@
-"""`eha detect`: say how small an effect a planned test shows, or design the test that shows some effects best."""
+"""`eha detect`: compute the smallest effects that a planned test detects, or design the test that detects some best."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from eha_core.cli._study import check_outputs, present
 from eha_core.errors import EhaError
 
-# what simulates or plots is imported where it is used: the help and a refusal need none of it
+# modules that simulate or plot are imported where they are used: help and errors do not need them
 if TYPE_CHECKING:
     from eha_core.cli._command import Samples
     from eha_core.detectability import Certificate
@@ -24,24 +24,24 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Add the verb."""
     parser = subparsers.add_parser(
         "detect",
-        help="say how small an effect a planned test shows",
-        description="Simulates the rig as modelled under a command and says, from the diagnosis' own linearisation, for"
-        " each effect of the catalogue the smallest size that a diagnosis names with 95 % probability, which effects it"
-        " could not distinguish, which nominal parameters compensate for them, and what the pressures would bring.",
-        epilog="It holds for a rig that is as modelled but for one effect and for parameters within their prior, with"
-        " white noise. What else a rig has makes all sizes larger.",
+        help="compute the smallest effects that a planned test detects",
+        description="Simulates the rig as modelled under a command. For each effect of the catalogue it computes, from"
+        " the diagnosis' own linearisation, the smallest size that a diagnosis names with 95 % probability, the effects"
+        " that it could not distinguish, the nominal parameters that compensate for it, and the size with pressures.",
+        epilog="The sizes hold for a rig that differs from the model by one effect and by parameters within their"
+        " prior, with white noise. Any other difference makes all sizes larger.",
     )
     add = parser.add_argument
     add("--command", metavar="RECORDING|FILE.csv|SIGNAL", help="the voltages of a file, or a signal such"
         " as multisine:amplitude=0.12; with --for, what the designed test is compared with")  # fmt: skip
-    add("--for", dest="names", metavar="NAMES", help="design the test that shows these effects or nominal parameters"
-        " best, such as internal_leakage,coulomb_friction")  # fmt: skip
+    add("--for", dest="names", metavar="NAMES", help="design the test that detects these effects or changes of nominal"
+        " parameters best, such as internal_leakage,coulomb_friction")  # fmt: skip
     add("--within", type=Path, metavar="FILE", help="limits of the designed test in SI units: position, speed,"
         " pressure, energy, voltage (default: 85 %% of the stroke, 1.2 times the supply pressure, and the voltage at"
         " which the coil saturates)")  # fmt: skip
     add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
     add("--topics", type=Path, metavar="FILE", help="topics file that says where the voltage is recorded")
-    add("--channels", default="position,pressure_a,pressure_b", metavar="NAMES", help="what is to be recorded"
+    add("--channels", default="position,pressure_a,pressure_b", metavar="NAMES", help="channels to be recorded"
         " (default %(default)s)")  # fmt: skip
     add("--noise", type=float, default=1.0, metavar="FACTOR", help="sensor noise; 1 is 10 um and 0.01 MPa (default 1)")
     add("--rate", type=float, default=500.0, metavar="HZ", help="samples a second (default 500)")
@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.names is not None:
         return _design(arguments)
     if arguments.command is None or arguments.within is not None:
-        raise EhaError("give a --command, or what a test is to be designed --for; only then --within counts")
+        raise EhaError("give --command, or the effects of a designed test with --for; --within needs --for")
     made = _certificate(arguments)
     from eha_core.report.detectability import account, as_json, write_certificate
 
@@ -81,7 +81,7 @@ def _certificate(arguments: argparse.Namespace) -> Certificate:
 
 
 def _planned(arguments: argparse.Namespace) -> tuple[Samples, dict[str, Any]]:
-    """The command, instants and voltages, and how long and how what it does is recorded."""
+    """The command (instants [s] and voltages [V]), and how long and how the response is recorded."""
     from eha_core.cli._command import read_command
 
     times, voltages, duration = read_command(arguments, "voltage_command")

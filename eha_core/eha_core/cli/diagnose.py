@@ -1,4 +1,4 @@
-"""`eha diagnose`: say where a model departs from a recording, which physics it leaves out, and show the fit improve."""
+"""`eha diagnose`: find where a model departs from a recording and which physics it is missing, and refit it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from eha_core.cli._paths import require_file, require_folder, require_recordings
 from eha_core.cli._progress import Progress
 from eha_core.errors import EhaError
 
-# what reads, simulates or plots is imported where it is used: the help and a refusal need none of it
+# modules that read, simulate or plot are imported where they are used: help and errors do not need them
 if TYPE_CHECKING:
     from eha_core.diagnosis import Diagnosis
     from eha_core.nominal import NominalModel
@@ -28,13 +28,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Add the verb."""
     parser = subparsers.add_parser(
         "diagnose",
-        help="say which physics a model leaves out of a recording",
+        help="find from a recording which physics a model is missing",
         description=__doc__,
-        epilog="Several recordings are one rig, fitted with one set of parameters and effects; what a nominal file"
-        " lists as per_recording has a value in each. Without --nominal the model is the one whose"
-        " parameters the recording carries, effects left out, or else the catalogue's nominal actuator. Where"
-        " position and force are all that was recorded and no model is given, the force's law is found from"
-        " the motion.",
+        epilog="Several recordings are taken as one rig, fitted with one set of parameters and effects; parameters that"
+        " a nominal file lists as per_recording have a value in each. Without --nominal, the model has the parameters"
+        " stored in the recording, without effects, or else those of the catalogue's nominal actuator. If only position"
+        " and force were recorded and no model is given, the force's law is found from the motion.",
     )
     add = parser.add_argument
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help="a bag or a table: .mcap, .csv, .mat ...")
@@ -43,25 +42,25 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add(
         "--assume",
         action="store_true",
-        help="take the likely answers to what the topics file still asks, and list them",
+        help="take the likely answers to the topics file's open questions, and list them",
     )
     add("--test", action="append", default=[], type=Path, metavar="FILE", help="a recording that is only predicted")
     add("--motion-given", action="store_true", help="find the force's law from the motion, whatever else was recorded")
-    add("--as-recorded", action="store_true", help="go on where a recording cannot be right, and warn of it")
+    add("--as-recorded", action="store_true", help="diagnose a recording that cannot be right, with a warning")
     add("--out", type=Path, metavar="DIR", help="folder for the report (default out/diagnosis/<recording>)")
     add("--json", metavar="FILE|-", help="write diagnosis.json there (- is standard output) and no report")
     add("--no-report", action="store_true", help="write diagnosis.json alone in place of the whole report")
-    add("--log", type=Path, metavar="FILE", help="what is tried and its residual, with times, into a file")
-    add("--jobs", type=int, default=2, metavar="N", help="threads, with --each processes, side by side (default 2)")
+    add("--log", type=Path, metavar="FILE", help="write each step and its residual, with times, to a file")
+    add("--jobs", type=int, default=2, metavar="N", help="parallel threads, with --each processes (default 2)")
     add("--each", action="store_true", help="diagnose every recording on its own, and print a line for each")
     add("--dask", metavar="ADDRESS", help="with --each: a Dask scheduler whose workers see the same folders")
-    add("--seed", type=int, default=0, metavar="N", help="kept with the result; no stage draws at random")
+    add("--seed", type=int, default=0, metavar="N", help="without effect: no stage uses random numbers")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb."""
     if arguments.jobs < 1:
-        raise EhaError(f"--jobs {arguments.jobs} is no number of threads; give 1 or more")
+        raise EhaError(f"--jobs {arguments.jobs} is not a number of threads; give 1 or more")
     _check_paths(arguments)
     if arguments.each:
         return _run_each(arguments)
@@ -75,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
-    """All recordings are one rig."""
+    """Diagnose all recordings as one rig."""
     from eha_core.api import given_model, known_model, takes_motion_as_given
     from eha_core.long_record.admission import admitted
     from eha_core.plausibility import admit
@@ -124,7 +123,7 @@ def _run_together(arguments: argparse.Namespace, progress: Progress) -> int:
 
 
 def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Progress) -> None:
-    """Write what was asked for, and say on the terminal what was found."""
+    """Write the requested files, and print the findings."""
     from eha_core.report.account import account
     from eha_core.report.document import as_json
 
@@ -146,7 +145,7 @@ def _present(arguments: argparse.Namespace, diagnosis: Diagnosis, progress: Prog
 
 
 def assumed_cylinder(is_given: bool, recording: Recording, model: NominalModel) -> str:
-    """The cylinder that is assumed in place of a nominal file; empty where one is given or the recording has values."""
+    """The cylinder that is assumed without a nominal file; empty where one is given or the recording has parameters."""
     if is_given or recording.parameters or recording.parts:
         return ""
     values = model.values
@@ -154,13 +153,13 @@ def assumed_cylinder(is_given: bool, recording: Recording, model: NominalModel) 
 
 
 def with_assumed(recording: Recording, cylinder: str) -> Recording:
-    """The recording with a remark on the cylinder that is assumed, which the report lists."""
-    remark = f"assumed: the catalogue's cylinder, {cylinder}, for want of a nominal file"
+    """The recording with a remark on the assumed cylinder, which the report lists."""
+    remark = f"assumed: the catalogue's cylinder, {cylinder}, because no nominal file was given"
     return replace(recording, remarks=(*recording.remarks, remark))
 
 
 def require_travel(recording: Recording, model: NominalModel, is_given: bool) -> None:
-    """Raise RecordingError for a position that the cylinder cannot have gone through."""
+    """Raise RecordingError for a travel that the cylinder cannot have."""
     from eha_core.rig import require_possible_travel
 
     position = recording.channels.get("position")
@@ -174,7 +173,7 @@ def require_travel(recording: Recording, model: NominalModel, is_given: bool) ->
 
 def _check_paths(arguments: argparse.Namespace) -> None:
     """Raise EhaError for a path that could not be read or written, before any work is done."""
-    if not arguments.each:  # there, what is missing stops none of the others
+    if not arguments.each:  # with --each, a missing recording does not stop the others
         require_recordings((*arguments.recordings, *arguments.test))
     if arguments.json is None or arguments.out is not None:
         require_folder(arguments.out or Path("out"), "--out")
@@ -183,7 +182,7 @@ def _check_paths(arguments: argparse.Namespace) -> None:
     if arguments.topics is not None:
         from eha_core.recording import load_topics_file
 
-        # Read once, before anything slow: what is still asked there ends the command at once.
+        # Read once, before anything slow: its open questions end the command at once.
         arguments.topics = load_topics_file(arguments.topics, assume=arguments.assume)
 
 
@@ -194,7 +193,7 @@ def _read(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recordin
 
 
 def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Recording], progress: Progress) -> int:
-    """A test bench or a damper: nothing drives the plant, so the law of its force is found from the motion."""
+    """Find the law of the force from the motion, as of a test bench or a damper that no command drives."""
     from eha_core.api import known_model
     from eha_core.motion_given import diagnose_motion
     from eha_core.report.account import account
@@ -222,17 +221,17 @@ def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Record
 
 
 def _run_each(arguments: argparse.Namespace) -> int:
-    """Every recording on its own: what one cannot be used for stops none of the others."""
+    """Diagnose every recording on its own; one that cannot be used does not stop the others."""
     from eha_core.workers import Workers
 
     if arguments.test:
-        raise EhaError("--test is predicted by one model; with --each there is one for every recording")
+        raise EhaError("--test needs one model, and --each makes one for every recording; leave one of them out")
     if arguments.json is not None:
         raise EhaError("--json takes one diagnosis; with --each, every recording's is in its own folder below --out")
     folders = [(arguments.out or Path("out") / "diagnosis") / path.stem for path in arguments.recordings]
     doubled = next((folder for folder in folders if folders.count(folder) > 1), None)
     if doubled is not None:
-        raise EhaError(f"two recordings would both write to {doubled}; rename one, or diagnose them apart")
+        raise EhaError(f"two recordings would both write to {doubled}; rename one, or diagnose them separately")
     options = (arguments.nominal, arguments.topics)
     calls = [
         (path.absolute(), *options, folder.absolute(), arguments.as_recorded, not arguments.no_report)
@@ -253,7 +252,7 @@ def diagnose_alone(
     as_recorded: bool = False,
     with_report: bool = True,
 ) -> tuple[Path, int, str]:
-    """Diagnose one recording into `folder`: its path, its exit status, and the verdict or what is wrong, in a line."""
+    """Diagnose one recording into `folder`; returns its path, the exit status, and the verdict or error in a line."""
     from eha_core.api import given_model, known_model
     from eha_core.diagnosis import diagnose_together
     from eha_core.long_record.admission import admitted

@@ -1,4 +1,4 @@
-"""`eha effects`: what the catalogue of effects holds."""
+"""`eha effects`: list the catalogue of effects, or show one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="list the physical effects that the simulator can add",
         description="Lists the catalogue of physical effects by where in the actuator they act, or shows one in full.",
     )
-    parser.add_argument("id", nargs="?", help="show this effect: what it does, its equation, its parameters")
+    parser.add_argument("id", nargs="?", help="show this effect: its description, equation and parameters")
     parser.add_argument("--parameters", action="store_true", help="list every parameter, the nominal plant's first")
 
 
@@ -65,7 +65,7 @@ def _summary(effect: Effect) -> str:
 
 
 def _of_curve(name: str) -> bool:
-    """A recovered curve's knots are no parameters that one would set by hand."""
+    """Whether it is a knot of a recovered curve, which nobody sets by hand."""
     return name.partition(".")[0] in {effect.id for effect in effects() if not effect.named}
 
 

@@ -1,4 +1,4 @@
-"""`eha exam`: make recordings that conceal an effect, have them diagnosed as a user would, and score the answers."""
+"""`eha exam`: make recordings with concealed effects, diagnose them as a user would, and score the answers."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--cases", type=int, default=100, metavar="N", help="number of recordings (default 100)")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="seed of the exam (default 0)")
     parser.add_argument(
-        "--opened", type=int, default=0, metavar="N", help="leave out the first N of the seed: their outcome is known"
+        "--opened", type=int, default=0, metavar="N", help="skip the first N cases of the seed: their results are known"
     )
     parser.add_argument("--tier", metavar="T", help="one tier alone")
-    parser.add_argument("--jobs", type=int, default=1, metavar="J", help="recordings worked on at once (default 1)")
+    parser.add_argument("--jobs", type=int, default=1, metavar="J", help="recordings diagnosed in parallel (default 1)")
     parser.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler whose workers see --out")
     parser.add_argument("--out", type=Path, default=Path("out/exam"), metavar="DIR", help="folder (default out/exam)")
     parser.add_argument("--peers", action="store_true", help="score the other methods on the same recordings too")
@@ -55,9 +55,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="score another tool too; {recording} and {answer} in its command are replaced by paths",
     )
     parser.add_argument(
-        "--real", type=Path, metavar="DIR", help="ask measured rigs below this folder, and nothing else"
+        "--real", type=Path, metavar="DIR", help="test the measured rigs below this folder, and nothing else"
     )
-    parser.add_argument("--bags", type=Path, metavar="DIR", help="show the project's own recordings in this folder too")
+    parser.add_argument("--bags", type=Path, metavar="DIR", help="include the project's own recordings in this folder")
     parser.add_argument(
         "--lost", type=int, default=0, metavar="N", help="write reports of the first N wrong or failed cases"
     )
@@ -66,13 +66,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=Path,
         nargs="+",
         metavar="TABLE",
-        help="score the table.json of several sittings of one exam together, and ask nothing",
+        help="score the table.json of several runs of one exam together, and diagnose nothing",
     )
     parser.add_argument("--require", type=float, metavar="SHARE", help="fail when fewer of all cases are right")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the verb; the exit status says whether --require was met."""
+    """Run the verb; the exit status is BELOW_REQUIRED where --require was not met."""
     if arguments.real is not None:
         return _run_real(arguments)
     if arguments.pool is not None:
@@ -97,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run_pooled(arguments: argparse.Namespace) -> int:
-    """Score several sittings of one exam together; --require is the share of all cases to be right."""
+    """Score several runs of one exam together; --require is the required share of correct cases."""
     from eha_core.exam.sittings import read_sittings
     from eha_core.exam.summary import summarise
 
@@ -116,7 +116,7 @@ def _tell(
     reports: Mapping[str, str] | None = None,
     shown: Sequence[Shown] = (),
 ) -> int:
-    """Write the tables, print the shares, and hold them against --require."""
+    """Write the tables, print the shares, and compare them with --require."""
     from eha_core.exam.page import as_html
     from eha_core.exam.tables import as_json, as_markdown
 
@@ -139,7 +139,7 @@ def _tell(
 
 
 def _run_real(arguments: argparse.Namespace) -> int:
-    """Ask the measured rigs; --require is the share of questions to be met."""
+    """Test the measured rigs; --require is the required share of questions that are met."""
     from eha_core.exam.real import as_markdown, hold
 
     folder = arguments.out / "real"

@@ -1,4 +1,4 @@
-"""`eha init-rig`: make a rig's nominal file from what its data sheets say."""
+"""`eha init-rig`: make a rig's nominal file from data-sheet values."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "init-rig",
         help="make a rig's nominal file from data-sheet values",
         description=__doc__,
-        epilog="Values have their unit, as in --bore 40mm. On a terminal, without any value, each is asked for; Enter"
-        " leaves it unknown, which `eha diagnose --nominal` takes.",
+        epilog="Write values with their unit, as in --bore 40mm. On a terminal and without any value, each is asked"
+        " for; Enter leaves it unknown, which `eha diagnose --nominal` accepts.",
     )
     add = parser.add_argument
     add("--out", type=Path, required=True, metavar="FILE", help="the nominal file that is written")
-    add("--ask", action="store_true", help="ask for what no option gives, also where the answers come from a pipe")
+    add("--ask", action="store_true", help="ask for values that no option gives, also if the answers come from a pipe")
     add("--assume", action="store_true", help="write the catalogue's value, marked as assumed, in place of unknown")
     known = parts("source")
     what = ", ".join(f"{name} ({known[name].summary})" for name in sorted(known))
@@ -62,8 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _asked(data: list[Datum]) -> dict[str, float]:
-    """What a person answers; a wrong answer is asked again, Enter and the end of all answers mean unknown."""
-    print("Each value with its unit; Enter where nobody knows it.", file=sys.stderr)
+    """The user's answers; a wrong one is asked again, Enter and the end of the input mean unknown."""
+    print("Give each value with its unit; Enter if it is not known.", file=sys.stderr)
     answers: dict[str, float] = {}
     for datum in data:
         while True:

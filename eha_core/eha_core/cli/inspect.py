@@ -1,4 +1,4 @@
-"""`eha inspect`: list what is in a log file, and write a topics file that says which channels it holds."""
+"""`eha inspect`: list the contents of a log file, and write a topics file that maps them to channels."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Add the verb."""
     parser = subparsers.add_parser(
         "inspect",
-        help="list what is in a log file and write a topics file for it",
+        help="list the contents of a log file and write a topics file for it",
         description=__doc__,
-        epilog="A channel is certain where one column or topic alone is called so and its unit is stated; everything"
-        " else is a question. On a terminal the questions are asked one by one; else they are in the topics file,"
-        " with their possible answers.",
+        epilog="A channel is certain if only one column or topic has its name and the unit is stated; everything else"
+        " is a question. On a terminal the questions are asked one by one; otherwise they are in the topics file, with"
+        " their possible answers.",
     )
     add = parser.add_argument
     add("file", type=Path, metavar="FILE", help=READABLE)
     add("--topics", type=Path, metavar="FILE", help="write a topics file there, for `eha diagnose --topics`; where"
         " questions are asked, by default FILE.topics.yaml in this folder")  # fmt: skip
-    add("--ask", action="store_true", help="ask the questions, also where the answers come from a pipe")
+    add("--ask", action="store_true", help="ask the questions, also if the answers come from a pipe")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     return DAMAGED if inspection.damaged else 0
 
 
-_WANTED = "of use are a valve's command, a position, pressures or a force, each over time"
+_WANTED = "needed are a valve's command, a position, pressures or a force, each over time"
 
 
 def _counted(suggestions: Suggestions) -> str:

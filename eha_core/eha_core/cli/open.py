@@ -1,4 +1,4 @@
-"""`eha open`: a page on this machine that leads from a log file to a diagnosis, with the mouse."""
+"""`eha open`: diagnose a log file on a page in the browser, served by this machine."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "open",
         help="diagnose a log file on a page in the browser",
         description=__doc__,
-        epilog=f"The page is served to this machine alone, and needs: pip install {' '.join(NEEDED)}. Ctrl-C ends it.",
+        epilog=f"Only this machine can open the page. It needs: pip install {' '.join(NEEDED)}. Ctrl-C ends it.",
     )
     add = parser.add_argument
-    add("file", nargs="?", type=Path, metavar="FILE", help="the log file; else it is dropped on the page")
+    add("file", nargs="?", type=Path, metavar="FILE", help="the log file; without one, drop it on the page")
     add("--out", type=Path, default=Path("out") / "open", metavar="DIR", help="folder of the results (out/open)")
     add("--port", type=int, default=0, metavar="N", help="TCP port (default: any that is free)")
     add("--no-browser", action="store_true", help="print the page's address and start no browser")
@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     if any(find_spec(name) is None for name in NEEDED):
         raise EhaError(f"the page is served by {' and '.join(NEEDED)}; install them: pip install {' '.join(NEEDED)}")
     if not 0 <= arguments.port <= 65_535:
-        raise EhaError(f"--port {arguments.port} is none; choose one from 1024 to 65535, or leave it out")
+        raise EhaError(f"--port {arguments.port} is not possible; choose one from 1024 to 65535, or leave it out")
     require_folder(arguments.out, "--out")
     from eha_core.page.server import serve
     from eha_core.page.session import Session
@@ -55,5 +55,5 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _has_screen() -> bool:
-    """Whether a browser has a screen to appear on; without one a browser of text would take the terminal."""
+    """Whether there is a display; without one, a text browser would take over the terminal."""
     return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

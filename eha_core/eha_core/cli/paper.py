@@ -15,7 +15,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "paper",
         help="reproduce the published tables and figures",
-        description="Computes Tables 2 and 3 and Figures 3 to 5 of the paper and sets them beside the printed values.",
+        description="Computes Tables 2 and 3 and Figures 3 to 5 of the paper; compares them with the printed values.",
     )
     parser.add_argument(
         "--out",
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
         f"\nOpen loop, {command.amplitude * 1e3:g} mV at {command.frequency:g} Hz,"
         f" {reproduction.experiment.duration:g} s, step {reproduction.experiment.step_size:g} s."
     )
-    print("\nWhat the paper leaves open, and what was assumed:")
+    print("\nNot stated in the paper, and assumed here:")
     print("\n".join(f"- {sentence}" for sentence in LEFT_OPEN))
     print(f"\n{table}, and {len(figures)} figures in {arguments.out / 'figures'}")
     return 0

@@ -20,10 +20,10 @@ from eha_core.signals import signals
 
 MCAP, CSV = ".mcap", ".csv"
 COMMAND_LIMIT = 10.0
-"""V; what the simulator node's parameter command_limit is by default."""
+"""V; default of the simulator node's parameter command_limit."""
 
 MOST_IN_A_SWEEP = 1000
-"""Recordings that one command writes (assumed: a folder that can still be listed)."""
+"""Most recordings that one command writes (assumed: a folder that can still be listed)."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -69,7 +69,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--seed", type=int, default=1, help="seed of the noise (default: %(default)s)")
     parser.add_argument("--initial-position", type=float, default=0.0, metavar="M", help="where the piston starts")
     parser.add_argument(
-        "--instruments-only", action="store_true", help="record what a rig's instruments give, nothing of the model"
+        "--instruments-only", action="store_true", help="record only the channels of a rig's instruments"
     )
 
 
@@ -97,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _write(path: Path, record: Simulated, instruments_only: bool) -> str:
-    """Write in the form that the ending asks for; return how much that is."""
+    """Write in the form of the path's ending; return the amount in words."""
     if path.suffix.lower() == CSV:
         return f"{write_csv(path, record, instruments_only)} rows"
     return f"{write_simulated(path, record, instruments_only)} messages"
@@ -143,7 +143,7 @@ def _swept(words: str) -> tuple[str, list[float]]:
 
 
 def _warn_of_limit(voltages: FloatArray) -> None:
-    """Say where the simulator node would clamp what is simulated here as it is."""
+    """Warn where the simulator node would clamp the command that is simulated here unclamped."""
     largest = float(np.max(np.abs(voltages), initial=0.0))
     if largest > COMMAND_LIMIT:
         print(
@@ -163,7 +163,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _settings(words: list[str]) -> tuple[dict[str, float], list[tuple[float, str, float]]]:
-    """Parameters from the start, and those that change later as (instant [s], name, value)."""
+    """Parameters in force from the start, and later changes as (instant [s], name, value)."""
     start: dict[str, float] = {}
     changes: list[tuple[float, str, float]] = []
     for word in words:
@@ -186,7 +186,7 @@ def _settings(words: list[str]) -> tuple[dict[str, float], list[tuple[float, str
 def _driving(
     arguments: argparse.Namespace, composition: Composition
 ) -> tuple[FloatArray, FloatArray, float, dict[str, Samples]]:
-    """Instants [s] and voltages [V] of the command, the duration [s]; or what drives another source, by channel."""
+    """Instants [s] and voltages [V] of the command, the duration [s], and the channels that drive another source."""
     if composition.source.valve == "coil":
         times, voltages, duration = read_command(arguments, "voltage_command")
         _warn_of_limit(voltages)
