@@ -1,4 +1,4 @@
-"""Whether a recording's channels are sound in themselves: holes, and faults of each channel, before any fit."""
+"""The health of a recording's channels before any fit: gaps, and the faults of each channel."""
 
 from eha_core.health.examine import examine, unsuited
 from eha_core.health.fault import Fault, Health

@@ -1,9 +1,9 @@
-"""Whether the position is stamped by a clock that runs at the command's rate.
+"""Whether the position's clock runs at the same rate as the command's.
 
-Two loggers whose clocks differ by two per cent are 0.2 s apart after ten seconds, and every law that is fitted between
-their channels is bent by it. The speed follows the command by a delay; here that is measured in pieces of the
-recording. A rig's own delay may change, by wear or with the amplitude, but by some hundredths of a second, and not at a
-steady rate. A clock that all channels share tells nothing of itself: its error is one factor of all that has a time.
+Two loggers whose clocks differ by two per cent are 0.2 s apart after ten seconds, which biases every law fitted between
+their channels. The speed lags behind the command; here this delay is measured in pieces of the recording. A rig's own
+delay may change, by wear or with the amplitude, but by some hundredths of a second, and not at a steady rate. A wrong
+clock that all channels share cannot be seen here: it scales all parameters with a time in their unit.
 """
 
 from __future__ import annotations
@@ -19,28 +19,28 @@ from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
 
 PIECE, EVERY = 2.0, 1.0
-"""s; the length of a piece and how far one begins after the other: some reversals of a test (assumed)."""
+"""s; length of a piece, and distance from one to the next: some reversals of a test (assumed)."""
 TICK = 0.005
-"""s; the grid on which both are compared: a peak's place is known to a tenth of it."""
+"""s; step of the grid on which both are compared: a peak's place is known to a tenth of it."""
 LATEST = 0.3
-"""s by which the speed may seem to follow or lead the command in a piece."""
+"""s; largest delay or lead of the speed in a piece."""
 ALIKE = 0.7
-"""Correlation from which on a piece has a delay: half of the speed is the command's."""
+"""Smallest correlation of a piece with a known delay: the command explains half of the speed's variance."""
 FEWEST = 5
-"""Pieces that have one."""
+"""Fewest pieces with a known delay."""
 STEADY = 0.15
-"""Scatter of the delays about a straight line, over what the line rises by, up to which the change is steady (the
-line by Theil and Sen, the scatter from the median deviation)."""
+"""Largest scatter of the delays about a straight line, as a share of the line's rise, of a steady change (the line by
+Theil and Sen, the scatter from the median deviation)."""
 OUTSIDE = 3.0
-"""Times that scatter beyond which a delay is left out of the line (assumed)."""
+"""Deviation in units of that scatter above which a delay is not used for the line (assumed)."""
 DRIFTED = 0.04
-"""s by which the delay must change: more than a rig's own does (assumed: coil, spool and oil together take 0.01 s)."""
+"""s; smallest change of the delay: more than a rig's own (assumed: coil, spool and oil together take 0.01 s)."""
 SLOWEST = 0.003
-"""Rate from which on clocks are said to differ; a logger's own crystal is off by a hundredth of that."""
+"""Smallest difference of the rates that is reported; a logger's own crystal is off by a hundredth of that."""
 
 
 def drift(recording: Recording) -> Sequence[Fault]:
-    """The position, where its delay behind the command grows or shrinks steadily."""
+    """A fault of the position, where its delay behind the command changes at a steady rate; empty without one."""
     command, position = (recording.channels.get(name) for name in ("voltage_command", "position"))
     if command is None or position is None or min(len(command.time), len(position.time)) < 100:
         return ()
@@ -65,21 +65,21 @@ def drift(recording: Recording) -> Sequence[Fault]:
         return ()
     fault = Fault(
         "position", "clock", float(position.time[0]), float(position.time[-1]),
-        f"its clock runs {100.0 * abs(rate):.2g} % {'fast' if rate > 0.0 else 'slow'} against the command's:"
-        f" it follows by {1e3 * (level + rate * when[0]):.0f} ms at first and by"
-        f" {1e3 * (level + rate * when[-1]):.0f} ms at last",
+        f"its clock runs {100.0 * abs(rate):.2g} % {'fast' if rate > 0.0 else 'slow'} compared with the command's:"
+        f" its delay is {1e3 * (level + rate * when[0]):.0f} ms at the start and"
+        f" {1e3 * (level + rate * when[-1]):.0f} ms at the end",
         "stamp all channels by one clock", False, True,
     )  # fmt: skip
     return (fault,)
 
 
 def _smooth(values: FloatArray) -> FloatArray:
-    """Means over five ticks, above whose frequencies the speed is noise."""
+    """Moving means over five ticks; above their frequencies the speed is noise."""
     return np.asarray(np.convolve(values, np.full(5, 0.2), mode="same"))
 
 
 def _delays(grid: FloatArray, voltage: FloatArray, speed: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The middles of the pieces in which the speed is the command's, and by how much it follows it there [s]."""
+    """The middles [s] of the pieces in which the speed follows the command, and its delays there [s]."""
     length, reach = round(PIECE / TICK), round(LATEST / TICK)
     when, late = [], []
     for first in range(reach, len(grid) - length - reach, round(EVERY / TICK)):
@@ -97,8 +97,8 @@ def _delays(grid: FloatArray, voltage: FloatArray, speed: FloatArray) -> tuple[F
 
 
 def _correlations(piece: FloatArray, around: FloatArray) -> FloatArray:
-    """Correlation of a piece with each piece as long of what lies around it, by their magnitude: a rig of reversed
-    polarity answers with the other sign."""
+    """Absolute correlation of a piece with each equally long piece of `around`: with reversed polarity the response has
+    the other sign."""
     centred = piece - piece.mean()
     power = float(centred @ centred)
     if not power > 0.0:

@@ -1,7 +1,7 @@
-"""What a channel covers: the spans in which its samples are missing.
+"""Gaps of a channel: the intervals in which its samples are missing.
 
-A command that is lost for longer than some of its periods was held by nobody knows whom: what the piston did then is
-its answer to a voltage that was not recorded. A sensor's hole is said where it is long; its samples are simply fewer.
+While a command is lost for longer than some of its periods, the valve's voltage is not known, and the piston's motion
+cannot be used. A sensor's gap only means fewer samples; it is reported where it is long.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from eha_core.health.signal import COMMANDS
 from eha_core.recording import Channel, Recording
 
 PERIODS = 5.0
-"""Periods without a command from which on it was lost: a busy computer delays a message by two or three (assumed)."""
+"""Periods after which a missing command counts as lost: a busy computer delays a message by two or three (assumed)."""
 REGULAR = 0.8
-"""Share of the intervals within a quarter of the usual one from which on a command is one that comes periodically. One
-that is sent only where it changes has no holes."""
+"""Share of the intervals that must be within a quarter of the usual one in a periodic command. One that is sent only
+where it changes has no gaps."""
 FEWEST = 50
-"""Samples from which on a command has a period."""
+"""Fewest samples of a command with a period."""
 SENSOR_PERIODS, SENSOR_SECONDS = 60.0, 0.25
-"""A sensor's hole is said from so many periods and seconds on: bursts of 50 lost samples are a busy network's."""
+"""Shortest gap of a sensor that is reported, in periods and in seconds: a busy network loses bursts of 50 samples."""
 
 
 def holes(channel: Channel, recording: Recording) -> list[Fault]:
-    """The spans in which a channel's samples are missing."""
+    """The intervals in which a channel's samples are missing."""
     if len(channel.time) < FEWEST:
         return []
     gaps = np.diff(channel.time)

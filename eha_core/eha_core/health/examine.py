@@ -1,4 +1,4 @@
-"""The checks of each channel, in their order: a later one sees what the earlier ones left."""
+"""The checks of each channel, in their order: each sees the samples that the earlier ones did not exclude."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ CHECKS: tuple[Callable[[Signal], Found | None], ...] = (
     dropped.find, saturated.find, held.find, interpolated.find, frozen.find, rescaled.find, wrapped.find, jump.find,
     noisy.find, spikes.find, hum.find, low_passed.find,
 )  # fmt: skip
-"""What leaves its own mark on the values comes first: a fill value is no jump, a range's end no frozen sensor."""
+"""The more specific checks come first: a fill value is not a jump, and the end of a range is not a frozen sensor."""
 
 UNCHECKED = ("velocity",)
-"""Channels that nothing is compared with."""
+"""Channels that no fit uses."""
 FEWEST = 100
-"""Samples from which on a channel shows what is usual in it."""
+"""Fewest samples from which a channel's usual noise and motion are known."""
 
 
 def examine(recording: Recording) -> Health:
-    """Find the faults of every channel by itself."""
+    """Find the faults that each channel shows by itself."""
     faults: list[Fault] = []
     lost, values = {}, {}
     for name, channel in recording.channels.items():
@@ -71,8 +71,8 @@ def examine(recording: Recording) -> Health:
 
 
 def unsuited(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> tuple[Fault, ...]:
-    """What shows only between channels or against the nominal plant: a log too slow for its valve, a piston that should
-    have moved, a clock that runs at another rate."""
+    """The faults that show only between channels or against the nominal plant: a log too slow for its valve, a piston
+    that should have moved, a clock that runs at another rate."""
     return (
         *too_slow(recording, nominal, composition), *still(recording, nominal, composition), *drift(recording),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""A fault of a recording: in which channel, of what kind, when, and what becomes of it."""
+"""A fault of a recording: its channel, kind and time, and its consequence."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from eha_core.recording import Channel, Recording
 from eha_core.recording.recording import FloatArray
 
 FORGOTTEN = 0.1
-"""s after which coil and spool no longer tell what voltage they had: ten times the time constants of the paper's valve,
-5.9 ms of its coil and 3.8 ms of its spool (assumed of other valves). The piston's state is fitted anew by then."""
+"""s after which coil and spool no longer depend on an earlier voltage: ten times the time constants of the paper's
+valve, 5.9 ms of its coil and 3.8 ms of its spool (assumed of other valves). By then the piston's state is fitted
+again."""
 
 
 @dataclass(frozen=True)
@@ -24,8 +25,8 @@ class Fault:
         start, end: when [s].
         seen: what was found there, in words, with its numbers.
         remedy: what the user can do about it.
-        excludes: whether nothing that the channel tells in the span is used.
-        refuses: whether the recording cannot be diagnosed with it.
+        excludes: whether the channel's samples in the span are not used.
+        refuses: whether the recording cannot be diagnosed.
     """
 
     channel: str
@@ -39,14 +40,14 @@ class Fault:
 
     @property
     def span(self) -> tuple[float, float]:
-        """When it begins and ends [s]."""
+        """Its begin and end [s]."""
         return self.start, self.end
 
 
 @dataclass(frozen=True)
 class Found:
-    """What one check finds in a channel: its faults, which of the channel's samples (n,) are not to be used, and the
-    channel's values (n,) without the fault, where it can be undone."""
+    """The result of one check of a channel: its faults, flags of the samples (n,) not to be used, and the values (n,)
+    without the fault, where it can be corrected."""
 
     faults: Sequence[Fault]
     lost: Flags
@@ -55,22 +56,22 @@ class Found:
 
 @dataclass(frozen=True)
 class Health:
-    """The faults of a recording in the order of their channels, the samples (n,) of each channel that are lost, and the
-    values (n,) of those whose fault could be undone."""
+    """The faults of a recording in the order of their channels, flags of each channel's lost samples (n,), and the
+    values (n,) of those whose fault could be corrected."""
 
     faults: tuple[Fault, ...] = ()
     lost: Mapping[str, Flags] = field(default_factory=dict)
     values: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def sound(self, channel: Channel) -> tuple[FloatArray, FloatArray]:
-        """The times and values of a channel that no fault spoils."""
+        """The times and values of a channel without lost samples, corrected where possible."""
         values = self.values.get(channel.name, channel.values)
         if channel.name not in self.lost:
             return channel.time, values
         return channel.time[~self.lost[channel.name]], values[~self.lost[channel.name]]
 
     def without_faults(self, recording: Recording) -> Recording:
-        """The recording with what no fault spoils of each channel."""
+        """The recording with each channel's sound samples only."""
         channels = {}
         for name, channel in recording.channels.items():
             time, values = self.sound(channel)
@@ -78,8 +79,8 @@ class Health:
         return replace(recording, channels=channels)
 
     def unknown_of(self, driving: Sequence[str], end: float) -> tuple[tuple[float, float], ...]:
-        """The spans [s] up to `end` in which it is not known what drove a plant by these channels, each until the plant
-        has FORGOTTEN; in their order, none of them meeting another."""
+        """The intervals [s] up to `end` in which the plant's inputs, these channels, are not known, each extended by
+        FORGOTTEN; sorted and disjoint."""
         spans: list[tuple[float, float]] = []
         for start, stop in sorted(fault.span for fault in self.faults if fault.excludes and fault.channel in driving):
             stop = min(stop + FORGOTTEN, end)

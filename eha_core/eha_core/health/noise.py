@@ -1,4 +1,4 @@
-"""How noisy a channel is, from the channel alone."""
+"""A channel's noise level and quantisation step, from the channel alone."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ NORMAL_MINIMUM = 1.0 - sqrt(2.0 / (pi * e))
 """The mean of min(z^2, 1) for a standard normal z."""
 
 ROUNDING = 1e-9
-"""Share of a channel's size below which two values are one level, split by the rounding of double precision."""
+"""Share of a channel's size below which two values are the same level, apart from double precision's rounding."""
 ON_GRID = 0.1
-"""Steps off a level up to which a value counts as on it; of values that are on no grid, one in five is."""
+"""Distance from a level, in steps, up to which a value counts as on it; without a grid, one value in five does."""
 SHARE_ON_GRID = 0.95
 """Share of the values that must be on the grid; the others may be interpolated or outliers."""
 
@@ -32,7 +32,7 @@ def estimate_noise(values: Array, order: int = 4, blocks: int = 20) -> float:
     """Standard deviation of white noise on a smooth signal.
 
     Differences of the given order remove the signal where it is smooth; the lower quartile over blocks of the record
-    passes over the stretches where it is not. Never below what quantisation alone makes.
+    ignores the parts where it is not. Never below the noise of quantisation.
     """
     differences = np.diff(values, n=order)
     pieces = np.array_split(differences, max(1, min(blocks, len(differences) // 50)))
@@ -42,16 +42,16 @@ def estimate_noise(values: Array, order: int = 4, blocks: int = 20) -> float:
 
 
 def residual_noise(residual: Array, order: int = 2) -> float:
-    """Standard deviation of the white part of a fit's residual, whatever slow part a wrong model leaves in it."""
+    """Standard deviation of the white part of a fit's residual, whatever the slow part from a wrong model."""
     return usual_size(np.diff(residual, n=order)) / sqrt(comb(2 * order, order))
 
 
 def usual_size(values: Array) -> float:
-    """Standard deviation of normal values about zero of which up to a half may be anything.
+    """Robust standard deviation of normal values about zero, of which up to half may be outliers.
 
-    The s at which min((value / s)^2, 1) has the mean that it has of a normal variable (Huber, Robust Statistics, 1981,
-    section 5.2). The median is as robust, but of values on a grid it is one of the grid's: 9 % off where the noise is
-    two steps of an analogue-digital converter.
+    The s at which min((value / s)^2, 1) has the mean of a normal variable (Huber, Robust Statistics, 1981, section
+    5.2). The median is as robust, but for values on a grid it is a grid value: 9 % off where the noise is two steps of
+    an analogue-to-digital converter.
     """
     return float(usual_sizes([values])[0])
 
@@ -68,7 +68,7 @@ def usual_sizes(pieces: Sequence[Array]) -> Array:
     middle = 0.5 * (ordered[rows, (counts - 1) // 2] + ordered[rows, counts // 2])
     square[np.isinf(square)] = 0.0
     variance = middle / NORMAL_MEDIAN**2
-    # a piece that is zero more often than not has no size
+    # a piece that is mostly zero has size zero
     going_on = np.flatnonzero(variance > 0.0)
     for _ in range(50):
         if not len(going_on):
@@ -83,31 +83,30 @@ def usual_sizes(pieces: Sequence[Array]) -> Array:
 def quantisation(values: Array) -> float:
     """The step of a quantised channel, or 0 where its values are not on a grid.
 
-    However many of a fine encoder's levels a recording has, they lie on a grid; the steps between the values of another
-    channel have no common measure.
+    A fine encoder's values are all multiples of one step, however many levels a recording has; the differences between
+    another channel's values have no common divisor.
     """
     distinct = np.unique(values)
     steps = np.diff(distinct)
     steps = steps[steps > ROUNDING * float(np.max(np.abs(values)))] if len(steps) else steps
     if len(steps) < 2:
         return 0.0
-    least = float(np.quantile(steps, 0.05, method="lower"))  # a few values between the levels are let pass
-    # One step bears the rounding of two values; the sum of many bears hardly more.
+    least = float(np.quantile(steps, 0.05, method="lower"))  # a few values may be between the levels
+    # One step has the rounding error of two values; the sum of many has hardly more.
     whole = np.round(steps / least)
     usual = (whole > 0.0) & (np.abs(steps / least - whole) < ON_GRID)
     step = float(np.sum(steps[usual])) / float(np.sum(whole[usual]))
     levels = (values - values[0]) / step
-    # the grid's own place: the median of an even number of values, or any one of them, may lie between two levels
+    # the grid's offset: the median of an even number of values, or any one value, may be between two levels
     place = float(np.angle(np.mean(np.exp(2j * pi * levels)))) / (2.0 * pi)
     off = np.abs(levels - place - np.round(levels - place))
     return step if float(np.mean(off < ON_GRID)) > SHARE_ON_GRID else 0.0
 
 
 def find_outliers(values: Array, noise: float, limit: float = 8.0, width: int = 51) -> Flags:
-    """Lone samples that both neighbours contradict alike, by `limit` times the noise and times what is usual nearby.
+    """Flags of single samples that differ from both neighbours by `limit` times the noise and the roughness nearby.
 
-    A step of the signal is rough, too, but there the neighbours differ from each other; and where it rings, samples
-    further on are as surprising.
+    At a step of the signal the neighbours differ from each other, and where it rings, later samples are as rough.
     """
     before = np.concatenate([values[1:2], values[:-1]])
     after = np.concatenate([values[1:], values[-2:-1]])

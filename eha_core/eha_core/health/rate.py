@@ -15,10 +15,10 @@ COMMAND = "voltage_command"
 
 
 def too_slow(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> Sequence[Fault]:
-    """The command, where what it did between two samples takes longer than coil and spool.
+    """A fault of the command, where its sampling delays it by more than coil and spool do; empty without one.
 
-    A command that is held from sample to sample is half a period late in the mean where the drive got more of them;
-    that is a delay like the valve's own, L / R + 2 zeta / omega, and it hides it from one period of twice that on.
+    A command held from sample to sample is late by half a period on average if the drive received more samples. That
+    hides the valve's own delay, L / R + 2 zeta / omega, once the period is twice that.
     """
     channel = recording.channels.get(COMMAND)
     if channel is None or composition.source.valve != "coil" or len(channel.time) < 2:
@@ -31,11 +31,11 @@ def too_slow(recording: Recording, nominal: Mapping[str, float], composition: Co
     fault = Fault(
         COMMAND, "too_slow", float(channel.time[0]), float(channel.time[-1]),
         f"logged at {1.0 / period:.3g} Hz, too slowly for a valve that acts within {1e3 * delay:.2g} ms",
-        f"log it at {np.ceil(0.5 / delay / 10.0) * 10.0:.0f} Hz or more, best wherever it changes", False, True,
+        f"log it at {np.ceil(0.5 / delay / 10.0) * 10.0:.0f} Hz or more, or at each change", False, True,
     )  # fmt: skip
     return (fault,)
 
 
 def _is_made_of_steps(values: FloatArray) -> bool:
-    """Whether a command rests most of the time: then each message is a change, however seldom they come."""
+    """Whether a command is constant most of the time: then each message is a change, however rare."""
     return bool(np.mean(np.diff(values) == 0.0) > 0.5)

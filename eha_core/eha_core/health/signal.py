@@ -1,4 +1,4 @@
-"""What every check asks of a channel, computed once."""
+"""The quantities of a channel that the checks share, computed once."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from eha_core.recording import Channel
 from eha_core.recording.recording import FloatArray
 
 COMMANDS = ("voltage_command",)
-"""Channels that a controller gives: steps, holds and constant values are as they should be."""
+"""Channels from a controller, in which steps, holds and constant values are normal."""
 SAME_SIZE = (0.6, 1.7)
-"""Ratio of the noise that third and fifth differences show, within which it is noise: of white noise it is 1, of a
-smooth signal without noise 5 and more, since each difference takes more of it away."""
+"""Range of the ratio of third to fifth differences that counts as noise: white noise has 1, a smooth signal without
+noise 5 and more, because each difference removes more of it."""
 COARSE = 0.5
-"""Noise over the quantisation step from which on two samples of a channel at rest are often on different levels."""
+"""Noise, in quantisation steps, from which two samples of a channel at rest are often on different levels."""
 BLOCK, BLOCK_SAMPLES = 0.25, 60
-"""A block has at least so many seconds and samples: its noise is then known to an eighth."""
+"""Shortest block, in seconds and in samples: its noise is then known to an eighth."""
 ALIKE = 0.1
-"""Distinct values, as a share of all, below which many are alike."""
+"""Share of distinct values below which many values are equal."""
 ORDER = 4
-"""Of the differences that show noise and not motion."""
+"""Order of the differences that show noise and not motion."""
 RARE, FEW = 0.005, 16
-"""Share of a channel's changes, and so many of them at least, that may be a fault's and no usual ones."""
+"""Share of a channel's changes, and least number of them, that may be due to a fault."""
 TOGETHER = 0.05
-"""s between two samples of one fault up to which what lies between them is taken as a part of it."""
+"""s; longest gap between two samples of a fault that counts as part of it."""
 FALSE_ALARMS = 1e-6
 """Probability with which a check may find a fault in a sound channel."""
 
 
 @dataclass(frozen=True)
 class Signal:
-    """A channel's samples that no earlier check took: `time` [s] and `values`, and which of the channel's samples these
-    are (`places`)."""
+    """A channel's samples that no earlier check excluded: `time` [s], `values`, and their indices in the channel
+    (`places`)."""
 
     channel: Channel
     places: Integers
@@ -48,7 +48,7 @@ class Signal:
         return cls(channel, np.arange(len(channel.time)))
 
     def without(self, lost: Flags) -> Signal:
-        """The signal less some of its channel's samples."""
+        """The signal without the channel's samples that are flagged as lost."""
         return Signal(self.channel, self.places[~lost[self.places]])
 
     def lost(self, here: Flags) -> Flags:
@@ -64,7 +64,7 @@ class Signal:
 
     @property
     def is_command(self) -> bool:
-        """Whether a controller gives it, and no sensor."""
+        """Whether it comes from a controller, not from a sensor."""
         return self.name in COMMANDS
 
     @cached_property
@@ -79,12 +79,12 @@ class Signal:
 
     @cached_property
     def period(self) -> float:
-        """Usual time from one sample to the next [s]."""
+        """Usual sampling period [s]."""
         return float(np.median(np.diff(self.time)))
 
     @cached_property
     def steps(self) -> FloatArray:
-        """(n - 1,) the change from each sample to the next; none where samples are missing between the two."""
+        """(n - 1,) the change from each sample to the next; zero where samples are missing between them."""
         return np.where(np.diff(self.time) < 2.5 * self.period, np.diff(self.values), 0.0)
 
     @cached_property
@@ -94,14 +94,13 @@ class Signal:
 
     @cached_property
     def step(self) -> float:
-        """Quantisation step; 0 where its values are on no grid. Of a channel that changes between two levels no grid is
-        known, and yet it is quantised by their distance."""
+        """Quantisation step; 0 where its values are on no grid. For a channel with two levels, it is their distance."""
         two_levels = len(np.unique(self.values)) == 2
         return float(np.ptp(self.values)) if two_levels else quantisation(self.values)
 
     @cached_property
     def level(self) -> float:
-        """The least that two of its values differ by, where many are alike; `step` where they are not."""
+        """The smallest difference between two of its values, where many are equal; else `step`."""
         distinct = np.unique(self.values)
         apart = np.diff(distinct)
         apart = apart[apart > ROUNDING * float(np.max(np.abs(self.values)))]
@@ -109,7 +108,7 @@ class Signal:
 
     @cached_property
     def is_noisy(self) -> bool:
-        """Whether there is noise of a sensor in it, by which neighbours differ wherever the channel lives."""
+        """Whether it has sensor noise, so that neighbouring samples differ."""
         sizes = [by_differences(self.values, order) for order in (3, 5)]
         if not sizes[1] > 1e-9 * float(np.max(np.abs(self.values))):
             return False
@@ -118,19 +117,19 @@ class Signal:
 
     @cached_property
     def own_noise(self) -> float:
-        """Standard deviation of the noise without what quantisation adds to it."""
+        """Standard deviation of the noise without that of quantisation."""
         return sqrt(max(self.noise**2 - self.step**2 / 12.0, 0.0))
 
     @cached_property
     def repeats(self) -> float:
-        """Largest probability that a sample of a noisy channel has the value of the one before."""
+        """Largest probability that a sample of a noisy channel equals the one before."""
         if not self.step > 0.0:
             return 1e-3
         return max(1e-3, erf(self.step / (2.0 * sqrt(2.0) * max(self.own_noise, 1e-300))))
 
     @cached_property
     def longest_repeat(self) -> int:
-        """Samples of one value in a row that a noisy channel has with the probability FALSE_ALARMS at most; all of them
+        """Length of a run of equal samples that a noisy channel has with probability FALSE_ALARMS at most; all samples
         where its noise changes none."""
         if not self.repeats < 1.0:
             return len(self.values)
@@ -138,25 +137,25 @@ class Signal:
 
     @cached_property
     def jump(self) -> float:
-        """A change from one sample to the next that is far larger than noise and the usual motion."""
+        """Smallest change between two samples that counts as far larger than noise and the usual motion."""
         rare = max(RARE, FEW / max(len(self.steps), 1))
         usual = float(np.quantile(np.abs(self.steps), max(0.0, 1.0 - rare))) if len(self.steps) else 0.0
         return max(3.0 * usual, self.visible)
 
     @cached_property
     def visible(self) -> float:
-        """A change from one sample to the next that is more than noise and a level or two."""
+        """Smallest change between two samples that counts as more than noise and a level or two."""
         return max(12.0 * self.noise, 5.0 * self.step)
 
     @cached_property
     def extent(self) -> float:
-        """How far its values usually lie apart: from the lowest hundredth to the highest."""
+        """Range of its values, from the 1st to the 99th percentile."""
         low, high = np.quantile(self.values, (0.01, 0.99))
         return float(high - low)
 
     @cached_property
     def blocks(self) -> tuple[Integers, FloatArray]:
-        """The edges of blocks, as places of their first samples, and the noise that each block shows."""
+        """The edges of blocks, as indices of their first samples, and each block's noise."""
         length = max(BLOCK_SAMPLES, round(BLOCK / self.period))
         count = max(1, len(self.values) // length)
         edges = np.linspace(0, len(self.values), count + 1).astype(np.int64)
@@ -171,20 +170,20 @@ class Signal:
 
 
 def by_differences(values: FloatArray, order: int) -> float:
-    """Standard deviation that white noise of such differences would have."""
+    """Standard deviation of white noise whose differences of this order are as large as those of `values`."""
     pieces = np.array_split(np.diff(values, n=order), max(1, min(20, len(values) // 50)))
     sizes = usual_sizes([piece for piece in pieces if len(piece)])
     return float(np.quantile(sizes, 0.35)) / sqrt(comb(2 * order, order)) if len(sizes) else 0.0
 
 
 def covered(flags: Flags) -> list[tuple[int, int]]:
-    """The runs of set flags, as first and last place."""
+    """The runs of set flags, as first and last index."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return [(int(first), int(end) - 1) for first, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def joined(signal: Signal, flags: Flags) -> list[tuple[int, int]]:
-    """The runs of set flags as first and last place, those that only noise parts as one."""
+    """The runs of set flags, as first and last index; runs that only noise separates are joined."""
     spans: list[tuple[int, int]] = []
     for first, last in covered(flags):
         if spans and signal.time[first] - signal.time[spans[-1][1]] < TOGETHER:

@@ -9,21 +9,21 @@ from eha_core.health.signal import Signal
 from eha_core.recording.recording import FloatArray
 
 ORDER = 2
-"""Of the differences that are taken first and undone in the spectrum: the motion, thousands of times the noise, would
-leak into every frequency."""
+"""Order of the differences taken before the transform and undone in the spectrum: the motion, thousands of times the
+noise, would leak into every frequency."""
 GAP = 2.5
-"""Periods from one sample to the next from which on one is missing between them."""
+"""Periods between two samples from which one is missing between them."""
 TAPERED = 0.2
-"""Share of the recording over which it begins and ends."""
+"""Share of the recording that is tapered."""
 SEGMENT = 64
-"""Samples of a segment: short against the time between two reversals of the piston."""
+"""Samples of a segment: short compared with the time between two reversals of the piston."""
 
 
 def usual_spectrum(signal: Signal) -> tuple[FloatArray, FloatArray, int]:
-    """Frequencies as shares of the highest one, the power there [unit^2], as even as white noise is, and of how many
-    segments it is the median: what is rough for moments, as where friction lets go, has no part in it.
+    """Frequencies as shares of the highest one, the power there [unit^2], flat for white noise, and the number of
+    segments. The power is a median over segments, so that brief roughness, as where friction breaks away, is ignored.
 
-    Samples whose stamps scatter are taken as evenly spaced: between them interpolated, their noise would not be white.
+    Samples with jitter in their stamps are taken as evenly spaced, because interpolated noise would not be white.
     """
     whole = np.concatenate([[0], np.cumsum(np.diff(signal.time) > GAP * signal.period)])
     starts = np.arange(0, len(signal.values) - SEGMENT + 1, SEGMENT // 2)
@@ -36,7 +36,7 @@ def usual_spectrum(signal: Signal) -> tuple[FloatArray, FloatArray, int]:
 
 
 def lines(signal: Signal) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [Hz] and the periodogram [unit^2]: lines as narrow as the recording is long; gaps are bridged."""
+    """Frequencies [Hz] and the periodogram [unit^2] of the whole recording; gaps are bridged."""
     places = np.round((signal.time - signal.time[0]) / signal.period).astype(np.int64)
     values = np.full(places[-1] + 1, np.nan)
     values[places] = signal.values

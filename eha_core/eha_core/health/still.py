@@ -1,9 +1,9 @@
-"""Whether a piston moves that its command should have moved.
+"""Whether the piston moved where its command should have moved it.
 
-The means of blocks of a position at rest scatter as white noise of the samples says, within a factor of two in power:
-over 20 blocks and more that is one sound recording in a thousand whose piston moves by as little as its noise, and none
-whose motion shows. A small command is no fault: a valve's overlap and hysteresis may take all of it, and that
-is what such a recording tells.
+At rest, the means of blocks of the position scatter as expected from the samples' white noise, within a factor of two
+in power. With 20 blocks and more, one sound recording in a thousand is reported whose motion is as small as its noise,
+and none whose motion is visible. A small command is not a fault: a valve's overlap and hysteresis may absorb all of it,
+and such a recording shows that.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from eha_core.plant import Composition
 from eha_core.recording import Recording
 
 SECONDS, FEWEST = 0.1, 20
-"""A block's length and how many there are at least."""
+"""Length of a block, and fewest blocks."""
 MOTION = 2.0
-"""Power of the means over that of noise from which on there is motion."""
+"""Power of the means, over that expected of noise, from which there is motion."""
 TAKEN = 0.05
-"""Share of the rated command, from its lowest value to its highest, that a sound valve may take (assumed: 1 % of
-overlap either way and 3 % of hysteresis, which servo valves' data sheets allow)."""
+"""Range of the command, as a share of the rated one, that a sound valve may absorb (assumed: 1 % of overlap either way
+and 3 % of hysteresis, which servo valves' data sheets allow)."""
 
 
 def still(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> Sequence[Fault]:
-    """The position, where it is a constant and noise under a command that should have moved the piston."""
+    """A fault of the position, if it is a constant with noise under a command that should have moved it; else empty."""
     channel = recording.channels.get("position")
     if channel is None or len(channel.time) < 2 * FEWEST or not np.ptp(channel.values) > 0.0:
         return ()
@@ -53,7 +53,7 @@ def _rests(signal: Signal) -> bool:
 
 
 def _is_small(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> bool:
-    """Whether the command hardly opens the valve; of a source without one nothing is known."""
+    """Whether the command hardly opens the valve; it is not known for a source without a valve."""
     channel = recording.channels.get("voltage_command")
     if channel is None or composition.source.valve != "coil" or not len(channel.values):
         return False

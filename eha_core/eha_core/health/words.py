@@ -1,4 +1,4 @@
-"""Faults in words: what the terminal, the report and an error say of them."""
+"""Faults in words, for the terminal, the report and errors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from itertools import groupby
 from eha_core.health.fault import Fault
 
 MOST_SPANS = 3
-"""Spans of one fault that are listed one by one."""
+"""Most intervals of one fault that are listed one by one."""
 
 
 def in_words(faults: Sequence[Fault]) -> tuple[str, ...]:
@@ -28,7 +28,7 @@ def in_words(faults: Sequence[Fault]) -> tuple[str, ...]:
 
 
 def _together(faults: Sequence[Fault]) -> list[tuple[str, Fault]]:
-    """Each fault with its channel, or with all channels that have a hole where it has one."""
+    """Each fault with its channel, or a gap with all channels that have it."""
     grouped: list[tuple[str, Fault]] = []
     holes = [fault for fault in faults if fault.fault == "hole"]
     shared: set[int] = set()

@@ -1,9 +1,9 @@
-"""A channel that drops to a fill value: an interface that has no sample gives zero, or the end of its range.
+"""A channel that drops to a fill value: an interface without a sample gives zero, or the end of its range.
 
-Found where the value leaps away and back, and is one and the same to the last digit meanwhile; or leaps away and stays
-so to the end. The piston's position cannot leap at all, and a pressure that leaps is not constant afterwards: neither
-happens in a sound channel. Of a command that is made of steps, which may leap, a fill value is one that lies beyond all
-others by more than they span, more than once, and from which it returns at once to where it was.
+It is found where the value jumps away and back and is exactly constant in between, or jumps away and stays constant to
+the end. A sound channel does neither: the position cannot jump, and a pressure that jumps is not constant afterwards.
+In a command of steps, which may jump, a fill value lies outside all others by more than their range, occurs more than
+once, and returns at once to the value before.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from eha_core.health.signal import Signal
 from eha_core.recording.recording import FloatArray
 
 CONSTANT = 3
-"""Samples of one value after a leap that make it a fill value; of two such values that are the same, one is enough."""
+"""Equal samples after a jump that make their value a fill value; a value that occurs twice needs only one sample."""
 AT_THE_END = 10
-"""Samples of one value from a leap to the recording's end."""
+"""Equal samples from a jump to the recording's end."""
 FAR = 0.25
-"""Of the channel's extent that a leap to a fill value is at least; a pressure rings by less within a sample."""
+"""Smallest jump to a fill value, as a share of the channel's range; a pressure rings by less within a sample."""
 LONGEST = 0.25
-"""Share of the channel that may be filled: more, and it is the rest that is wrong."""
+"""Largest share of the channel that may be filled; above it, the rest may be wrong instead."""
 OF_STEPS = 0.2
-"""Share of a command's changes that are none, from which on it is made of steps."""
+"""Share of zero changes from which a command consists of steps."""
 OF_SPAN = 0.25
-"""Of what a command of steps spans that it may have moved on by meanwhile (assumed)."""
+"""Change of a command of steps across a fill value, as a share of its range, that is allowed (assumed)."""
 AT_ONCE = 0.1
-"""s that a command of steps may be at a fill value; a pulse of a test takes longer (assumed)."""
+"""s; longest time of a command of steps at a fill value; a test's pulse is longer (assumed)."""
 
 
 def find(signal: Signal) -> Found | None:
@@ -39,7 +39,7 @@ def find(signal: Signal) -> Found | None:
     starts, lengths = signal.runs
     last = len(signal.values) - 1
     ends = starts + lengths - 1
-    leaps = np.concatenate([[0.0], steps, [np.inf]])  # before each sample, and after the last
+    leaps = np.concatenate([[0.0], steps, [np.inf]])  # change before each sample, and after the last
     far = max(signal.jump, FAR * signal.extent)
     begins, returns = leaps[starts] > far, leaps[ends + 1] > far
     at_the_end = (ends == last) & (lengths >= AT_THE_END)

@@ -1,10 +1,9 @@
-"""A channel that stands still to the last digit while the rest goes on: a driver that repeats its last sample.
+"""A channel that is exactly constant while the others go on: a driver that repeats its last sample.
 
-A noisy channel repeats a value with a known probability at most, so that a run of one value is too long from a known
-length on (FALSE_ALARMS); its neighbours must show that the noise is there. Of a channel without noise, or one that is
-quantised more coarsely than its noise, equal values are a piston at rest; there a position is frozen only where it
-leaps as the run ends, further than it moves in any sample after that. A command may rest and leap, unless it is one
-that never does elsewhere.
+A noisy channel repeats a value with a known largest probability, so that a run of equal values is too long from a known
+length (FALSE_ALARMS); the samples before and after it must have the noise. In a channel without noise, or quantised
+more coarsely than its noise, equal values are a piston at rest; there a position is frozen only if it jumps at the end
+of the run, by more than it moves in any later sample. A command may rest and jump, unless it never does elsewhere.
 """
 
 from __future__ import annotations
@@ -16,17 +15,17 @@ from eha_core.health.noise import usual_size
 from eha_core.health.signal import Signal
 
 BESIDE = 25
-"""Samples beside a run that must have the noise of the channel."""
+"""Samples before and after a run that must have the channel's noise."""
 ALIVE = 0.4
 """Share of the usual noise that they must have."""
 LONG = 10
-"""Samples of one value in a row of a channel whose noise does not show."""
+"""Length of a run of equal samples in a channel whose noise is not visible."""
 OF_STEPS = 0.05
-"""Share of a command's changes that are none, up to which it is one that always moves."""
+"""Share of zero changes up to which a command counts as always moving."""
 
 
 def find(signal: Signal) -> Found | None:
-    """The runs of one value that are too long."""
+    """The runs of equal samples that are too long."""
     starts, lengths = signal.runs
     steps = signal.steps
     if signal.is_command and np.mean(steps == 0.0) - np.max(lengths) / len(steps) > OF_STEPS:
@@ -49,14 +48,14 @@ def find(signal: Signal) -> Found | None:
 
 
 def _is_alive_beside(signal: Signal, first: int, end: int) -> bool:
-    """Whether the samples beside the run have the channel's noise: to either side that there is."""
+    """Whether the samples before and after the run, where there are any, have the channel's noise."""
     sides = (signal.values[max(0, first - BESIDE) : first], signal.values[end : end + BESIDE])
     sizes = [usual_size(np.diff(side, n=2)) / np.sqrt(6.0) for side in sides if len(side) > BESIDE // 2]
     return bool(sizes) and min(sizes) > ALIVE * signal.noise
 
 
 def _leaps(signal: Signal, end: int) -> bool:
-    """Whether a position or command leaps as the run ends, further than in any sample after that."""
+    """Whether a position or command jumps at the end of the run, by more than in any later sample."""
     if not (signal.is_command or signal.channel.unit == "m") or end + LONG > len(signal.values):
         return False
     leap, after = abs(signal.steps[end - 1]), np.abs(signal.steps[end : end + LONG])

@@ -1,8 +1,8 @@
-"""A sensor's channel that is held: sampled at a slower rate, each value repeated until the next one comes.
+"""A sensor's channel that was sampled at a slower rate, with each value held until the next.
 
-Its values change at regular moments only, and by different amounts. (A quantised encoder that moves steadily changes
-at regular moments, too, but by one step each time.) The samples that only repeat are left out; what remains is the
-channel at its own rate.
+Its values change at regular times only, and by different amounts. (A quantised encoder at a steady speed also changes
+at regular times, but by one step each time.) The repeated samples are excluded, which leaves the channel at its own
+rate.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from eha_core.health.faults.regular import regular
 from eha_core.health.signal import Signal
 
 SEVERAL = 0.5
-"""Share of the changes that must be more than one and a half times the least of them."""
+"""Share of the changes that must be more than one and a half times the smallest."""
 
 
 def find(signal: Signal) -> Found | None:

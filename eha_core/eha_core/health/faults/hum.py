@@ -1,8 +1,8 @@
-"""A channel that hums: the mains' frequency on a sensor's cable.
+"""Mains hum on a sensor's cable.
 
-A line at 50 or 60 Hz that stands out of what is beside it. The power of noise in a line is exponential: of all the
-lines within the band, one is FAR times the mean once in 1e12 recordings. What the command has as well, the rig answers
-to. The line is taken out of the channel.
+It is a line at 50 or 60 Hz that stands out of the neighbouring spectrum. The power of noise in a line is exponentially
+distributed: one of the lines in the band has FAR times the mean once in 1e12 recordings. A line that the command also
+has is the rig's response. The line is subtracted from the channel.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from eha_core.recording.recording import FloatArray
 MAINS = (50.0, 60.0)
 """Hz."""
 OFF = 0.25
-"""Hz by which the mains may be off, and a logger's clock with it."""
+"""Hz; tolerance of the mains' frequency and of a logger's clock."""
 BESIDE = (1.0, 6.0)
-"""Hz from the line to what is beside it."""
+"""Hz; distance of the neighbouring spectrum from the line."""
 FAR = 60.0
-"""Times the mean power beside it (noise: exp(-60) a line; assumed of what a rig does at these frequencies)."""
+"""Power of a line, over the mean next to it (noise: exp(-60) per line; assumed of a rig's motion at these
+frequencies)."""
 HIGHEST = 0.45
-"""Share of the sampling rate up to which a line is no mirror of another."""
+"""Highest frequency of a line that is not an alias, as a share of the sampling rate."""
 
 
 def find(signal: Signal) -> Found | None:
@@ -47,7 +48,7 @@ def find(signal: Signal) -> Found | None:
 
 
 def _without(signal: Signal, frequency: float) -> Found:
-    """The channel less a sine of about this frequency, fitted to second differences, which hardly show motion.
+    """The channel minus a sine of about this frequency, fitted to second differences, which hardly show motion.
 
     They are taken of means over a quarter of a period: of single samples they are nearly all noise of high frequencies.
     """

@@ -1,7 +1,7 @@
 """A channel that an exporter interpolated from a slower rate: straight lines from one sample to the next.
 
-Its second differences are zero but at regular moments. A sensor's points between are left out, which undoes it. What
-a command did between is not known; the drive saw steps, or values that were not recorded.
+Its second differences are zero except at regular times. A sensor's interpolated samples are excluded, which corrects
+it. A command between two of its own samples is not known: the drive received steps, or values that were not recorded.
 """
 
 from __future__ import annotations
@@ -13,12 +13,11 @@ from eha_core.health.faults.regular import regular
 from eha_core.health.signal import Signal
 
 STRAIGHT = 0.02
-"""Share of a large second difference (the 99th percentile) up to which one is zero, but for the rounding of a file's
-digits."""
+"""Share of a large second difference (the 99th percentile) up to which one counts as zero, given a file's rounding."""
 SLOWEST = 0.1
-"""s from one corner to the next; straight lines that are longer may be a reference of ramps (assumed)."""
+"""s; longest time between two corners; longer straight lines may be a reference of ramps (assumed)."""
 LOST = 0.01
-"""s from one corner of a command to the next from which on a valve answers to what is lost between (assumed)."""
+"""s; time between two corners of a command from which a valve responds to the lost samples between them (assumed)."""
 ALIKE = 0.05
 """Spread of the corners, over their mean, below which they are a triangle's."""
 

@@ -1,6 +1,6 @@
-"""A position whose zero or scale leaps, and which goes on from there: a sensor that slipped, a unit that changed.
+"""A position whose zero or scale jumps and stays changed: a sensor that slipped, a unit that changed.
 
-The piston cannot leap. Which side of a leap is right the recording does not say; the longer one is used.
+The piston cannot jump. The recording does not show which side of a jump is right; the longer one is used.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from eha_core.health.signal import Signal
 from eha_core.recording.recording import FloatArray
 
 BESIDE = 4
-"""Changes to either side of a leap that must be far smaller."""
+"""Changes on either side of a jump that must be far smaller."""
 AT_AN_EDGE = 2
-"""Samples at the start and at the end that may be anything: a node's first message may be made before any sample."""
+"""Samples at the start and at the end that are ignored: a node may send its first message before any sample."""
 ALONE = 0.25
-"""Share of a leap that they may have."""
+"""Largest change next to a jump, as a share of it."""
 
 
 def find(signal: Signal) -> Found | None:
-    """The shorter side of a leap."""
+    """The shorter side of a jump."""
     leaps = leaps_of(signal)
     if not len(leaps):
         return None
@@ -37,7 +37,7 @@ def find(signal: Signal) -> Found | None:
         faults.append(
             Fault(
                 signal.name, "jump", float(signal.time[first]), float(signal.time[end - 1]),
-                f"its zero or scale is another one there: it leaps by {abs(leap):.4g} {signal.channel.unit}",
+                f"its zero or scale changes: it jumps by {abs(leap):.4g} {signal.channel.unit}",
                 "see what moved the sensor or changed its unit",
             )
         )  # fmt: skip
@@ -45,7 +45,7 @@ def find(signal: Signal) -> Found | None:
 
 
 def leaps_of(signal: Signal) -> Integers:
-    """After which samples a position leaps, and stays."""
+    """The samples after which a position jumps and stays changed."""
     if signal.channel.unit != "m":
         return np.zeros(0, dtype=np.int64)
     steps = np.abs(signal.steps)

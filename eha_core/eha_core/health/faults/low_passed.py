@@ -1,9 +1,9 @@
-"""A channel that was low-passed: its noise is not white, but falls towards the highest frequencies.
+"""A low-pass filtered channel: its noise is not white, but falls towards the highest frequencies.
 
-A sensor's own noise, and that of its converter, is as strong in one half of the upper spectrum as in the other. A
-filter in the amplifier or in an exporter takes it away, and it delays the motion as well. Judged is how the power falls
-from one quarter of the spectrum to the next; the motion that reaches so high makes a channel less white, so only what
-falls in the highest half is certain, where a motion of a sound channel has died away.
+The noise of a sensor and of its converter is equally strong in both halves of the upper spectrum. A filter in the
+amplifier or in an exporter reduces it, and delays the motion as well. The test is how the power falls from one quarter
+of the spectrum to the next. Motion also makes a channel less white; therefore only a fall within the highest half
+counts, where the motion of a sound channel has died away.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from eha_core.health.signal import Signal
 from eha_core.health.spectrum import usual_spectrum
 
 FALLS = 0.87
-"""Power in the highest quarter of the spectrum over that in the next, up to which it falls: 0.72 behind a filter of a
-tenth of the highest frequency and less."""
+"""Power in the highest quarter of the spectrum over that in the next, up to which it counts as falling: 0.72 behind a
+filter with its corner at a tenth of the highest frequency and below."""
 SURE = 3.0
-"""Standard deviations by which it must fall; that, and MUCH in the quarter below, no white noise does."""
+"""Standard deviations by which it must fall; white noise never does that and has MUCH in the quarter below as well."""
 STEEP = 2.0
-"""Power at the start of the third quarter over that at its end: 1.5 behind such a filter. More is motion that ends."""
+"""Power at the start of the third quarter over that at its end: 1.5 behind such a filter. More is the end of motion."""
 MUCH = (0.1, 0.5)
 """The power in the highest quarter over that in the second lowest: 0.3 behind such a filter. Less is motion."""
 
 
 FEWEST = 30
-"""Segments of which the spectrum is the median."""
+"""Fewest segments of the median spectrum."""
 EFFICIENCY = 0.6
-"""Of a median of segments that overlap by half, against the mean of as many lines."""
+"""Efficiency of a median over segments that overlap by half, compared with the mean of as many lines."""
 
 
 def find(signal: Signal) -> Found | None:

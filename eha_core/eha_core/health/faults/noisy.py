@@ -1,7 +1,6 @@
-"""A channel that is disturbed over a span: a motor that starts beside the cable, a connector that shakes loose.
+"""A channel that is disturbed over an interval: a motor that starts near the cable, a loose connector.
 
-Its noise there is many times as large as in most of the recording, and as white: motion makes a channel rough, too, but
-smoothly so.
+Its noise there is many times as large as in most of the recording, and white; the roughness of motion is not white.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from eha_core.health.signal import SAME_SIZE, Signal, by_differences, covered
 TIMES = 6.0
 """Times the usual noise."""
 MOST = 0.5
-"""Share of the recording that may be disturbed; what is usual is not known of more."""
+"""Largest share of the recording that may be disturbed; above it, the usual noise is not known."""
 
 
 def find(signal: Signal) -> Found | None:
@@ -33,7 +32,7 @@ def find(signal: Signal) -> Found | None:
         third, fifth = (by_differences(inside, order) for order in (3, 5))
         if not SAME_SIZE[0] < third / fifth < SAME_SIZE[1]:
             continue
-        # the span may begin and end within a block beside it
+        # the interval may begin and end within a neighbouring block
         begin, end = edges[max(0, first - 1)], edges[min(len(edges) - 1, last + 2)]
         rough = np.abs(np.diff(signal.values[begin:end], n=2)) > TIMES * np.sqrt(6.0) * float(np.median(sizes))
         places = np.flatnonzero(rough)

@@ -1,4 +1,4 @@
-"""Places that follow each other at one interval: the mark of a slower rate in a channel of a higher one."""
+"""Regularly spaced samples: the sign of a slower rate in a channel of a higher one."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from eha_core.health.noise import Integers
 from eha_core.health.signal import covered
 
 IN_A_ROW = 12
-"""Intervals of one length in a row that are no chance: of samples that differ or not by chance, less than one in two
-intervals is the usual one, and so many in a row come up once in 1e6 rows (0.5 ** 12 of 1 in 250 samples)."""
+"""Equal intervals in a row that are not due to chance: if samples differ or not by chance, fewer than half of the
+intervals have the usual length, and so many in a row occur once in 1e6 rows (0.5 ** 12 of 1 in 250 samples)."""
 MOST = 6
-"""Usual intervals in one, where moments in between left no mark."""
+"""Most usual intervals in one, where the changes in between were not visible."""
 LARGE = 6
-"""Samples of an interval from which on it may be one more or less: a rate that is no whole part of the other."""
+"""Length of an interval [samples] from which it may vary by one: a rate that does not divide the other."""
 
 
 def regular(places: Integers, shortest: int = 2) -> list[tuple[int, int, float]]:
-    """The stretches of `places` that follow at one interval: first and last of them, and the interval [samples]."""
+    """The regularly spaced stretches of `places`: the first and last of each, and its interval [samples]."""
     intervals = np.diff(places)
     if len(intervals) < IN_A_ROW:
         return []
@@ -33,6 +33,6 @@ def regular(places: Integers, shortest: int = 2) -> list[tuple[int, int, float]]
 
 
 def _interval(intervals: Integers) -> float:
-    """The usual interval; one that is passed over now and then counts for nothing."""
+    """The usual interval; an occasional longer one does not count."""
     usual = float(np.median(intervals))
     return float(np.mean(intervals[np.abs(intervals - usual) <= 1]))

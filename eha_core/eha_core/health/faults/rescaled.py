@@ -1,9 +1,9 @@
-"""A channel whose scale leaps: an amplifier that switches its range, a unit that changes, and the noise with it.
+"""A channel whose scale jumps, and its noise with it: an amplifier that switches its range, a unit that changes.
 
-The noise of a sensor is of one size as long as the sensor is the same. Where the blocks before a moment have less of
-it, or more, than those after it, and it is white on both sides, the scale is another one. Motion makes a channel rough,
-too, but smoothly so. Oil that rings is taken for noise where the sensor is coarse; but a scale that leaps takes the
-sensor's levels along, and where these stay as far apart it is the same.
+A sensor's noise stays the same as long as the sensor does. If the blocks before a time have less or more noise than
+those after it, and it is white on both sides, the scale has changed. The roughness of motion is not white. With a
+coarse sensor, ringing oil looks like noise; but a change of scale also changes the distance between the sensor's
+levels, and where that stays the same, so does the scale.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from eha_core.health.signal import SAME_SIZE, Signal, by_differences
 from eha_core.recording.recording import FloatArray
 
 APART = 2.0
-"""Times the noise of one side that the other's must be."""
+"""Smallest ratio of the noise on both sides."""
 SMALLEST = 1e-6
-"""Of the largest block's noise that any block has at least: more than a unit makes of it, and not nothing."""
+"""Noise that every block is given at least, as a share of the largest block's: below any change of unit, but not 0."""
 CLEAR = 1.2
-"""Times the larger quarter of one side's blocks that the smaller quarter of the other's must be."""
+"""Smallest ratio of the lower quartile of the noisier side's blocks to the upper quartile of the other's."""
 FEWEST = 4
-"""Blocks on either side. A block's noise is known to an eighth, so that by chance the medians of four and of all others
-differ by a sixth; by as much as APART in fewer than one recording in a million."""
+"""Fewest blocks on either side. A block's noise is known to an eighth, so that by chance the medians of four and of all
+others differ by a sixth; by APART in fewer than one recording in a million."""
 
 
 def find(signal: Signal) -> Found | None:
@@ -44,16 +44,16 @@ def find(signal: Signal) -> Found | None:
     inside = signal.time[shorter]
     fault = Fault(
         signal.name, "jump", float(inside[0]), float(inside[-1]),
-        f"its scale is another one there: its noise is {times:.2g} times as large or as small",
+        f"its scale changes: its noise is {times:.2g} times as large or as small",
         "see what changed the sensor's range or unit",
     )  # fmt: skip
     return Found([fault], signal.lost(here))
 
 
 def _split(sizes: FloatArray) -> tuple[int, float]:
-    """Before which block the noise becomes another, and how many times as large or as small; 0 where it does not.
+    """The block before which the noise changes, and the factor by which it rises or falls; 0 where it does not.
 
-    The split is where the logarithms' means before and after explain most of their scatter.
+    The split is where the means of the logarithms before and after explain most of their variance.
     """
     logarithms = np.log(np.maximum(sizes, SMALLEST * float(np.max(sizes))))
     count = np.arange(1, len(sizes))
@@ -81,6 +81,6 @@ def _have_the_same_levels(before: FloatArray, after: FloatArray) -> bool:
 
 
 def _moment(signal: Signal, edges: Integers, split: int) -> int:
-    """The sample at which the scale leaps: that of the largest change near the blocks' edge."""
+    """The sample at which the scale jumps: that of the largest change near the blocks' edge."""
     first, last = edges[max(0, split - 1)], edges[min(len(edges) - 1, split + 1)]
     return int(first + np.argmax(np.abs(signal.steps[first : last - 1]))) + 1

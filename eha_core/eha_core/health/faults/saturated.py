@@ -1,7 +1,7 @@
-"""A channel at the end of its range: what lies beyond is cut off.
+"""A channel that saturates at the end of its range.
 
-A noisy channel that is cut off has its extreme value again and again, and many times as often as the one next to it;
-the extreme of a sound one is reached by the tail of its noise, once or a few times.
+A noisy channel that is cut off has its extreme value many times as often as the next value; the extreme of a sound one
+is reached by the tail of its noise, once or a few times.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from eha_core.health.noise import Flags
 from eha_core.health.signal import Signal, covered, joined
 
 IN_A_ROW = 3
-"""Samples of the extreme value in a row, once at least."""
+"""Samples of the extreme value in a row that must occur once at least."""
 OFTEN = 10
-"""Samples of the extreme value."""
+"""Fewest samples of the extreme value."""
 MORE = 3.0
-"""Times as many as of the next value that occurs."""
+"""Smallest ratio of their number to that of the next value that occurs."""
 
 
 def find(signal: Signal) -> Found | None:
-    """The spans at the end of the range."""
+    """The intervals at the end of the range."""
     if not (signal.is_noisy or signal.is_command):
         return None
     here = np.zeros(len(signal.values), dtype=np.bool_)
@@ -56,7 +56,7 @@ def _is_cut_off(signal: Signal, at: Flags, end: float) -> bool:
 
 
 def _is_clipped(signal: Signal, runs: list[tuple[int, int]]) -> bool:
-    """Whether a command that moves all the time runs into its extreme and leaves it again at speed."""
+    """Whether a command that always moves reaches its extreme and leaves it again at speed."""
     outside = np.abs(signal.steps)
     inside = sum(last - first for first, last in runs)
     if np.sum(outside == 0.0) - inside > 0.05 * len(outside):

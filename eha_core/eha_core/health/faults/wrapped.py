@@ -1,8 +1,8 @@
-"""A position that wraps: a counter that overflows leaps by its whole range, and goes on as before.
+"""A position that wraps: a counter that overflows jumps by its whole range, and goes on as before.
 
-All its leaps are of one size, and far larger than any other change; noise may make many of them where the piston passes
-the end of the counter slowly. The samples after the leaps are not lost for good, but which of the turns is the true one
-the recording does not say; the shorter parts are excluded.
+All its jumps have one size, far larger than any other change; noise may cause many of them where the piston passes the
+counter's end slowly. The samples after a jump are not lost, but the recording does not show which turn is the true one;
+the shorter parts are excluded.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from eha_core.health.signal import TOGETHER, Signal, joined
 from eha_core.recording.recording import FloatArray
 
 FEWEST = 2
-"""Leaps of one size."""
+"""Fewest jumps of one size."""
 ALIKE = 0.2
-"""Spread of their sizes over their mean: the piston moves on within a sample."""
+"""Largest spread of their sizes over their mean: the piston moves within a sample."""
 STAYS = 10
-"""Samples in a row on another turn, once at least; a lone one is a spike."""
+"""Samples in a row on another turn that must occur once at least; a single one is a spike."""
 
 
 def find(signal: Signal) -> Found | None:
-    """The parts on another turn than most."""
+    """The parts on another turn than most samples."""
     if signal.channel.unit != "m":
         return None
     steps = _steps(signal)
@@ -56,7 +56,7 @@ def find(signal: Signal) -> Found | None:
 
 
 def _steps(signal: Signal) -> FloatArray:
-    """The change from each sample to the next, also where some samples are missing between the two."""
+    """The change from each sample to the next, also where samples are missing between them."""
     steps = np.where(np.diff(signal.time) < max(2.5 * signal.period, TOGETHER), np.diff(signal.values), 0.0)
     steps[:AT_AN_EDGE] = steps[-AT_AN_EDGE:] = 0.0
     return steps
