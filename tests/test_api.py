@@ -59,7 +59,7 @@ def test_a_recording_that_cannot_be_right_is_no_missing_physics() -> None:
     made = eha.simulate(COMMAND, 2.0, noise=1.0)
     frame = pd.DataFrame(made.to_dict()).assign(position=lambda columns: -columns["position"])
     recording = eha.Recording.from_dataframe(frame.drop(columns="velocity"), pressures="gauge", name="rig")
-    with pytest.raises(EhaError, match=r"^rig: position .*; as_recorded=True goes on all the same$"):
+    with pytest.raises(EhaError, match=r"^rig: position .*; as_recorded=True continues all the same$"):
         eha.diagnose(recording)
 
     def stop(stage: str) -> None:

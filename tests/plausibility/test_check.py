@@ -216,7 +216,7 @@ def test_a_position_in_mm_from_one_end_that_stays_inside_the_stroke_has_two_read
     recording = wrong.as_recording({name: pair for name, pair in arrays.items() if name not in lacking})
     finding = check(recording, rig.nominal)
     assert finding is not None and finding.mistake == "position is in mm"
-    assert finding.other is not None and finding.other[0] == "position is in mm and does not count from mid-stroke"
+    assert finding.other is not None and finding.other[0] == "position is in mm and is not measured from mid-stroke"
     for cure, back in ((finding.cure, one_half + end * stroke), (finding.other[1], one_half)):
         whole = cured(recording, cure)
         assert check(whole, rig.nominal) is None

@@ -44,7 +44,7 @@ def test_a_small_command_cannot_have_moved_the_piston_far(lacking: tuple[str, ..
     time, command = other.arrays["voltage_command"]
     other = replace(other, arrays={**other.arrays, "voltage_command": (time, share * command)})
     finding = check(wrong.make_wrong(made("another run's command"), driven, other, lacking), driven.nominal)
-    assert finding is not None and "voltage_command has nothing to do" in finding.mistake
+    assert finding is not None and "voltage_command is unrelated to the motion" in finding.mistake
 
 
 def friction_behind(overlap: float) -> tuple:
@@ -138,7 +138,7 @@ def test_a_velocity_that_is_mostly_noise_is_of_this_run() -> None:
     quiet = replace(noisy, arrays=wrong.with_velocity(silent, noisy.arrays, run_on_plant(noisy.case)))
     other = rig("null_parameters", 1)
     finding = check(wrong.make_wrong(made("another run's velocity"), quiet, other), quiet.nominal)
-    assert finding is not None and "velocity has nothing to do" in finding.mistake
+    assert finding is not None and "velocity is unrelated to the motion" in finding.mistake
 
 
 @pytest.mark.parametrize(("unit", "expected"), [("cm", "position is in cm"), ("inches", "position is in inches")])

@@ -64,7 +64,7 @@ def test_what_a_valve_brings_about_passes() -> None:
 def test_a_recording_is_refused_in_one_line_or_taken_with_a_warning() -> None:
     made = recording(voltage_command=10.0 * np.sign(WAVE), pump_speed=100.0 + WAVE, **PRESSURES)
     values = nominal_of({}).values
-    with pytest.raises(RecordingError, match=r"plant: \{source: switched_pump\}`; --as-recorded goes on all the same"):
+    with pytest.raises(RecordingError, match=r"\{source: switched_pump\}`; --as-recorded continues all the same"):
         admit(made, values)
     assert admit(made, values, as_recorded=True).remarks[0].startswith("warning: taken as recorded, although pump_spe")
 

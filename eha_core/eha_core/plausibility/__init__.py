@@ -1,4 +1,4 @@
-"""Whether a recording can be right at all: signs, scales and ranges of its channels, before any fit."""
+"""Whether a recording is plausible: signs, scales and ranges of its channels, before any fit."""
 
 from eha_core.plausibility.check import admit, check
 from eha_core.plausibility.finding import Finding

@@ -1,4 +1,4 @@
-"""The check: which single mistake, if any, makes an impossible recording a possible one."""
+"""The check: which single mistake, if any, explains an implausible recording."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from eha_core.plausibility.relations import LOW, relations
 from eha_core.recording import Recording
 
 CLOSER = 1.0
-"""By so much (as a logarithm: a factor of 2.7 in scale) must a mistake lie closer than another to be reported alone: a
-valve's gain may be off by 2, and inches for cm is a factor of 2.5."""
+"""Difference of the distances (logarithms: a factor of 2.7 in scale) by which one mistake must be better than another
+to be reported alone: a valve's gain may be off by 2, and inches for cm is a factor of 2.5."""
 
 
 def check(
     recording: Recording, nominal: Mapping[str, float], composition: Composition = PAPER
 ) -> Finding | None:
-    """Say which mistake was made in a recording; None where it is sound, or no single mistake explains it.
+    """The mistake that was made in a recording; None where it is sound, or no single mistake explains it.
 
-    A recording is only suspected where a relation that holds for every actuator of the nominal kind, whatever physics
-    is missing, is certainly broken; and an error is reported only if correcting it makes every check pass.
+    A recording is suspected only if it certainly violates a relation that holds for every actuator of the nominal kind,
+    whatever physics is missing; and a mistake is reported only if correcting it makes every check pass.
 
     Args:
         recording: as it was read.
@@ -57,13 +57,13 @@ def admit(
     composition: Composition = PAPER,
     switch: str = "--as-recorded",
 ) -> Recording:
-    """The recording, if it can be right; with `as_recorded` also one that cannot, with a warning as its first remark.
+    """The recording, if it is plausible; with `as_recorded` in any case, with a warning as its first remark.
 
-    switch: how the caller's user turns that on, as an error says.
+    switch: the caller's option for that, as an error names it.
 
     Raises:
-        RecordingError: a mistake was made in the recording, a channel has a fault with which it tells nothing, or the
-            channels speak against the plant's source; the message says which, and its cure.
+        RecordingError: a mistake was made in the recording, a channel has a fault that makes it useless, or the
+            channels contradict the plant's source; the message says which, and the remedy.
     """
     health = examine(recording)
     ill = [fault for fault in (*health.faults, *unsuited(recording, nominal, composition)) if fault.refuses]
@@ -72,7 +72,7 @@ def admit(
     if not finding:
         return recording
     if not as_recorded:
-        raise RecordingError(f"{recording.path}: {finding}; {switch} goes on all the same")
+        raise RecordingError(f"{recording.path}: {finding}; {switch} continues all the same")
     warning = f"warning: taken as recorded, although {finding}"
     return replace(recording, remarks=(warning, *recording.remarks))
 
@@ -81,7 +81,7 @@ def _cured(
     found: Mapping[str, Relation], recording: Recording, possible: Iterable[Suspect], nominal: Mapping[str, float],
     composition: Composition,
 ) -> list[tuple[float, Suspect]]:
-    """The mistakes whose undoing mends what is broken, and how far from the ideal it leaves the recording."""
+    """The mistakes whose correction makes every check pass, each with the corrected recording's total distance."""
     cured = []
     for suspect in possible:
         without = relations(suspect.without(recording), nominal, composition)
@@ -91,13 +91,13 @@ def _cured(
 
 
 def _mends(found: Mapping[str, Relation], without: Mapping[str, Relation]) -> bool:
-    """Whether nothing is broken any more, and what was broken or sound is sound (or can be looked at no longer)."""
+    """Whether no relation is broken, and each that was certain before is sound or can no longer be computed."""
     judged = [relation for name, relation in without.items() if name in found and _is_certain(found[name])]
     return all(relation.sound for relation in judged) and not any(relation.broken for relation in without.values())
 
 
 def _pressures_are_low(found: Mapping[str, Relation]) -> bool:
-    """Whether both pressures are so low that they may have another unit, beside which any difference is noise."""
+    """Whether both pressures are so low that they may have another unit, in which their difference looks like noise."""
     return "level" in found and found["level"].value < LOW
 
 

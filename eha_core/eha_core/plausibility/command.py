@@ -1,4 +1,4 @@
-"""The command against the motion: what it must be made of, whatever physics is missing."""
+"""The relation of the command to the motion that holds whatever physics is missing."""
 
 from __future__ import annotations
 
@@ -12,20 +12,18 @@ from eha_core.plausibility.signals import BLOCK, Signals
 from eha_core.recording.recording import FloatArray
 
 LATEST_MOTION = 0.1
-"""s by which the piston may follow the command: coil, spool, delays and sensors' lags."""
+"""s; largest delay of the piston behind the command: coil, spool, dead times and sensors' lags."""
 LEAST_TAKEN = 0.024
-"""Share of the rated speed, from the fastest motion one way to the fastest the other, from which on the command must
-show in it. With less the piston may creep under leaks while an overlapped valve takes any command (assumed: by 1 % of
-the rated speed)."""
+"""Range of the speed, as a share of the rated one, from which the command must show in it. With less, the piston may
+creep under leaks while an overlapped valve blocks any command (assumed: by 1 % of the rated speed)."""
 RELATED = 0.25
-"""Share of the command that the motion explains, from which on it may be the motion's: at least 0.50 in 750 sound
-recordings of so much motion, 0.29 with an overlap of a quarter of the rated current; at most 0.24 of 120 commands of
-other runs."""
+"""Share of the command that the motion must explain if the command drove it: at least 0.50 in 750 sound recordings with
+so much motion, 0.29 with an overlap of a quarter of the rated current; at most 0.24 with 120 commands of other runs."""
 OTHER_MOMENTS = 20
-"""Shifts of the command along the recording that its own moment is compared with."""
+"""Shifts of the command along the recording with which the recorded alignment is compared."""
 OUTSTANDING = 2.0
-"""Times the share explained elsewhere that the motion explains of a command that moves it, even where a valve's wear
-or its load leave little to explain (assumed; of commands of other runs at most 1.4)."""
+"""Smallest ratio of the share that the motion explains of its own command to the largest with a shifted one, even with
+a worn valve or under a load (assumed; commands of other runs reach at most 1.4)."""
 
 Fit = tuple[float, float, float]
 """Share of the command that the motion explains, the command's correlation with the speed, its slope on it."""
@@ -44,11 +42,11 @@ def rated(nominal: Values) -> float:
 
 
 def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list[Relation]:
-    """The command against what it must be made of: the flow that moves the piston, and leakage under the force.
+    """The command compared with the flow that moves the piston and the leakage under the force.
 
-    A command is another run's where the motion takes what no creep does, and explains hardly more of the command than
-    of the same command elsewhere in the recording. Where friction lets the piston move by less, the command may feed
-    leaks as large, and its scale is wrong only beyond that.
+    A command belongs to another run if the motion is too fast for creep, and explains hardly more of the command than
+    of the same command shifted along the recording. Where friction allows less motion, the command may supply leaks of
+    the same size, and its scale is wrong only beyond that.
     """
     voltage = signals.channels.get("voltage_command")
     if voltage is None or not np.ptp(voltage) > 0.0 or not signals.is_motion_seen:
@@ -69,7 +67,7 @@ def command(signals: Signals, nominal: Values, force: FloatArray | None) -> list
 
 
 def _fits(voltage: FloatArray, motion: tuple[FloatArray, ...], step: float) -> Iterator[Fit]:
-    """What the motion explains of the command with each delay, as it is and within blocks."""
+    """The fit of the command by the motion with each delay, over the whole recording and within blocks."""
     for delay in range(0, round(LATEST_MOTION / step) + 1, max(1, round(0.01 / step))):
         columns = voltage[: len(voltage) - delay], *(column[delay:] for column in motion)
         yield _fit(*columns)
@@ -78,16 +76,16 @@ def _fits(voltage: FloatArray, motion: tuple[FloatArray, ...], step: float) -> I
 
 def _fit(voltage: FloatArray, speed: FloatArray, *others: FloatArray) -> Fit:
     explained = regression(voltage, speed, *others)[1]
-    # The slope on the speed alone: beside a force that goes with it, its own share is any.
+    # The slope on the speed alone: together with a correlated force, its coefficient could be anything.
     together = correlation(voltage, speed)
     return explained, together, together * float(np.std(voltage) / (np.std(speed) + 1e-300))
 
 
 def _within_blocks(columns: tuple[FloatArray, ...], step: float) -> tuple[FloatArray, ...]:
-    """The columns less their mean in each block, the blocks with about the same weight in the first column.
+    """The columns minus their mean in each block, weighted so that the blocks count about equally in the first column.
 
-    A leak that begins, or a load that changes, shifts the command by more than the motion takes: it spoils its own
-    block, and no other.
+    A leak that begins or a load that changes shifts the command by more than the motion does, but only within its own
+    block.
     """
     count = max(1, round(len(columns[0]) * step / BLOCK))
     parts = [np.array_split(column, count) for column in columns]
@@ -100,10 +98,9 @@ def _within_blocks(columns: tuple[FloatArray, ...], step: float) -> tuple[FloatA
 
 
 def _elsewhere(voltage: FloatArray, motion: tuple[FloatArray, ...], step: float) -> float:
-    """The most that the motion explains of the command where that is shifted along the recording, its end to its start.
+    """The largest share of the command that the motion explains when the command is shifted cyclically.
 
-    A valve that hardly opens leaves most of the command unexplained, but what the motion explains of it, it explains
-    where it is.
+    If a valve hardly opens, most of the command remains unexplained, but the rest is explained only when aligned.
     """
     shifts = np.linspace(0, len(voltage), OTHER_MOMENTS + 1)[1:-1].astype(int)
     shifted = [(np.roll(voltage, shift), *motion) for shift in shifts]

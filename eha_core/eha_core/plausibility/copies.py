@@ -14,15 +14,15 @@ from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
 
 IDENTICAL = 1e-6
-"""Share of a signal's variation that copies without noise may differ by: rounding, and stamps of their own."""
+"""Largest difference of copies without noise, as a share of the signal's variation: rounding, and separate stamps."""
 WHITE = 1.05
-"""Ratio of a signal's variation to that of its successive differences over root 2, up to which it is mere noise."""
+"""Largest ratio of white noise's variation to that of its successive differences over root 2."""
 MISSING = 0.25
-"""Share of the difference that moving the nominal piston takes, below which two pressures do not differ by it."""
+"""Share of the pressure difference that moves the nominal piston, below which two pressures do not show it."""
 
 
 def copies(recording: Recording) -> Suspect | None:
-    """The pair of channels that tell the same to the last digit, if there is one; without the second of them."""
+    """A pair of identical channels, if there is one, corrected by leaving out the second."""
     for channel, other in combinations(recording.channels.values(), 2):
         if channel.unit != other.unit:
             continue
@@ -36,9 +36,9 @@ def copies(recording: Recording) -> Suspect | None:
 
 
 def noisy_copies(recording: Recording, nominal: Mapping[str, float]) -> Suspect | None:
-    """The two pressures, if they differ by noise alone and by less than the motion takes.
+    """The two pressures, if they differ by noise alone and by less than the motion requires.
 
-    That compares the pressures' scale with the position's: it holds where neither has another unit.
+    This compares the scales of pressures and position, and therefore holds only if the units of both are right.
     """
     channel, other = (recording.channels.get(name) for name in ("pressure_a", "pressure_b"))
     if channel is None or other is None:
@@ -53,14 +53,14 @@ def _recorded_twice(name: str, other: str) -> Suspect:
 
 
 def _is_noise(difference: FloatArray) -> bool:
-    """Whether a difference is white, about zero."""
+    """Whether a difference is white noise about zero."""
     spread = float(np.std(difference))
     white = float(np.std(np.diff(difference))) / sqrt(2.0)
     return spread <= WHITE * white and abs(float(np.mean(difference))) <= 4.0 * spread / sqrt(len(difference))
 
 
 def _moves_nothing(recording: Recording, nominal: Mapping[str, float]) -> bool:
-    """Whether the pressures, smoothed, differ by far less than it takes to move the piston as it was moved."""
+    """Whether the smoothed pressures differ by far less than the recorded motion requires."""
     signals = on_grid(recording)
     if signals is None:
         return False

@@ -1,4 +1,4 @@
-"""What a check finds, what it suspects, and the lines of a topics file that cure it."""
+"""A mistake that the check finds or suspects, and the topics file that corrects it."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class Finding:
     """A mistake in a recording.
 
     Attributes:
-        mistake: what is wrong with which channel.
-        cure: a topics file, in one line, that puts it right.
-        other: a mistake that this recording does not tell from it, and its cure.
+        mistake: the channel and what is wrong with it.
+        cure: a topics file, in one line, that corrects it.
+        other: a mistake that this recording cannot distinguish from it, and its cure.
     """
 
     mistake: str
@@ -27,15 +27,15 @@ class Finding:
 
     def __str__(self) -> str:
         other = f", or, if {self.other[0]}, `{self.other[1]}`" if self.other else ""
-        return f"{self.mistake}; say so in a topics file (--topics): `{self.cure}`{other}"
+        return f"{self.mistake}; correct it in a topics file (--topics): `{self.cure}`{other}"
 
 
 @dataclass(frozen=True)
 class Suspect:
-    """A mistake that may have been made; `undone` are the channels without it, None for one to be left out.
+    """A mistake that may have been made; `undone` are the corrected channels, None for one to be left out.
 
-    `moves_zero` says whether a channel's unit and its zero are wrong: where the zero stays inside the stroke, nothing
-    tells that from the unit alone.
+    `moves_zero`: both a channel's unit and its zero are wrong; as long as the zero is inside the stroke, that cannot be
+    distinguished from a wrong unit alone.
     """
 
     mistake: str
@@ -44,19 +44,19 @@ class Suspect:
 
     @property
     def cure(self) -> str:
-        """The topics file that puts it right."""
+        """The topics file that corrects it."""
         return topics_line(self.undone)
 
     def without(self, recording: Recording) -> Recording:
-        """The recording as it would be had the mistake not been made."""
+        """The recording with the mistake corrected."""
         channels = {**recording.channels, **self.undone}
         return replace(recording, channels={name: channel for name, channel in channels.items() if channel})
 
 
 def rescaled(recording: Recording, name: str, factor: float, shift: float = 0.0) -> Channel:
-    """The channel as a topics file with another scale and offset gives it; `shift` is in its SI unit.
+    """The channel as read by a topics file with another scale and offset; `shift` is in its SI unit.
 
-    A pressure is scaled as the message has it, before the atmosphere is taken off.
+    A pressure is scaled as in the message, before the atmospheric pressure is subtracted.
     """
     channel = recording.channels[name]
     rule = channel.rule or ChannelRule()
@@ -69,7 +69,7 @@ def rescaled(recording: Recording, name: str, factor: float, shift: float = 0.0)
 
 
 def topics_line(channels: Mapping[str, Channel | None]) -> str:
-    """The topics file that reads these channels so, with what differs from the default alone; it is one line."""
+    """The topics file, in one line, that reads these channels so; it has only entries that differ from the default."""
     return f"channels: {{{', '.join(_entry(name, channel) for name, channel in channels.items())}}}"
 
 

@@ -1,4 +1,4 @@
-"""The mistakes that are made in recordings, one function a kind: what each would be, and the channels without it."""
+"""The mistakes that are made in recordings, one function for each kind: its description, and the corrected channels."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from eha_core.recording import Channel, Recording
 
 POSITION_UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "um": 1e-6}
 FARTHEST_ZERO = 5.0
-"""Half strokes by which a sensor's zero may lie off mid-stroke: a rod longer than the cylinder (assumed). Farther off,
-a reading has another unit."""
+"""Largest distance of a sensor's zero from mid-stroke, in half strokes: a rod longer than the cylinder (assumed).
+Beyond it, the unit is wrong."""
 ABOVE_THE_ATMOSPHERE = ("bar", "MPa", "psi")
-"""Units of gauge pressures that a driver makes absolute as if they were in Pa."""
+"""Units of gauge pressures to which a driver may have added the atmospheric pressure in Pa."""
 PRESSURE_UNITS = {"bar": 1e5, "MPa": 1e6, "kPa": 1e3, "psi": 6894.757, "a tenth of Pa": 0.1, "tens of Pa": 10.0}
 
 
 def suspects(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Suspect]:
-    """Every single mistake that may have been made in a channel that is what it says, the more usual first."""
+    """Every single mistake that may have been made in channels that are named correctly, the more usual first."""
     for kind in (reversed_signs, swapped_chambers, position_units, other_units, pressure_units, zero_of_position):
         yield from kind(recording, nominal)
 
@@ -44,7 +44,7 @@ def reversed_signs(recording: Recording, nominal: Mapping[str, float]) -> Iterat
 
 
 def swapped_chambers(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Suspect]:
-    """The sensors of the two chambers exchanged."""
+    """The two chambers' sensors swapped."""
     if _all_there(recording, "pressure_a", "pressure_b"):
         a, b = (recording.channels[name] for name in ("pressure_a", "pressure_b"))
         undone = {"pressure_a": replace(b, name="pressure_a"), "pressure_b": replace(a, name="pressure_b")}
@@ -52,9 +52,9 @@ def swapped_chambers(recording: Recording, nominal: Mapping[str, float]) -> Iter
 
 
 def position_units(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Suspect]:
-    """A position, perhaps with its velocity, in another unit of length, perhaps counted from an end.
+    """A position, perhaps with its velocity, in another unit of length, perhaps measured from an end of the stroke.
 
-    A piston that stands still has no unit: what its sensor's noise spans is a length in any.
+    If the piston stands still, the unit cannot be found: the range of noise is plausible in any unit.
     """
     signals = on_grid(recording)
     if signals is None or not signals.is_motion_seen:
@@ -68,7 +68,7 @@ def position_units(recording: Recording, nominal: Mapping[str, float]) -> Iterat
             yield Suspect(f"position is in {unit} and velocity in {unit}/s", {"position": scaled, **velocity})
         shift = _shift_to_middle(scaled, nominal) or _shift_from_end(scaled, nominal)
         if shift:
-            counted = f"position is in {unit} and does not count from mid-stroke"
+            counted = f"position is in {unit} and is not measured from mid-stroke"
             yield Suspect(counted, {"position": rescaled(recording, "position", factor, shift)}, moves_zero=True)
 
 
@@ -95,23 +95,23 @@ def pressure_units(recording: Recording, nominal: Mapping[str, float]) -> Iterat
 
 
 def _above_atmosphere(recording: Recording, name: str, factor: float) -> Channel:
-    """A gauge pressure in another unit to which the atmosphere was added in Pa."""
+    """The corrected channel of a gauge pressure in another unit to which the atmosphere was added in Pa."""
     values = recording.channels[name].values
     return rescaled(recording, name, factor, float(factor * values[0] - rescaled(recording, name, factor).values[0]))
 
 
 def zero_of_position(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Suspect]:
-    """A position that counts from an end of the stroke, or from elsewhere."""
+    """A position measured from an end of the stroke, or from elsewhere."""
     shift = _shift_to_middle(recording.channels["position"], nominal)
     if shift:
         moved = rescaled(recording, "position", 1.0, shift)
-        yield Suspect("position does not count from mid-stroke", {"position": moved})
+        yield Suspect("position is not measured from mid-stroke", {"position": moved})
 
 
 def _shift_to_middle(position: Channel, nominal: Mapping[str, float]) -> float:
-    """What brings a position into the stroke [m], to three digits: the half stroke where that centres it as well.
+    """The shift that brings a position into the stroke [m], to three digits: half the stroke, if that suffices.
 
-    Zero where it is inside, and where its zero would lie too far off.
+    Zero if it is inside, or if its zero would be too far off.
     """
     middle = 0.5 * float(np.min(position.values) + np.max(position.values))
     stroke = nominal["actuator_displacement"]
@@ -122,7 +122,7 @@ def _shift_to_middle(position: Channel, nominal: Mapping[str, float]) -> float:
 
 
 def _shift_from_end(position: Channel, nominal: Mapping[str, float]) -> float:
-    """What makes a position count from mid-stroke if it counts from an end [m]; one that takes both signs does not."""
+    """The shift [m] of a position that is measured from an end of the stroke; zero if it has both signs."""
     stroke = nominal["actuator_displacement"]
     if np.min(position.values) > 0.0:
         return -stroke
@@ -133,4 +133,4 @@ def unrelated(recording: Recording, nominal: Mapping[str, float]) -> Iterator[Su
     """A command, or a velocity, of another run."""
     for name in ("voltage_command", "velocity"):
         if name in recording.channels:
-            yield Suspect(f"{name} has nothing to do with the motion: it may be of another run", {name: None})
+            yield Suspect(f"{name} is unrelated to the motion: it may be of another run", {name: None})

@@ -1,4 +1,4 @@
-"""Whether the channels of a recording can come from the source of oil that the plant is said to have."""
+"""Whether the channels of a recording are compatible with the plant's source of oil."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from eha_core.plausibility.signals import Signals, on_grid
 from eha_core.recording import Recording
 
 UNRELATED = 0.1
-"""Share of a flow's variance that its valve must explain: in a valve's equation it is nearly all, whatever leaks."""
+"""Share of a flow's variance that its valve must explain: by the valve's equation nearly all, whatever leaks."""
 
 CERTAIN = 20.0
-"""Times the usual change between two samples that a position must span (assumed)."""
+"""Smallest range of a position that moves, as a multiple of its usual change between two samples (assumed)."""
 
 HOLDS = 0.1
-"""Share of itself by which a supply that holds its pressure may vary (assumed)."""
+"""Largest relative variation of a constant supply pressure (assumed)."""
 
 STANDS_IN = (
     ("measured_flow", ("flow_a", "flow_b")),
     ("measured_pressures", ("pressure_a", "pressure_b")),
     ("measured_force", ("force",)),
 )
-"""Sources that need nothing but what was measured at the cylinder, and their channels."""
+"""Sources that need only channels measured at the cylinder, and these channels."""
 
 
 @dataclass(frozen=True)
 class Contradiction:
-    """A channel that the plant's source cannot have brought about, and the source that could."""
+    """A channel that contradicts the plant's source, and a source that it is compatible with."""
 
     what: str
     source: str
 
     def __str__(self) -> str:
-        return f"{self.what}: another architecture than the model's; say so in the nominal file: `{self.line}`"
+        return f"{self.what}: the rig differs in architecture from the model; put in the nominal file: `{self.line}`"
 
     @property
     def line(self) -> str:
@@ -46,10 +46,10 @@ class Contradiction:
 
 
 def contradiction(recording: Recording, composition: Composition) -> Contradiction | None:
-    """The channel that speaks against the plant's source; None where none does.
+    """The channel that contradicts the plant's source; None without one.
 
-    It is a pump's speed, where the source is a valve between a constant supply and a tank; or a flow (where none was
-    recorded, a piston) that moves while the valve's signal has no part in it.
+    It is a pump's speed, if the source is a valve between a constant supply and a tank; or a flow (without a recorded
+    one, the piston's motion) to which the valve's signal is unrelated.
     """
     source, channels = composition.source, recording.channels
     if not source.valve:
@@ -71,19 +71,19 @@ def contradiction(recording: Recording, composition: Composition) -> Contradicti
 
 
 def _supply_holds(recording: Recording) -> bool:
-    """Whether a supply pressure was recorded that holds: then a pump's speed tells nothing of the flow."""
+    """Whether a constant supply pressure was recorded: then a pump's speed says nothing about the flow."""
     supply = recording.channels.get("supply_pressure")
     return supply is not None and bool(np.std(supply.values) < HOLDS * abs(float(np.mean(supply.values))))
 
 
 def _moves(recording: Recording) -> bool:
-    """Whether the piston goes further than its sensor's noise."""
+    """Whether the piston moves by more than its sensor's noise."""
     values = recording.channels["position"].values
     return bool(np.ptp(values) > CERTAIN * np.median(np.abs(np.diff(values))))
 
 
 def _moves_without(signals: Signals, name: str) -> str:
-    """What moves although the valve's signal has no part in it; "" where nothing does.
+    """What moves although the valve's signal is unrelated to it; "" where nothing does.
 
     Without a recorded flow only a signal that never changes is reported: another may be of another run.
     """
@@ -102,4 +102,4 @@ def _moves_without(signals: Signals, name: str) -> str:
 
 
 def _what_it_does(signals: Signals, name: str) -> str:
-    return "does not go with it" if np.ptp(signals.channels[name]) > 0.0 else "stands still"
+    return "is unrelated to it" if np.ptp(signals.channels[name]) > 0.0 else "is constant"

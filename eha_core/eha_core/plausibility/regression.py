@@ -1,4 +1,4 @@
-"""How columns go together: correlation and least squares."""
+"""Correlation and least squares of columns."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from eha_core.recording.recording import FloatArray
 
 
 def correlation(one: FloatArray, other: FloatArray) -> float:
-    """Pearson's, which is 0 where one of the two does not vary."""
+    """Pearson's correlation; 0 where one of the two is constant."""
     one, other = one - one.mean(), other - other.mean()
     return float(one @ other / np.sqrt((one @ one) * (other @ other) + 1e-300))
 
@@ -24,11 +24,11 @@ def regression(values: FloatArray, *columns: FloatArray) -> tuple[FloatArray, fl
 
 
 def explained_by(values: FloatArray, signal: FloatArray) -> float:
-    """The share of the variance of `values` that a signal explains; none of it where the signal never changes."""
+    """The share of the variance of `values` that a signal explains; 0 for a constant signal."""
     return regression(values, signal)[1] if np.ptp(signal) > 0.0 else 0.0
 
 
 def fitted(values: FloatArray, *columns: FloatArray) -> FloatArray:
-    """What the columns and a constant explain of the values."""
+    """The least-squares fit of the values by the columns and a constant."""
     coefficients, _ = regression(values, *columns)
     return np.asarray(np.stack([*columns, np.ones(len(values))], axis=1) @ coefficients)

@@ -1,4 +1,4 @@
-"""One thing that must hold between the channels of a recording, and how ratios are judged."""
+"""A relation that must hold between the channels of a recording, and distances of ratios from one."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ Values = Mapping[str, float]
 
 @dataclass(frozen=True)
 class Relation:
-    """One thing that must hold: its name, the value that was found, whether that is certainly wrong or certainly right
-    (it may be neither), and how far it lies from the ideal, as a logarithm or in units of its own bound."""
+    """A relation that must hold: its name, the value found, whether that is certainly wrong or certainly right (it may
+    be neither), and its distance from the ideal, as a logarithm or in units of its own bound."""
 
     name: str
     value: float
@@ -23,10 +23,10 @@ class Relation:
 
 
 def within(ratio: float, bound: float) -> bool:
-    """Whether a ratio is less than so many times too large or too small."""
+    """Whether a ratio is between 1 / bound and bound."""
     return 1.0 / bound < ratio < bound
 
 
 def off_by(ratio: float) -> float:
-    """How far a ratio is from one, whichever way and whatever its sign, as a logarithm."""
+    """The absolute logarithm of a ratio's magnitude."""
     return abs(float(np.log(abs(ratio) + 1e-12)))

@@ -1,4 +1,4 @@
-"""How the channels of a recording stand to each other and to the nominal actuator, whatever physics is missing.
+"""Relations between a recording's channels and to the nominal actuator that hold whatever physics is missing.
 
 The bounds are wide: they were set on 150 simulated recordings of the exam's kind (up to two effects, loads, leaks,
 stops, single rods and closed loops, parameters up to 30 % off); docs/reliability.md counts on others what they pass.
@@ -19,31 +19,31 @@ from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
 
 MOVING = 0.1
-"""Share of the largest speed above which the valve, and no leak, sets the pressures."""
+"""Share of the largest speed above which the valve, not a leak, determines the pressures."""
 SLOW = 0.006
-"""Share of the rated speed, RMS, below which a leak may draw both pressures down as far as a wrong unit does. A leak to
-the outside of q times the piston's flow, at half the supply, leaves the share p of the supply where
+"""RMS speed, as a share of the rated one, below which a leak may lower both pressures as much as a wrong unit. With an
+external leak of q times the piston's flow at half the supply, both are at the share p of the supply where
 (1 + 2 q p) / (1 - 2 q p) = sqrt((1 - p) / p): an eighth at q = 1.8. A worn rig's leak takes 1 % of the rated flow
 (assumed)."""
 NOTHING_LEFT = -0.98
-"""Excess of both pressures, over half the supply, that no leak explains: the piston moves (assumed). Of unequal areas
-it is the share of what empty chambers have, where that is more."""
+"""Excess of both pressures, over half the supply, that no leak explains while the piston moves (assumed). With unequal
+areas it is this share of the excess of empty chambers, where that is larger."""
 OPPOSED = -0.2
-"""Part of the oil's force that goes with the speed, as a correlation, from which on the force opposes the motion."""
+"""Correlation of the oil's force with the speed below which the force opposes the motion."""
 DRIVEN = -0.95
-"""Correlation of speed and oil's force at a given command, from which on a force from outside drives the piston: it is
-then the pressures that give way. Of 295 recordings of the exam's kind (seed 70219) -0.99 in the one whose oil was
-driven so; +0.95 in two, of which swapped chambers would not be found."""
+"""Correlation of speed and oil's force at a given command below which an external force drives the piston against the
+pressures. In 295 recordings of the exam's kind it was -0.99 in the one that was driven so, and +0.95 in two, in which
+swapped chambers would not be found."""
 LOW = -0.55
-"""Excess of both pressures, over half the supply, from which on the levels are certainly right."""
+"""Excess of both pressures, over half the supply, above which their levels may be certainly right."""
 
 
 OF_A_VALVE = ("command", "command_scale", "level")
-"""Relations that hold because a valve throttles what a constant supply gives."""
+"""Relations that hold only for a valve fed by a constant supply."""
 
 
 def relations(recording: Recording, nominal: Values, composition: Composition = PAPER) -> dict[str, Relation]:
-    """Every relation that can be looked at in a recording, by name; none where the piston does not move."""
+    """Every relation that a recording's channels allow to check, by name; none where the piston does not move."""
     signals = on_grid(recording)
     if signals is None or not np.ptp(signals.speed) > 0.0:
         return {}
@@ -59,7 +59,7 @@ def relations(recording: Recording, nominal: Values, composition: Composition = 
 
 
 def _reach(signals: Signals, nominal: Values) -> Relation:
-    """Where the piston was, in shares of the stroke to either side of its middle."""
+    """The piston's farthest position from mid-stroke, as a share of the stroke to either side."""
     lowest, highest = (float(bound(signals.channels["position"])) for bound in (np.min, np.max))
     stroke = nominal["actuator_displacement"]
     reach = max(-lowest, highest) / stroke
@@ -69,7 +69,7 @@ def _reach(signals: Signals, nominal: Values) -> Relation:
 
 
 def _velocity(signals: Signals) -> list[Relation]:
-    """The velocity against the position's derivative."""
+    """The velocity compared with the position's derivative."""
     velocity = signals.channels.get("velocity")
     if velocity is None or not signals.is_motion_seen:
         return []
@@ -82,7 +82,7 @@ def _velocity(signals: Signals) -> list[Relation]:
 
 
 def _force_of(signals: Signals, nominal: Values) -> FloatArray | None:
-    """The oil's force on the piston [N], of the pressures where both were measured."""
+    """The oil's force on the piston [N], from both pressures or else from the force; None without these."""
     channels = signals.channels
     if "pressure_a" in channels and "pressure_b" in channels:
         return np.asarray(
@@ -100,11 +100,11 @@ def _noise_of_force(signals: Signals, nominal: Values) -> float:
 
 
 def _force(signals: Signals, nominal: Values) -> list[Relation]:
-    """What of the force goes with the speed, beside inertia and spring: the load dissipates, unless it drives the
-    piston.
+    """The part of the force that is proportional to the speed, apart from inertia and spring: the load dissipates,
+    unless it drives the piston.
 
-    Only where the piston turns round, since a creep one way has the same friction all along and other things change in
-    it. A block in which that force is noise speaks for neither sign.
+    Only blocks in which the piston reverses count: in one direction friction is constant and other changes dominate.
+    A block in which that force is noise supports neither sign.
     """
     force = _force_of(signals, nominal)
     if force is None or not signals.is_motion_seen:
@@ -133,24 +133,24 @@ def _force(signals: Signals, nominal: Values) -> list[Relation]:
 
 
 def _command_and_rate(signals: Signals) -> tuple[FloatArray, ...]:
-    """The command and its derivative, by which a valve's lag shows; nothing where it was not recorded."""
+    """The command and its derivative, which represents a valve's lag; empty where it was not recorded."""
     voltage = signals.channels.get("voltage_command")
     return () if voltage is None else (voltage, np.gradient(voltage, signals.step))
 
 
 def _rest(columns: Sequence[FloatArray], others: Sequence[FloatArray]) -> list[FloatArray]:
-    """What the others do not explain of each column."""
+    """The residual of each column after a fit by the others."""
     return [values - fitted(values, *others) for values in columns]
 
 
 def _reverses(speed: FloatArray, least: float) -> bool:
-    """Whether the piston moves both ways, each faster than so much."""
+    """Whether the piston moves in both directions faster than `least`."""
     return bool(np.min(speed) < -least and np.max(speed) > least)
 
 
 def _levels(signals: Signals, nominal: Values) -> list[Relation]:
-    """The pressures against the supply's: in a valve that feeds one chamber as it drains the other, one pressure gives
-    the other, whatever its gain."""
+    """The pressures compared with the supply's: in a valve that feeds one chamber as it drains the other, one pressure
+    determines the other, whatever the gain."""
     pressures = [signals.channels[name] for name in ("pressure_a", "pressure_b") if name in signals.channels]
     if not pressures:
         return []
@@ -171,11 +171,11 @@ def _levels(signals: Signals, nominal: Values) -> list[Relation]:
     lowest = NOTHING_LEFT * max(1.0, empty) if drawn_down else -0.75
     broken = (lopsided and not drawn_down) or not lowest < excess < 0.6
     sound = not broken and not lopsided and LOW < excess < 0.4
-    distance = 3.0 * (abs(excess) + abs(load))  # a pressure ten times too large or small is then one of 1 or more
+    distance = 3.0 * (abs(excess) + abs(load))  # 1 or more for a pressure ten times too large or too small
     return [Relation("level", excess, broken, sound, distance)]
 
 
 def _is_slow(signals: Signals, nominal: Values) -> bool:
-    """Whether the piston takes so little flow that a leak may take more; without what noise adds to its speed."""
+    """Whether the piston takes so little flow that a leak may take more; the noise's share of the speed is removed."""
     squared = float(np.var(signals.speed)) - signals.speed_noise**2
     return squared < (SLOW * gain(nominal) * rated(nominal)) ** 2

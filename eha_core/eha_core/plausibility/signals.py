@@ -13,25 +13,25 @@ from eha_core.recording import Recording
 from eha_core.recording.recording import FloatArray
 
 SMOOTHED_OVER = 0.05
-"""s; each of three passes averages over so much: long against a sensor's noise, short against a piston's motion."""
+"""s; window of each of three moving averages: long for a sensor's noise, short for a piston's motion."""
 FEWEST_SAMPLES = 5
-"""Samples that each pass averages over at least, where a recording is sampled slowly."""
+"""Fewest samples of that window, for a slowly sampled recording."""
 LARGEST_NOISE = 0.5
-"""Share of the speed's standard deviation that noise may have where the speed is said to be seen."""
+"""Largest share of noise in the speed's standard deviation for the motion to count as visible."""
 FINEST_STEP = 1e-3
 """s; signs and scales need no finer grid."""
 BLOCK = 2.0
-"""s; what may come and go is compared block by block: a stop that is hit or a load that changes then spoils only its
-own."""
+"""s; length of the blocks that are compared one by one, so that contact with a stop or a change of load affects only
+its own."""
 LARGEST_GRID = 200_000
-"""Samples that a long recording's grid has at most."""
+"""Most samples of a long recording's grid."""
 
 
 @dataclass(frozen=True)
 class Signals:
     """`channels` by name, `speed` [m/s] and `acceleration` [m/s^2] of the position, all (n,) and `step` [s] apart;
-    `speed_noise` [m/s] is the standard deviation that the position sensor's noise has in the speed, `noise` that of
-    each sensor's in its own channel."""
+    `speed_noise` [m/s]: standard deviation of the position sensor's noise in the speed; `noise`: that of each channel.
+    """
 
     step: float
     channels: Mapping[str, FloatArray]
@@ -42,12 +42,12 @@ class Signals:
 
     @property
     def is_motion_seen(self) -> bool:
-        """Whether the speed is more than its noise: a piston that friction or a dead band holds tells nothing."""
+        """Whether the speed exceeds its noise: a piston held by friction or a dead band gives no information."""
         return bool(self.speed_noise < LARGEST_NOISE * np.std(self.speed))
 
 
 def on_grid(recording: Recording) -> Signals | None:
-    """The channels where all of them were recorded; None without a position, or with too little of it."""
+    """The channels over the time when all of them were recorded; None without a position, or with too little of it."""
     if "position" not in recording.channels:
         return None
     start = max(channel.time[0] for channel in recording.channels.values())
@@ -70,7 +70,7 @@ def on_grid(recording: Recording) -> Signals | None:
 
     speed = speed_of(raw["position"])
     acceleration = np.gradient(smooth(speed, 1), step)
-    stride = width // FEWEST_SAMPLES  # what is smoothed needs no more
+    stride = width // FEWEST_SAMPLES  # smoothed signals need no more samples
     inside = slice(2 * width, -2 * width, stride)
     impulse = _impulse(width)
     passed = float(np.linalg.norm(smooth(impulse)))
@@ -85,12 +85,12 @@ def on_grid(recording: Recording) -> Signals | None:
 
 
 def _noise(values: FloatArray) -> float:
-    """Standard deviation of a channel's noise, by what is rough in it."""
+    """Standard deviation of a channel's noise, from its roughness."""
     return float(np.std(np.diff(values, 2))) / sqrt(6.0) if len(values) > 2 else 0.0
 
 
 def _impulse(width: int) -> FloatArray:
-    """One sample of 1: the root of its response's energy is the noise that a filter lets through, over the input's."""
+    """A unit impulse: the root of a filter's response energy is the ratio of output to input noise."""
     impulse = np.zeros(8 * width)
     impulse[4 * width] = 1.0
     return impulse
