@@ -151,5 +151,5 @@ def test_what_tells_nothing_is_refused_with_what_to_do(name: str, sound: Recordi
 
 
 def test_a_test_that_was_cut_to_pieces_is_refused(sound: Recording) -> None:
-    with pytest.raises(RecordingError, match="next to nothing of position can be used"):
+    with pytest.raises(RecordingError, match="almost nothing of position can be used"):
         observe(without(sound, EVERY[:1], lambda time: (time % 0.2 < 0.1) & (time > 0.3)))

@@ -66,4 +66,4 @@ def test_a_recording_that_ends_while_nodes_go_down_lacks_no_physics() -> None:
     channels = {**whole.channels, "voltage_command": replace(command, values=values)}
     result = diagnose(replace(whole, channels=channels), nominal_values())
     assert result.verdict in {"consistent", "parameters"}
-    assert any(remark.startswith("the last 1 s were set aside") for remark in result.remarks)
+    assert any(remark.startswith("the last 1 s were excluded") for remark in result.remarks)

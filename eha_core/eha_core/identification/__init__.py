@@ -1,6 +1,6 @@
-"""A plant fitted to recordings: multiple shooting with soft continuity, by Levenberg-Marquardt.
+"""Fits of a plant to recordings: multiple shooting with soft continuity, by Levenberg-Marquardt.
 
 Recordings are read into observations and cut into windows (`segments`, `shooting`). Parameters and the windows'
-states are fitted together (`problem`, `normal_matrix`, `fit`), several recordings as one (`together`). Held-out
-windows judge a model (`validate`). Nothing here knows what physics could be missing, nor a verdict.
+initial states are fitted together (`problem`, `normal_matrix`, `fit`), several recordings as one (`together`). Models
+are validated on held-out windows (`validate`). This package knows neither missing physics nor verdicts.
 """

@@ -1,9 +1,9 @@
-"""Noise with a memory: how its samples depend on each other, and what that adds to an interval.
+"""Coloured noise: the autocorrelation of its samples, and how that widens an interval.
 
-Behind a filter of first order noise has the autocorrelation c exp(-lag / T), less than one at once where white noise,
-as of a converter, comes after it. Both numbers are estimated from the residual; a parameter's variance is then the sum
-over all pairs of samples, in place of that over single ones (P. J. Brockwell, R. A. Davis, Time Series: Theory and
-Methods, Springer 1991, section 7.2).
+Noise behind a first-order filter has the autocorrelation c exp(-lag / T), with c below one where white noise, as of a
+converter, is added after the filter. Both numbers are estimated from the residual; a parameter's variance is then the
+sum over all pairs of samples in place of single ones (P. J. Brockwell, R. A. Davis, Time Series: Theory and Methods,
+Springer 1991, section 7.2).
 """
 
 from __future__ import annotations
@@ -16,25 +16,25 @@ from scipy.signal import lfilter
 from eha_core.identification.numbers import Array
 
 LAGS = 6
-"""Lags by whose decay the memory is estimated."""
+"""Lags whose decay gives the time constant."""
 CERTAIN = 5.0
-"""Standard deviations of a white residual's autocorrelation from which on a residual has a memory."""
+"""Autocorrelation, in standard deviations of a white residual's, from which a residual counts as coloured."""
 LEAST = 0.1
-"""Autocorrelation of neighbours from which on a memory widens an interval by a tenth and more."""
+"""Autocorrelation of neighbours from which it widens an interval by a tenth and more."""
 LONGEST = 0.995
-"""Of one sample by the one before: longer memories than of 200 samples are a model's error and no noise's."""
+"""Largest decay factor per sample: time constants above 200 samples are a model's error, not noise."""
 
 
 @dataclass(frozen=True)
 class Colour:
-    """Autocorrelation `share` times `kept` to the power of the lag, and one at none; `kept` 0 is white."""
+    """The autocorrelation `share` * `kept`**lag, and 1 at lag 0; `kept` 0 is white."""
 
     share: float = 0.0
     kept: float = 0.0
 
     @property
     def slow(self) -> float:
-        """Power at frequencies below the filter's corner, over that of white noise of the same size."""
+        """Power at frequencies below the filter's corner, over that of white noise with the same variance."""
         return 1.0 + 2.0 * self.share * self.kept / (1.0 - self.kept)
 
 
@@ -42,7 +42,7 @@ WHITE = Colour()
 
 
 def colour_of(residual: Array) -> Colour:
-    """The memory of one channel's residual, in the order of time."""
+    """The colour of one channel's residual, given in the order of time."""
     if len(residual) < 10 * LAGS:
         return WHITE
     centred = residual - residual.mean()
@@ -59,7 +59,7 @@ def colour_of(residual: Array) -> Colour:
 
 
 def spread(pulls: Array, colour: Colour) -> Array:
-    """Variance of sums of noise of unit variance: `pulls` (n, sums) is how much of each sample a sum takes."""
+    """Variances (sums,) of weighted sums of noise with unit variance; `pulls` (n, sums) are the weights."""
     single = np.sum(pulls**2, axis=0)
     if not colour.kept:
         return np.asarray(single)

@@ -1,6 +1,6 @@
-"""Soft multiple shooting: parameters and the windows' states fitted together, the windows tied by weak links.
+"""Soft multiple shooting: parameters and the windows' initial states fitted together, with weighted continuity defects.
 
-Levenberg-Marquardt on finite differences; parameters that meet a bound stay there while the rest adapts.
+Levenberg-Marquardt with finite differences; parameters that reach a bound stay there while the others adapt.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ SETTLED = 0.5
 """Chi^2; an iteration that gains less ends the fit."""
 
 WORTH = 2e-4
-"""Of the excess chi^2: a model that is far off is not worth its last digits."""
+"""Share of the excess chi^2; an iteration that gains less ends the fit of a model far from the noise."""
 
 HOPE = 4.0
 
 TRIALS = 10
-"""Dampings that an iteration tries at most, the last 2e16 times the first: that is a step of next to nothing."""
+"""Most dampings that an iteration tries; the last is 2e16 times the first, which gives a negligible step."""
 
 
 class Ending(Enum):
@@ -55,12 +55,12 @@ class Fit:
     """A fitted model.
 
     Attributes:
-        free: what was moved; `q` its coordinates, `covariance` of (q, the windows' states), in rows, with q.
+        free: the free parameters; `q` their coordinates, `covariance` of (q, the windows' states), in rows, with q.
         values: every parameter of the plant.
-        states: (windows, 4) fitted starts.
-        objective: chi^2 of data, links and priors over the windows used; `data` of the data alone.
+        states: (windows, 4) fitted initial states.
+        objective: chi^2 of data, continuity and priors over the windows used; `data`: of the data alone.
         count: samples used.
-        residuals: measured less simulated over the noise, one array a channel (all windows).
+        residuals: measured minus simulated, divided by the noise; one array for each channel (all windows).
         ending: why it ended.
     """
 
@@ -77,7 +77,7 @@ class Fit:
     iterations: int
 
     def held_by_belief(self) -> frozenset[str]:
-        """The plant's own parameters that rest on a bound which is no limit of the catalogue's, but of belief."""
+        """The plant's own parameters at a prior bound, one that is narrower than the catalogue's limit."""
         rows = catalogue()
         return frozenset(
             base_name(parameter.name)
@@ -124,10 +124,10 @@ def fit(
     give_up_above: float = np.inf,
     in_a_row: int = 1,
 ) -> Fit:
-    """Minimise data, links and priors over `free` and the states of the windows in use, from `values`.
+    """Minimise data, continuity defects and priors over `free` and the states of the windows in use, from `values`.
 
-    Stops when an iteration gains next to nothing (SETTLED), when so many `in_a_row` gain too little (WORTH), or when
-    ones to come, at HOPE times the last one's gain, would not bring it below `give_up_above`.
+    Stops when an iteration gains less than SETTLED, when `in_a_row` iterations gain too little (WORTH), or when further
+    ones, at HOPE times the last gain, would not bring the objective below `give_up_above`.
     """
     shooting = problem.shooting
     free, values = in_each(free, values, shooting.per_recording, len(shooting.first_windows))
@@ -168,14 +168,14 @@ def fit(
 
 
 def _unknowing(parameters: int, windows: int) -> NormalMatrix:
-    """The unit matrix, before any derivative was taken."""
+    """The unit matrix, used before any derivative was computed."""
     own = np.tile(np.eye(STATE_SIZE), (windows, 1, 1))
     shared = np.zeros((windows, STATE_SIZE, parameters))
     return NormalMatrix(np.eye(parameters), shared, own, np.zeros((windows - 1, STATE_SIZE, STATE_SIZE)))
 
 
 def exact(problem: Problem) -> Problem:
-    """The same problem with derivatives taken at the simulation's own step."""
+    """The same problem with derivatives at the simulation's own step size."""
     return replace(problem, slope_step=problem.shooting.step_size)
 
 
@@ -188,20 +188,20 @@ def fit_in_stages(
     iterations: int = 30,
     give_up_above: float = np.inf,
 ) -> Fit:
-    """`fit` from far away: the parameters of LATE stay where they are until the others have settled."""
+    """`fit` from a distant initial guess: the parameters of LATE are held until the others have converged."""
     early = [parameter for parameter in free if not is_one_of(parameter.name, LATE)]
     first = fit(problem, values, early, states, iterations=8)
     return fit(problem, first.values, free, first.states, iterations=iterations, give_up_above=give_up_above)
 
 
 def refit_states(problem: Problem, result: Fit, iterations: int = 4) -> Fit:
-    """Keep the parameters of `result` and fit only the states of the problem's windows: so held-out data are judged."""
+    """Hold the parameters of `result` and fit only the states of the problem's windows, as for held-out data."""
     return fit(problem, result.values, (), result.states, iterations=iterations)
 
 
 @dataclass(frozen=True)
 class _Point:
-    """Where the search stands."""
+    """The current point of the search."""
 
     q: Array
     states: Array
@@ -219,9 +219,9 @@ def _descend(
     gradient: Array,
     damping: float,
 ) -> tuple[_Point, Array, float] | None:
-    """The first point that lies lower as the damping grows, with the move to it and that damping; None if none does.
+    """The first point with a lower objective as the damping grows, its step and that damping; None without one.
 
-    As many dampings as there are threads are tried at once: half of the steps need more than one.
+    As many dampings as there are threads are tried in parallel: half of the iterations need more than one.
     """
 
     def tried(damping: float) -> tuple[_Point, Array, float] | None:
@@ -242,7 +242,7 @@ def _descend(
 
 
 def _growing(damping: float) -> list[float]:
-    """The dampings that an iteration tries one after the other, each by twice the factor of the one before it."""
+    """The dampings that an iteration tries, with a factor between them that doubles each time."""
     dampings = [damping]
     for trial in range(TRIALS - 1):
         dampings.append(max(dampings[-1] * 4.0 * 2.0**trial, 1e-8))
@@ -252,8 +252,7 @@ def _growing(damping: float) -> list[float]:
 def _step(
     normal: NormalMatrix, gradient: Array, damping: float, free: Sequence[FreeParameter], q: Array
 ) -> Array | None:
-    """The damped Gauss-Newton step; parameters that it would carry past a bound go to the bound, and the rest
-    adapts."""
+    """The damped Gauss-Newton step; parameters that would pass a bound are put on it, and the others adapt."""
     count = len(free)
     fixed = np.zeros(count, dtype=np.bool_)
     move: Array = np.zeros(len(gradient))

@@ -1,4 +1,4 @@
-"""Which parameters a fit may move, in which coordinate, and the prior of their nominal values."""
+"""The free parameters of a fit: their coordinates, bounds and priors."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from eha_core.plant.parts import Source
 class FreeParameter:
     """One parameter that a fit moves, by q: value = reference exp(q) if logarithmic, else reference + scale q.
 
-    The prior of q has mean 0 and standard deviation `prior_deviation`; `lower` and `upper` bound the value. A slope is
-    taken over no less than `resolution` in q: an instant acts from one step of the simulation to the next. Where
-    `above` names a parameter, q and the bounds are of the share by which this one exceeds that.
+    The prior of q has mean 0 and standard deviation `prior_deviation`; `lower` and `upper` bound the value. A finite
+    difference is at least `resolution` in q, because an instant takes effect at a step of the simulation. Where `above`
+    names a parameter, q and the bounds apply to the share by which this one exceeds it.
     """
 
     name: str
@@ -36,7 +36,7 @@ class FreeParameter:
 
     @property
     def longest_move(self) -> float:
-        """How far one iteration may carry the coordinate: a factor e, or ten scales."""
+        """Longest move of the coordinate in one iteration: a factor e, or ten scales."""
         return 1.0 if self.logarithmic else 10.0
 
     def value(self, q: float) -> float:
@@ -45,18 +45,18 @@ class FreeParameter:
         return min(max(value, self.lower), self.upper)
 
     def coordinate(self, value: float) -> float:
-        """The coordinate of such a value."""
+        """The coordinate of a value."""
         if self.logarithmic:
             return log(max(value, self.lower, 1e-300) / self.reference)
         return (value - self.reference) / self.scale
 
     def is_bound_by(self, value: float) -> bool:
-        """Whether a value rests on a bound; one at nothing, or where it is nominal, is no wish for more."""
+        """Whether a bound limits a value; a bound at zero or at the nominal value does not count."""
         bounds = (bound for bound in (self.lower, self.upper) if bound not in (0.0, self.reference))
         return any(abs(value - bound) <= 1e-6 * abs(bound) for bound in bounds)
 
     def slope(self, value: float) -> float:
-        """d value / d q, to carry a standard deviation from the coordinate to the value."""
+        """d value / d q, which converts a standard deviation of the coordinate to one of the value."""
         return value if self.logarithmic else self.scale
 
 
@@ -66,7 +66,8 @@ def coordinates(free: Sequence[FreeParameter], values: Mapping[str, float]) -> A
 
 
 def _own(parameter: FreeParameter, values: Mapping[str, float]) -> float:
-    """What the coordinate is of: the value, or the share above another, inside its bounds: past one is no slope."""
+    """The quantity of the coordinate: the value, or the share above another one, clipped to its bounds, beyond which
+    the derivative would be zero."""
     if not parameter.above:
         return values[parameter.name]
     share = values[parameter.name] / values[parameter.above] - 1.0 if values[parameter.above] > 0.0 else 0.0
@@ -84,10 +85,10 @@ def values_at(values: Mapping[str, float], free: Sequence[FreeParameter], q: Arr
 
 @dataclass(frozen=True)
 class Prior:
-    """How far off a nominal value may be: the standard `deviation` of its coordinate, and the factor that bounds it.
+    """The prior of a nominal value: the standard `deviation` of its coordinate, and the factor that bounds it.
 
-    `scale` [SI] is the coordinate's unit where the parameter may be zero, and `bound_factor` then counts such units (0:
-    any); a scale of 0 says that it moves by factors.
+    `scale` [SI] is the coordinate's unit of a parameter that may be zero, and `bound_factor` is then in such units (0:
+    unbounded); with a scale of 0 the coordinate is logarithmic.
     """
 
     deviation: float
@@ -109,37 +110,36 @@ NOMINAL_PRIORS: Mapping[str, Prior] = {
     "damping_coefficient": Prior(1.0, 8.0),
     "internal_leakage": Prior(1.0, 0.0, 3e-11),
 }
-"""Assumed: how far data sheets and hand-over notes are off.
+"""Errors of data sheets and hand-over notes (assumed).
 
-Held, because a recording sees them only through the ones above: coil_resistance (through the gain), piston_area
+Held, because a recording depends on them only through the ones above: coil_resistance (through the gain), piston_area
 (through gain, mass and damping), line_volume (through stroke and bulk modulus). Held, because a departure from them is
-physics and has its name in the catalogue: external_leakage, and piston_area_b where the nominal cylinder is symmetric.
+an effect of the catalogue: external_leakage, and piston_area_b where the nominal cylinder is symmetric.
 """
 
 USUAL_SPREAD = (0.7, 4.0)
-"""Of a source's own parameter, where its part says nothing else."""
+"""Prior of a source's own parameter, unless its part says otherwise."""
 
 LATE = ("coil_inductance", "valve_damping_ratio", "valve_natural_frequency", "actuator_displacement")
-"""Freed last: a fit that is still far off would bend the valve's dynamics or the stroke to imitate a wrong mass or
-oil."""
+"""Freed last: far from the optimum, the valve's dynamics or the stroke would compensate for a wrong mass or oil."""
 
 TOUCHING = 0.985
-"""Share of the stroke beyond which the piston has been at its end: then the stroke is seen, and not fitted."""
+"""Share of the stroke beyond which the piston has been at its end: the stroke is then known, and not fitted."""
 
 NOT_KNOWN = Prior(2.3, 1000.0)
-"""Of a value that nobody knows: a factor of ten either way is likely, a thousand impossible (assumed)."""
+"""Prior of an unknown value: a factor of ten either way is likely, a thousand impossible (assumed)."""
 
 FORCE_ONLY = ("spring_stiffness", "moving_mass", "damping_coefficient")
-"""What a recording without the valve's command can tell."""
+"""The parameters that a recording without the valve's command identifies."""
 
 
 def free_nominal_parameters(
     nominal: Mapping[str, float], drive: str, travel: float, unknown: Collection[str] = (),
     composition: Composition = PAPER,
 ) -> tuple[FreeParameter, ...]:  # fmt: skip
-    """The nominal parameters that a recording with this drive may move; `travel` is the largest |position| seen [m].
+    """The nominal parameters that are free with this drive; `travel` is the largest measured |position| [m].
 
-    Of `unknown` ones the nominal value is only where the search begins.
+    The nominal value of an `unknown` one is only its initial guess.
     """
     free = []
     for name, prior in {**NOMINAL_PRIORS, **_priors_of(composition.source)}.items():
@@ -149,7 +149,7 @@ def free_nominal_parameters(
         row = composition.place_rows[name]
         reference = nominal[name]
         if name == "spring_stiffness" and reference == 0.0 and drive not in WITH_OIL:
-            continue  # an axis said to have no spring; a spring would only take up what an offset leaves
+            continue  # an axis without a spring: a fitted one would only compensate for an offset
         logarithmic = known.scale == 0.0 and reference > 0.0
         lower, upper = row.lower, row.upper
         if logarithmic:
@@ -169,7 +169,7 @@ def free_nominal_parameters(
 
 
 def _priors_of(source: Source) -> dict[str, Prior]:
-    """The priors of a source's own parameters; none of those that it holds."""
+    """The priors of a source's own parameters, without those that it holds."""
     own = {row.name for row in source.own} - set(source.held)
     return {
         row.name: Prior(*source.spread.get(row.name, USUAL_SPREAD), 0.0 if row.logarithmic else row.typical)
@@ -184,7 +184,7 @@ def _not_known(prior: Prior) -> Prior:
 
 
 def not_believed(parameter: FreeParameter, row: Parameter) -> FreeParameter:
-    """A nominal parameter as free as if nobody knew its value, within the limits of its `row` in the catalogue."""
+    """A nominal parameter with its prior released to NOT_KNOWN, within the limits of its `row` in the catalogue."""
     bound_factor = NOT_KNOWN.bound_factor
     if parameter.logarithmic:
         lower = max(row.lower, parameter.reference / bound_factor)

@@ -1,10 +1,10 @@
-"""Standard deviations that know of what a model leaves over.
+"""Standard deviations that account for a residual that is not white noise.
 
-The curvature at the optimum is right where the residual is white noise. A law that is right but for its form leaves a
-residual that is coherent over an interval and leads parameters astray. So the variance is estimated from the residual,
-too, by adding up each parameter's pull over blocks of time (a sandwich estimator: P. J. Huber, 1967; K.-Y. Liang and
-S. L. Zeger, Biometrika 73, 1986). Noise with a memory has a third estimate, from the residual's autocorrelation: it
-knows memories longer than a block. The largest of the three counts.
+The curvature at the optimum is right if the residual is white noise. A law of slightly wrong form causes a residual
+that is coherent over an interval and biases parameters. Therefore the variance is also estimated from the residual, by
+summing each parameter's pull over blocks of time (a sandwich estimator: P. J. Huber, 1967; K.-Y. Liang and S. L. Zeger,
+Biometrika 73, 1986). For coloured noise there is a third estimate, from the residual's autocorrelation, which covers
+time constants longer than a block. The largest of the three counts.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from eha_core.identification.problem import Linearised, Problem, linearise, norm
 from eha_core.identification.shooting import STATE_SIZE
 
 BLOCK = 0.1
-"""s; over longer spans a residual is taken to be independent. Friction's and the oil's transients are shorter."""
+"""s; a residual counts as independent over longer times. Transients of friction and of the oil are shorter."""
 
 
 def with_residual(problem: Problem, result: Fit) -> Fit:
-    """The fit with its parameters' standard deviations where it ended, widened where the residual says so."""
+    """The fit with its parameters' standard deviations at its end, widened where the residual is not white."""
     count = len(result.free)
     if not count:
         return result
@@ -45,13 +45,13 @@ def with_residual(problem: Problem, result: Fit) -> Fit:
 
 
 def _where_it_ended(problem: Problem, result: Fit, linear: Linearised) -> Fit:
-    """The fit with the covariance from the curvature where it ended; its own is that of the point before."""
+    """The fit with the covariance from the curvature at its end; its own is that of the iteration before."""
     normal, _ = normal_equations(problem, result.free, result.q, result.states, linear)
     return replace(result, covariance=normal.covariance())
 
 
 def _pulls(problem: Problem, result: Fit, linear: Linearised) -> Array:
-    """How far a residual of one moves each parameter's coordinate: (samples, parameters), sorted by window."""
+    """The shift of each parameter's coordinate for a residual of one: (samples, parameters), sorted by window."""
     count, size = len(result.free), problem.shooting.free_states
     pulls = linear.by_parameter @ result.covariance[:count]
     bounds = np.searchsorted(linear.window, np.arange(problem.shooting.windows + 1))
@@ -63,7 +63,7 @@ def _pulls(problem: Problem, result: Fit, linear: Linearised) -> Array:
 
 
 def _by_colour(problem: Problem, design: Array, residual: Array) -> Array:
-    """Variance of each parameter's coordinate, where each channel's noise has the memory and size of its residual."""
+    """Variance of each parameter's coordinate if each channel's noise has the colour and size of its residual."""
     variance = np.zeros(design.shape[1])
     for places in problem.places:
         own = residual[places]

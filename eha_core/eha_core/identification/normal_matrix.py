@@ -1,9 +1,8 @@
-"""The normal matrix of multiple shooting, as what it is: block-tridiagonal in the windows' states, bordered by the
-parameters.
+"""The normal matrix of multiple shooting: block-tridiagonal in the windows' states, bordered by the parameters.
 
-A window's state meets its own samples, the parameters and, through the continuity links, its two neighbours. So the
-states are eliminated by a banded Cholesky factor, the Schur complement is left for the parameters, and both the work
-and the memory grow in proportion to the number of windows.
+A window's state is coupled to its own samples, to the parameters and, by the continuity defects, to its two
+neighbours. So the states are eliminated by a banded Cholesky factor, the Schur complement remains for the parameters,
+and work and memory are proportional to the number of windows.
 """
 
 from __future__ import annotations
@@ -25,23 +24,22 @@ from eha_core.compiled import compiled
 from eha_core.identification.numbers import Array, Flags
 
 RIDGE = 1e-12
-"""Of the scaled matrix' unit diagonal: what is added where rounding alone keeps the states' part from being positive
-definite. Some ten thousand times the rounding of a double."""
+"""Added to the scaled matrix' unit diagonal where rounding alone keeps the states' part from being positive definite:
+some ten thousand times the rounding error of a double."""
 
 SINGULAR = 1e-13
-"""Of the largest eigenvalue: what is smaller counts as zero in a pseudo-inverse."""
+"""Share of the largest eigenvalue below which one counts as zero in a pseudo-inverse."""
 
 
 @dataclass(frozen=True)
 class NormalMatrix:
-    """A symmetric matrix over (parameters, states of window 0, states of window 1, ...), of which only what can differ
-    from zero is kept.
+    """A symmetric matrix over (parameters, states of window 0, states of window 1, ...), stored as its nonzero blocks.
 
     Attributes:
         parameters: (parameters, parameters).
-        shared: (windows, states, parameters) a window's states beside the parameters.
-        own: (windows, states, states) a window's states beside themselves.
-        following: (windows - 1, states, states) a window's states, in rows, beside those of the next.
+        shared: (windows, states, parameters) a window's states with the parameters.
+        own: (windows, states, states) a window's states with themselves.
+        following: (windows - 1, states, states) a window's states, in rows, with those of the next.
     """
 
     parameters: Array
@@ -88,8 +86,8 @@ class NormalMatrix:
     def covariance(self) -> Array:
         """The inverse's columns of the parameters: (parameters + windows * states, parameters).
 
-        Directions of the parameters that the matrix says nothing about count as known (a pseudo-inverse). A matrix that
-        is not finite gives none of its numbers.
+        Directions of the parameters without curvature count as known (a pseudo-inverse). A matrix that is not finite
+        gives NaN.
         """
         for ridge in (0.0, RIDGE):
             try:
@@ -164,7 +162,7 @@ class Eliminated:
 
 @compiled
 def _substitute(factor: Array, right: Array) -> None:
-    """Solve L x = right in place for a banded L; all right-hand sides a row at a time, which LAPACK does one by one."""
+    """Solve L x = right in place for a banded L, row by row for all right-hand sides; LAPACK does them one by one."""
     for row in range(len(right)):
         for other in range(max(0, row - len(factor) + 1), row):
             right[row] -= factor[row - other, other] * right[other]
@@ -172,7 +170,7 @@ def _substitute(factor: Array, right: Array) -> None:
 
 
 def _bands(matrix: NormalMatrix, scale: Array, damping: float) -> Array:
-    """The states' part over outer(scale, scale), damped, as LAPACK keeps the lower half of a banded matrix."""
+    """The states' part over outer(scale, scale), damped, in LAPACK's form of a lower banded matrix."""
     windows, size, _ = matrix.own.shape
     scale = scale.reshape(windows, size)
     own = matrix.own / (scale[:, :, None] * scale[:, None, :])

@@ -1,5 +1,4 @@
-"""Stage 1, read and align: a recording's channels on one clock, with the noise of each, ready to be simulated
-against."""
+"""Stage 1, read and align: a recording's channels on one clock, with the noise level of each, ready for a fit."""
 
 from __future__ import annotations
 
@@ -19,10 +18,10 @@ from eha_core.plant.parts import Source
 from eha_core.recording import CHANNEL_KINDS, Channel, Recording
 
 TICK = 0.01
-"""s; windows begin and end on this grid, which every step size used here divides."""
+"""s; grid of the windows' begins and ends, a multiple of every step size used here."""
 
 SHORTEST = 1.0
-"""s; a shorter recording says too little about any parameter."""
+"""s; a shorter recording hardly identifies any parameter."""
 
 FITTED = ("position", "velocity", "pressure_a", "pressure_b")
 """Channels that a simulation is compared with, in the order of the plant's measured columns."""
@@ -32,20 +31,21 @@ WITH_OIL = ("voltage", "measured")
 
 NOT_COMPARED = dict.fromkeys(CHANNEL_KINDS, "recorded, but compared with nothing") | {
     "velocity": "checked for sign and scale against the position alone, as it may have been computed from it",
-    "force": "recorded, but the pressures tell it",
+    "force": "recorded, but the pressures determine it",
 }
-"""Why a recorded channel is neither driven by nor compared with, by its name."""
+"""Why a recorded channel is neither an input nor compared, by its name."""
 
 RESOLVED = {"m": 1e-6, "m/s": 1e-3, "Pa": 3e3}
-"""Better than any sensor and coarser than the search's simulation: a recording without noise is not held to more."""
+"""Smallest noise levels: below any sensor's, but above the error of the search's simulation, for noise-free
+recordings."""
 
 OVERSHOOT = 1.05
-"""Share of the nominal stroke that a position may show before the stroke is held to be larger than stated."""
+"""Share of the nominal stroke beyond which a measured position shows that the stroke is larger than stated."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """One channel to be explained: `values` (n,) at `time` (n,) [s], with the standard deviation of its noise."""
+    """One channel to be fitted: `values` (n,) at `time` (n,) [s], with the standard deviation of its noise."""
 
     name: str
     column: int
@@ -56,23 +56,23 @@ class Measured:
 
 @dataclass(frozen=True)
 class Observation:
-    """What a recording offers.
+    """A recording's inputs and outputs for a fit.
 
     Attributes:
         path: where it was read from.
-        drive: what the simulation is driven by: "voltage", "pressures", "force", or "measured": the channels of the
-        composition's source.
+        drive: the simulation's input: "voltage", "pressures", "force", or "measured": the channels of the composition's
+        source.
         inputs: the driving channels, as (time, values); voltage is held between samples.
         measured: the channels that are compared.
         leakage: (time [s], change of the internal leakage coefficient since the start [m^3/(s Pa)]) of each change that
-        the recording itself tells of: what was turned on purpose is no mismatch.
+        the recording contains: a change on purpose is no mismatch.
         duration: [s].
-        not_examined: what could not be looked at and why, one line each.
-        remarks: what was put right or left out, one line each.
+        not_examined: equations that could not be examined, and why, one line each.
+        remarks: corrections and exclusions, one line each.
         driving: names of the driving channels.
         composition: the actuator's parts.
-        health: the faults of the recording's channels; the samples that they spoil are not among `measured`.
-        undriven: spans [s] in which it is not known what drove the plant, or what it left has not died away yet.
+        health: the faults of the recording's channels; samples with a fault are not among `measured`.
+        undriven: intervals [s] in which the plant's input is not known, or its effect has not decayed yet.
     """
 
     path: str
@@ -95,12 +95,11 @@ class Observation:
 
 
 def observe(recording: Recording, composition: Composition = PAPER) -> Observation:
-    """Choose what drives the simulation and what it is compared with; estimate noise; exclude what is faulty.
+    """Choose the simulation's inputs and the channels that it is compared with; estimate noise; exclude faults.
 
-    A source that no voltage drives says itself what does.
+    A source that no voltage drives declares its own inputs.
 
-    Raises RecordingError where no equation can be examined: too short, no position, nothing that drives it, or
-    constant.
+    Raises RecordingError where no equation can be examined: too short, no position, no input, or constant.
     """
     channels = recording.channels
     where = str(recording.path)
@@ -168,7 +167,7 @@ def _require_motion(where: str, position: Measured) -> None:
 
 
 def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:
-    """The changes after the start, against the coefficient in force at the start."""
+    """The changes after the start, relative to the coefficient at the start."""
     changes = recording.leakage_changes
     if not changes:
         return ()
@@ -177,7 +176,7 @@ def _leakage(recording: Recording) -> tuple[tuple[float, float], ...]:
 
 
 def with_sufficient_stroke(observation: Observation, model: NominalModel) -> tuple[Observation, NominalModel]:
-    """The nominal model with a stroke that reaches as far as the piston was seen; a remark where it had to grow."""
+    """The nominal model with a stroke that covers the measured positions, and a remark where it had to be enlarged."""
     position = observation.channel("position")
     assert position is not None
     farthest = float(np.max(np.abs(position.values)))
@@ -193,9 +192,9 @@ def with_sufficient_stroke(observation: Observation, model: NominalModel) -> tup
 
 
 def without_end(observation: Observation, moment: float, why: str) -> Observation:
-    """The recording but for its last `moment` [s], and a remark that says why."""
+    """The recording without its last `moment` [s], and a remark with the reason."""
     duration = observation.duration - moment
-    remark = f"the last {moment:g} s were set aside: {why}"
+    remark = f"the last {moment:g} s were excluded: {why}"
     return replace(
         observation,
         inputs=tuple((time[time < duration], values[time < duration]) for time, values in observation.inputs),
@@ -212,7 +211,7 @@ def without_end(observation: Observation, moment: float, why: str) -> Observatio
 def _choose_drive(
     where: str, channels: Mapping[str, Channel], source: Source
 ) -> tuple[str, tuple[str, ...], list[str]]:
-    """The best driving signal there is, its channels, and what its choice leaves unexamined."""
+    """The best available drive, its channels, and the equations that cannot be examined with it."""
     if source.valve != "coil":
         return _given_by(where, channels, source)
     if "voltage_command" in channels:
@@ -235,7 +234,7 @@ def _choose_drive(
 
 
 def _given_by(where: str, channels: Mapping[str, Channel], source: Source) -> tuple[str, tuple[str, ...], list[str]]:
-    """The channels of a source that no voltage drives."""
+    """The drive, its channels and the unexamined equations of a source that no voltage drives."""
     missing = next((name for name in source.inputs if name not in channels), None)
     if missing is not None:
         raise RecordingError(
@@ -247,7 +246,7 @@ def _given_by(where: str, channels: Mapping[str, Channel], source: Source) -> tu
 
 
 def _undriven(health: Health, driving: tuple[str, ...], duration: float) -> tuple[tuple[float, float], ...]:
-    """The spans in which it is not known what drove the plant, on the grid of the windows."""
+    """The intervals in which the plant's input is not known, on the grid of the windows."""
     spans = health.unknown_of(driving, duration)
     return tuple((TICK * floor(begin / TICK), min(TICK * ceil(end / TICK), duration)) for begin, end in spans)
 
@@ -266,7 +265,7 @@ def _measured(
         known &= (time < begin) | (time > end)
     if np.count_nonzero(known) * float(np.median(np.diff(channel.time))) < SHORTEST / 2.0:
         raise RecordingError(
-            f"{where}: next to nothing of {channel.name} can be used ({'; '.join(in_words(health.faults))}); record the"
+            f"{where}: almost nothing of {channel.name} can be used ({'; '.join(in_words(health.faults))}); record the"
             " test again"
         )
     noise = max(estimate_noise(values), RESOLVED[channel.unit])

@@ -1,4 +1,4 @@
-"""Simulations and fits that do not depend on each other, side by side on threads: the compiled step lets them."""
+"""Independent simulations and fits in parallel threads; the compiled step releases the interpreter's lock."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ _workers: ContextVar[tuple[Executor, int] | None] = ContextVar("workers", defaul
 
 @contextmanager
 def side_by_side(jobs: int) -> Iterator[None]:
-    """Within it, what `each` is given runs on `jobs` threads; what such a task gives to `each` in turn, on its own."""
+    """A context in which `each` runs its tasks on `jobs` threads; a nested `each` runs in its task's thread."""
     pool = ThreadPoolExecutor(jobs)
     token = _workers.set((pool, jobs))
     try:
         yield
     finally:
         _workers.reset(token)
-        pool.shutdown(cancel_futures=True)  # an interrupt need not wait for what has not begun
+        pool.shutdown(cancel_futures=True)  # an interrupt does not wait for tasks that have not begun
 
 
 def each(
     task: Callable[[Task], Done], over: Iterable[Task], announce: Callable[[Task], None] = lambda _: None
 ) -> list[Done]:
-    """The task done for each, on the threads there are; each is announced before it is waited for."""
+    """The results of the task for each element, on the available threads; each is announced before it is awaited."""
     workers, items = _workers.get(), list(over)
     results = map(task, items) if workers is None else workers[0].map(task, items)
     done = []
@@ -40,6 +40,6 @@ def each(
 
 
 def threads() -> int:
-    """How many threads there are."""
+    """The number of available threads."""
     workers = _workers.get()
     return 1 if workers is None else workers[1]

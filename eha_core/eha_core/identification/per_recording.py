@@ -1,7 +1,7 @@
 """Parameters that differ between recordings of one rig: a load, a supply pressure.
 
-In a model of several recordings `name` is the first one's value, `name@2`, `name@3` those of the others. What is not
-marked as per recording has one value for all.
+In a model of several recordings `name` is the first one's value, `name@2`, `name@3` are those of the others. Parameters
+that are not marked as per recording have one value for all.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ def values_of(values: Mapping[str, float], number: int) -> Mapping[str, float]:
 def in_each(
     free: Sequence[FreeParameter], values: Mapping[str, float], marked: Iterable[str], recordings: int
 ) -> tuple[tuple[FreeParameter, ...], dict[str, float]]:
-    """Free parameters and values with one more for each further recording, of those marked as per recording.
+    """Free parameters and values, with one more of each marked parameter for each further recording.
 
-    A new one begins at the first recording's value. What is not marked has no value of its own anywhere.
+    The initial guess is the first recording's value. A parameter that is not marked has no values of its own.
     """
     known = {parameter.name for parameter in free}
     wanted = frozenset(marked)

@@ -1,7 +1,7 @@
-"""The least-squares problem behind a fit: residuals of data, links and priors, and their derivatives.
+"""The least-squares problem of a fit: residuals of data, continuity defects and priors, and their derivatives.
 
-A window's end must meet the next one's start within LINK: tight enough that slow drifts tell, loose enough that a wrong
-model does not carry its error through the record.
+The continuity defect between a window's end and the next one's start is weighted by LINK: tight enough to detect slow
+drifts, loose enough that a wrong model's error does not accumulate over the record.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from eha_core.identification.shooting import SLOPE_STEP, STATE_SIZE, Shooting
 from eha_core.plant.lane_rows import LANES, REGISTER
 
 LINK = np.array([3e-5, 3e-3, 3e4, 3e4])
-"""How well a window's end meets the next one's start: m, m/s, Pa, Pa."""
+"""Standard deviation of the continuity defects: m, m/s, Pa, Pa."""
 
 STATE_STEP = np.array([1e-6, 1e-4, 1e3, 1e3])
 STATE_PRIOR = np.array([1.0, 10.0, 3e6, 3e6])
-"""A weak prior on the starts, which matters only where a pressure was not measured."""
+"""A weak prior on the initial states, which matters only where a pressure was not measured."""
 
 
 Point = tuple[Mapping[str, float], Array]
@@ -35,7 +35,7 @@ Point = tuple[Mapping[str, float], Array]
 
 @dataclass(frozen=True)
 class Problem:
-    """What a fit explains: the windows in use, and the step at which it takes derivatives."""
+    """The data of a fit: the windows in use, and the step size of its derivatives."""
 
     shooting: Shooting
     windows: Integers
@@ -43,22 +43,22 @@ class Problem:
 
     @cached_property
     def slopes(self) -> Shooting:
-        """The same windows at the step at which derivatives are taken."""
+        """The same windows at the step size of the derivatives."""
         return coarser(self.shooting, self.slope_step)
 
     def used(self) -> Flags:
-        """Which windows count."""
+        """Flags of the windows in use."""
         flags = np.zeros(self.shooting.windows, dtype=np.bool_)
         flags[self.windows] = True
         return flags
 
     def count(self) -> int:
-        """How many samples are in use."""
+        """The number of samples in use."""
         used = self.used()
         return sum(int(used[sampling.window].sum()) for sampling in self.shooting.samplings)
 
     def links(self) -> Integers:
-        """Windows in use whose successor is in use too, of the same recording, and follows from what is known."""
+        """Windows with a continuity defect: in use, as is the next one, of the same recording and with known inputs."""
         used = self.used()
         follows = np.ones(self.shooting.windows, dtype=np.bool_)
         follows[[*self.shooting.first_windows, *self.shooting.restarts]] = False
@@ -66,7 +66,8 @@ class Problem:
 
     @cached_property
     def order(self) -> tuple[Integers, Integers, list[Flags]]:
-        """How the samples in use, channel after channel, are sorted by window; their windows; and which are in use."""
+        """The order that sorts the samples in use, channel after channel, by window; their windows; and flags of those
+        in use."""
         used = self.used()
         keep = [used[sampling.window] for sampling in self.shooting.samplings]
         window = np.concatenate(
@@ -77,12 +78,12 @@ class Problem:
 
     @cached_property
     def places(self) -> list[Integers]:
-        """Where `flat` puts each sample in use, channel by channel."""
+        """The index in `flat` of each sample in use, for each channel."""
         order, _, keep = self.order
         return np.split(np.argsort(order, kind="stable"), np.cumsum([flags.sum() for flags in keep])[:-1])
 
     def flat(self, samples: Iterable[Array]) -> Array:
-        """One value a sample of each channel, over the noise: the samples in use as one vector, sorted by window."""
+        """The samples in use of all channels, divided by the noise, as one vector sorted by window."""
         order, _, keep = self.order
         pieces = zip(self.shooting.samplings, samples, keep, strict=True)
         return np.concatenate([values[flags] / sampling.noise for sampling, values, flags in pieces])[order]
@@ -120,7 +121,7 @@ def simulate(
 
 
 def residuals(shooting: Shooting, rows: Array) -> tuple[Array, ...]:
-    """Measured less simulated, over the noise, channel by channel."""
+    """Measured minus simulated, divided by the noise, for each channel."""
     return tuple(
         (sampling.values - model) / sampling.noise
         for sampling, model in zip(shooting.samplings, shooting.sample(rows), strict=True)
@@ -143,7 +144,7 @@ def objective_of(
 
 
 def objectives_at(problem: Problem, points: Sequence[Point]) -> list[float]:
-    """The objective, but for priors, at several points, at the step of the derivatives."""
+    """The objective without priors at several points, at the step size of the derivatives."""
     coarse, found = replace(problem, shooting=problem.slopes), []
     for first in range(0, len(points), LANES):
         some = points[first : first + LANES]
@@ -162,9 +163,9 @@ def linearise(
     steps: Array | None = None,
     simulated: tuple[Array, Array] | None = None,
 ) -> Linearised:
-    """Residuals and their derivatives by one-sided differences, `steps` of each coordinate (1e-3 unless given).
+    """Residuals and their derivatives by one-sided differences, with `steps` of each coordinate (1e-3 unless given).
 
-    `simulated`: rows and ends of this very point, where they are known.
+    `simulated`: rows and ends at this point, if known.
     """
     shooting = problem.shooting
     steps = np.maximum(1e-3, [parameter.resolution for parameter in free]) if steps is None else steps
@@ -201,10 +202,10 @@ def linearise(
 def changes(
     problem: Problem, base: Point, moved: Sequence[Point], moves: Sequence[float] | None = None
 ) -> tuple[Array, Array]:
-    """How the channels change from `base` to each of `moved`, at the step of the derivatives; over `moves`, if given.
+    """The changes from `base` to each of `moved`, at the step size of the derivatives, divided by `moves`, if given.
 
-    The samples in use over the noise (samples, moved), and the windows' end states (windows, 4, moved). Each block of
-    the lock-step has `base` in its first lane.
+    Returns those of the samples in use, in units of noise (samples, moved), and of the windows' end states (windows, 4,
+    moved). Each block that is simulated in lock-step has `base` in its first lane.
     """
     coarse = problem.slopes
     blocks = max(1, -(-len(moved) // (LANES - 1)), min(threads(), len(moved) // REGISTER))
@@ -233,8 +234,8 @@ def _sample_changes(
     rows: Array, over: Array, row: Integers, late: Array, column: int, noise: float, to: Integers, place: int,
     columns: Array,
 ) -> None:  # fmt: skip
-    """Sample how a block's sets depart from its first: sample k of a channel fills row to[k] of `columns`, from `place`
-    on."""
+    """Sample the changes of a block's sets from its first one: sample k of a channel fills row to[k] of `columns`, from
+    column `place` on."""
     for k in range(len(row)):
         here, after = rows[row[k], column], rows[row[k] + 1, column]
         for lane in range(len(over)):
@@ -246,7 +247,7 @@ def _sample_changes(
 def normal_equations(
     problem: Problem, free: Sequence[FreeParameter], q: Array, states: Array, linear: Linearised
 ) -> tuple[NormalMatrix, Array]:
-    """J^T J and J^T r over (q, states of every window, windows out of use held by their prior)."""
+    """J^T J and J^T r over (q, states of every window); windows not in use are held by their prior."""
     shooting, used = problem.shooting, problem.used()
     windows, size = shooting.windows, shooting.free_states
     own, shared = np.zeros((windows, STATE_SIZE, STATE_SIZE)), np.zeros((windows, STATE_SIZE, len(free)))

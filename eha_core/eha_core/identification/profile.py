@@ -1,7 +1,7 @@
-"""A 95 % interval from the data's own chi^2, where it is no parabola: friction that holds a piston may be any larger.
+"""A 95 % interval from chi^2 itself where that is not a parabola: friction that holds a piston has no upper limit.
 
-The value is held at one place after the other while all else adapts; the interval ends where that costs more than
-chance (profile likelihood: D. J. Venzon, S. H. Moolgavkar, Applied Statistics 37, 1988).
+The value is held at one place after the other while all others are refitted; the interval ends where chi^2 rises by
+more than chance (profile likelihood: D. J. Venzon, S. H. Moolgavkar, Applied Statistics 37, 1988).
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ from eha_core.identification.fit import Fit, fit
 from eha_core.identification.problem import Problem
 
 ADAPTS = 6
-"""Iterations of what adapts: from one place to the next it has not far to go."""
+"""Iterations of each refit: the optimum moves little from one place to the next."""
 HALVINGS = 5
-"""Of the way to where the value would explain nothing: the end is found to a thirtieth of it."""
+"""Bisections between the fitted and the neutral value: the end is found to a thirtieth of the distance."""
 FARTHER = (2.0, 4.0, 16.0)
-"""Times the value's distance from nothing at which more is tried, before there is held to be no upper end."""
+"""Multiples of the distance from the neutral value that are tried before the interval counts as open."""
 
 Ends = tuple[float | None, float | None]
 
 
 def profile_interval(problem: Problem, result: Fit, name: str, nothing: float, cost: float) -> Ends:
-    """The ends between which chi^2 stays within `cost` of the fit's; None where there is none.
+    """The ends of the interval in which chi^2 stays within `cost` of the fit's; None for an open end.
 
-    `nothing`: the parameter's value at which it explains nothing.
+    `nothing`: the parameter's neutral value.
     """
     at = result.values[name]
     (moved,) = (parameter for parameter in result.free if parameter.name == name)
@@ -44,7 +44,7 @@ def profile_interval(problem: Problem, result: Fit, name: str, nothing: float, c
 
 
 def _inner(is_inside: Callable[[float], bool]) -> float | None:
-    """The end towards nothing, as a share of the value; None where nothing is inside."""
+    """The end towards the neutral value, as a share of the distance; None where the neutral value is inside."""
     if is_inside(0.0):
         return None
     outside, inside = 0.0, 1.0
@@ -55,7 +55,7 @@ def _inner(is_inside: Callable[[float], bool]) -> float | None:
 
 
 def _outer(is_inside: Callable[[float], bool]) -> float | None:
-    """The end away from nothing; None where there is none."""
+    """The end away from the neutral value; None where it is open."""
     inside = 1.0
     for times in FARTHER:
         if not is_inside(times):

@@ -1,4 +1,4 @@
-"""Recordings cut into windows: the step grid, where the samples fall on it, and each window's measured start."""
+"""Recordings cut into windows: the step grid, the samples' places on it, and each window's measured initial state."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from eha_core.identification.observation import TICK, WITH_OIL, Measured, Observ
 from eha_core.identification.shooting import SETTLING, STATE_SIZE, Sampling, Shooting
 
 SPAN = 0.02
-"""s; through the samples of so long a time channels are smoothed."""
+"""s; window of the smoothing cubics."""
 
 BENT = 4.0
-"""Standard deviations by which a cubic through more samples may differ from one through fewer: beyond, the channel
-bends. Noise alone does so once in 16,000 samples."""
+"""Standard deviations by which a cubic through more samples may differ from one through fewer before the channel counts
+as bending. Noise alone does so once in 16,000 samples."""
 
 
 def cut(
@@ -27,11 +27,10 @@ def cut(
     window: float = 1.0,
     every: int | None = None,
 ) -> Shooting:
-    """Lay the step grid over the recording, cut it into windows of about `window` seconds, and start each window's
-    state.
+    """The recording on the step grid, in windows of about `window` seconds, each with its measured initial state.
 
-    `values` gives the pressures at which unmeasured chambers start. `every` steps make a row: unless given, rows are
-    one a sample where the samples allow it.
+    `values` gives the initial pressures of unmeasured chambers. `every` steps make a row; by default there is one row
+    for each sample where the samples allow it.
     """
     every = every or rows_every(observation, step_size)
     per_row = every * step_size
@@ -52,7 +51,7 @@ def cut(
         for name, (time, values_) in zip(observation.driving, observation.inputs, strict=True)
     ]
     if observation.drive == "force":
-        # the step knows pressures: a force is one chamber's pressure over its area
+        # the plant's step takes pressures: a force is one chamber's pressure times its area
         hold = [hold[0] / values["piston_area"], np.zeros_like(hold[0])]
     samplings = tuple(_place(channel, per_row, edges, every) for channel in observation.measured)
     return Shooting(
@@ -72,19 +71,19 @@ def cut(
 
 
 def _unknown_spans(observation: Observation) -> tuple[Integers, Integers]:
-    """The ticks at which spans begin and end in which it is not known what drove the plant: each is a window of its
-    own, and the piston's state after it is fitted anew."""
+    """The ticks at which intervals with unknown inputs begin and end; each is a window, and the piston's state after it
+    is fitted again."""
     spans = np.round(np.array(observation.undriven).reshape(-1, 2) / TICK).astype(np.int64)
     return spans[:, 0], spans[:, 1]
 
 
 def _restarts(edges: Integers, at: Integers) -> tuple[int, ...]:
-    """The windows that begin where it is no longer, or at last, known what drives the plant."""
+    """The windows at whose begin the plant's inputs become unknown, or known again."""
     return tuple(int(window) for window in np.flatnonzero(np.isin(edges[:-1], at)) if window)
 
 
 def _edges(ticks: int, count: int, changes: Integers) -> Integers:
-    """About `count` windows of one length, and a new window where something is changed on purpose or not known."""
+    """About `count` windows of equal length, and a new window at each of `changes`."""
     even = np.round(np.linspace(0, ticks, count + 1)).astype(np.int64)
     shortest = 0.3 * ticks / count
     inner = [edge for edge in even[1:-1] if np.all(np.abs(changes - edge) > shortest)]
@@ -92,7 +91,7 @@ def _edges(ticks: int, count: int, changes: Integers) -> Integers:
 
 
 def coarser(fine: Shooting, step_size: float) -> Shooting:
-    """The same windows and samples on a coarser step, for derivatives."""
+    """The same windows and samples at a larger step size, for derivatives."""
     factor = step_size / fine.step_size
     if factor <= 1.0:
         return fine
@@ -108,7 +107,7 @@ def coarser(fine: Shooting, step_size: float) -> Shooting:
     for sampling in fine.samplings:
         place = (sampling.row + 1 + sampling.late) * (fine.every / (factor * every)) - 1.0
         first, last = edges[sampling.window] // every, edges[sampling.window + 1] // every - 1
-        # a sample beside a window's edge is reached by extrapolation from inside the window
+        # a sample next to a window's edge is extrapolated from inside the window
         row = np.clip(np.floor(place + 1e-6).astype(np.int64), first, np.maximum(last - 1, first))
         samplings.append(replace(sampling, row=row, late=place - row))
     return replace(
@@ -122,7 +121,8 @@ def coarser(fine: Shooting, step_size: float) -> Shooting:
 
 
 def rows_every(observation: Observation, step_size: float) -> int:
-    """A row a sample for evenly sampled channels; otherwise rows close enough to interpolate the oil's fast motion."""
+    """Steps per row: one row per sample for evenly sampled channels, else close enough to interpolate the oil's fast
+    motion."""
     for channel in observation.measured:
         gaps = np.diff(channel.time)
         regular = np.median(gaps)
@@ -136,7 +136,7 @@ def rows_every(observation: Observation, step_size: float) -> int:
 
 
 def _place(channel: Measured, per_row: float, edges: Integers, every: int) -> Sampling:
-    """Rows stand at the ends of their steps: row r at (r + 1) per_row. A sample never straddles two windows."""
+    """The places of a channel's samples on the rows: row r is at time (r + 1) per_row. No sample uses two windows."""
     place = channel.time / per_row - 1.0
     place = np.where(np.abs(place - np.round(place)) < 1e-6, np.round(place), place)
     row = np.floor(place).astype(np.int64)
@@ -172,27 +172,26 @@ def smooth(channel: Measured, derivative: int, span: float = SPAN) -> Array:
 
 
 def _length(channel: Measured, span: float) -> tuple[int, float]:
-    """The samples within `span` seconds, an odd number, five at least, and no more than there are; and the time [s]
-    from one to the next."""
+    """The number of samples within `span` seconds, odd, at least five and at most all; and the sampling period [s]."""
     spacing = float(np.median(np.diff(channel.time)))
     length = max(5, 2 * int(0.5 * span / spacing) + 1)
     return min(length, len(channel.values) - 1 + len(channel.values) % 2), spacing
 
 
 def follow(channel: Measured) -> Array:
-    """A channel without most of its noise, at each sample: as `smooth`, but through fewer samples where that differs
-    from a cubic through fewer by more than noise makes it (O. V. Lepskii, Theory Probab. Appl. 35, 1990).
+    """A channel with most of its noise removed, at each sample: as `smooth`, but through fewer samples where the two
+    differ by more than noise (O. V. Lepskii, Theory Probab. Appl. 35, 1990).
 
-    Windows start here, and sensors that lag with them: where pressures bend, a cubic through 20 ms may be wrong by
-    several times the noise, which is then seen until the sensor has forgotten it.
+    It gives the initial states of windows and of lagging sensors: where pressures bend, a cubic through 20 ms may be
+    wrong by several times the noise, which is visible until the sensor's lag has decayed.
     """
     longest, _ = _length(channel, SPAN)
     closer, agrees = [(channel.values, 1.0)], np.ones(len(channel.values), dtype=bool)
     followed = channel.values
     for length in sorted({length for length in (longest // 4 | 1, longest // 2 | 1, longest) if length >= 5}):
         cubic = np.asarray(savgol_filter(channel.values, length, 3))
-        # the weight of the middle sample is the share of the noise's variance that a least-squares fit leaves there,
-        # and an estimate from fewer of the same samples differs from it by as much as its own variance is larger
+        # the middle sample's weight is the share of the noise's variance that a least-squares fit retains there; an
+        # estimate from fewer of the same samples differs from it by the difference of their variances
         share = float(savgol_coeffs(length, 3)[length // 2])
         for shorter, of_shorter in closer:
             agrees &= np.abs(cubic - shorter) < BENT * channel.noise * np.sqrt(of_shorter - share)
@@ -202,5 +201,5 @@ def follow(channel: Measured) -> Array:
 
 
 def held_out(windows: int) -> Sequence[int]:
-    """Every third window, the middle one of each three: what a hypothesis is judged on and not fitted to."""
+    """The held-out windows: every third, the middle one of each three."""
     return range(1, windows, 3)

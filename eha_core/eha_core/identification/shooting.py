@@ -1,8 +1,8 @@
 """The recording cut into windows, and the plant simulated through them.
 
-A single simulation over the whole record drifts away as soon as the model is wrong. So each window starts the piston's
-state (position, velocity, both pressures) anew; coil, spool and the effects' own states run through, for they hardly
-depend on where the piston is. What ties the windows together is the fit's concern.
+A single simulation over the whole record drifts away if the model is wrong. So each window has its own initial state of
+the piston (position, velocity, both pressures); coil, spool and the effects' own states run through, because they
+hardly depend on the piston's position. The fit weights the continuity defects between windows.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ STATE_SIZE = 4
 """Free at a window's start: position, velocity, pressure A, pressure B."""
 
 SETTLING = 0.3
-"""s at the record's start that are not compared: coil, spool and the effects' own states start there unrecorded."""
+"""s at the record's start that are not compared: the initial states of coil, spool and effects are not known there."""
 
 SLOPE_STEP = 5e-4
-"""s; the step at which derivatives are taken. They are good to a few per cent, which costs a fit no accuracy."""
+"""s; step size of the derivatives. They are accurate to a few per cent, which costs a fit no accuracy."""
 
 
 @dataclass(frozen=True)
 class Sampling:
-    """Where a channel's samples fall on the simulated rows: between `row` and the next, with weight `late` on the
-    next. `noise` is what residuals are weighed with, `own_noise` what the channel shows by itself."""
+    """The places of a channel's samples on the simulated rows: between `row` and the next, with weight `late` on the
+    next. `noise` weights the residuals; `own_noise` is the channel's own estimate."""
 
     column: int
     row: Integers
@@ -54,14 +54,14 @@ class Shooting:
 
     Attributes:
         step_size: [s]; `every` steps make a row.
-        inputs: (1 or 2, steps) voltage, both pressures, force, or what else drives the source, held over each step.
+        inputs: (1 or 2, steps) voltage, both pressures, force, or the source's other inputs, held over each step.
         edges: (windows + 1,) first step of each window, and the end.
-        leakage: (windows,) what is added to the internal leakage coefficient in each, as the recording tells.
-        samplings: one a measured channel, sorted by time.
+        leakage: (windows,) recorded change of the internal leakage coefficient in each.
+        samplings: one for each measured channel, sorted by time.
         initial_states: (windows, STATE_SIZE) from the smoothed measurement; pressures at half supply where not
         measured.
-        first_windows: the first window of each recording; there all that runs through begins anew, time too.
-        restarts: windows that no link ties to the one before: what drove the plant in that one is not known.
+        first_windows: the first window of each recording; there all states begin again, and time too.
+        restarts: windows without a continuity defect, because the inputs in the window before are not known.
         per_recording: the parameters that have a value in each recording.
         composition: the actuator's parts.
     """
@@ -83,7 +83,7 @@ class Shooting:
 
     @property
     def windows(self) -> int:
-        """How many windows there are."""
+        """The number of windows."""
         return len(self.edges) - 1
 
     @property
@@ -93,19 +93,19 @@ class Shooting:
 
     @property
     def local_edges(self) -> Array:
-        """(windows, 2) when each window begins and ends [s], counted from its own recording's start."""
+        """(windows, 2) begin and end of each window [s], counted from its own recording's start."""
         starts = np.repeat(self.edges[list(self.first_windows)], [len(windows) for windows in self.recordings])
         return np.asarray(np.stack([self.edges[:-1] - starts, self.edges[1:] - starts], axis=1) * self.step_size)
 
     def times(self, sampling: Sampling) -> Array:
-        """When a channel's samples were taken [s], one recording after the other: a row stands at its steps' end."""
+        """The times of a channel's samples [s], one recording after the other; a row's time is the end of its steps."""
         return np.asarray((sampling.row + 1 + sampling.late) * self.every * self.step_size)
 
     def simulate(self, values: Mapping[str, float], states: Array, full: bool = False) -> tuple[Array, Array]:
         """Simulate every window from its state (windows, 4); return measured rows and the windows' end states (windows,
         4).
 
-        Rows: (steps / every, 4) position, velocity, pressure A, pressure B as the sensors say; all columns if `full`.
+        Rows: (steps / every, 4) position, velocity, pressure A, pressure B as measured; all columns if `full`.
         """
         if not self.composition.has_lockstep:
             together, ends_together = self._together([(values, states)], len(COLUMNS if full else SEEN))
@@ -163,11 +163,11 @@ class Shooting:
                 )  # fmt: skip
 
     def _values_of(self, values: Mapping[str, float], number: int) -> Mapping[str, float]:
-        """The parameters of one recording; of the only one they are there as they are."""
+        """The parameters of one recording."""
         return values if len(self.first_windows) == 1 else values_of(values, number)
 
     def _of(self, windows: range) -> tuple[int, Array, Windows]:
-        """Of one recording: its first step, what is given, and its windows, counted from that step."""
+        """A recording's first step, its inputs, and its windows counted from that step."""
         start, end = int(self.edges[windows.start]), int(self.edges[windows.stop])
         here = slice(windows.start, windows.stop)
         edges = self.edges[windows.start : windows.stop + 1] - start

@@ -1,7 +1,7 @@
 """Several recordings of one rig as one: fitted with one set of parameters and effects, each from its own states.
 
-Their windows stand one after another. At the first window of each all that runs through the others begins anew: coil,
-spool, the effects' own states, and time. No continuity is asked for from one recording to the next.
+Their windows follow one another. At the first window of each, the states that run through the others begin again: coil,
+spool, the effects' own states, and time. There is no continuity from one recording to the next.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ def cut_together(
     window: float = 1.0,
     per_recording: Sequence[str] = (),
 ) -> Shooting:
-    """`cut` for all recordings: one record with every recording's windows.
+    """`cut` for all recordings: one record with the windows of all.
 
-    The channels of the second are called `position@2`, and so on. `per_recording`: parameters with a value in each.
+    The second recording's channels are named `position@2`, and so on. `per_recording`: parameters with a value in each.
     """
     every = int(np.gcd.reduce([rows_every(observation, step_size) for observation in observations]))
     each = [
@@ -45,7 +45,7 @@ def check_alike(observations: Sequence[Observation]) -> None:
         if other.drive != first.drive:
             raise RecordingError(
                 f"{other.path}: is driven by its {other.drive}, {first.path} by its {first.drive}; recordings of one"
-                " rig need the same driving channel, or are diagnosed each alone (--each)"
+                " rig need the same driving channel; diagnose each on its own with --each"
             )
 
 
@@ -78,7 +78,7 @@ def joined(each: Sequence[Shooting], per_recording: Sequence[str] = ()) -> Shoot
 
 
 def recording_alone(shooting: Shooting, number: int) -> Shooting:
-    """One recording of several, counted from one, as it stands alone."""
+    """One recording of several, counted from one, by itself."""
     if len(shooting.first_windows) == 1:
         return shooting
     windows = shooting.recordings[number - 1]
@@ -104,7 +104,7 @@ def recording_alone(shooting: Shooting, number: int) -> Shooting:
 
 
 def fit_alone(shooting: Shooting, result: Fit, number: int) -> Fit:
-    """What a fit of several recordings says of one of them."""
+    """The part of a fit of several recordings that belongs to one of them."""
     if len(shooting.first_windows) == 1:
         return result
     windows = shooting.recordings[number - 1]

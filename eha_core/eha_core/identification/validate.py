@@ -1,4 +1,4 @@
-"""Judge a model on parts of the recording that it was not fitted to."""
+"""Validation of a model on parts of the recording that it was not fitted to."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class Judged:
 
 
 def split(shooting: Shooting, instants: Sequence[float] = ()) -> tuple[Problem, Problem]:
-    """The windows to fit on, and those to judge on. Two windows or fewer are both.
+    """The training windows and the held-out ones; two windows or fewer are both.
 
-    What happens at one of the `instants` [s, in every recording] can be learnt there only: their windows, and those
-    before and after, are fitted to. Between two of them a window is judged, too, where there are three or more.
+    A change at one of the `instants` [s, in every recording] can only be fitted there: their windows, and those before
+    and after, are training windows. Between two instants with three or more windows, one is held out, too.
     """
     chosen = {window for windows in shooting.recordings for window in _judged_of(shooting, windows, instants)}
     judged = np.array(sorted(chosen), dtype=np.int64)
@@ -42,7 +42,7 @@ def split(shooting: Shooting, instants: Sequence[float] = ()) -> tuple[Problem, 
 
 
 def _judged_of(shooting: Shooting, windows: range, instants: Sequence[float]) -> set[int]:
-    """The windows of one recording to judge on."""
+    """The held-out windows of one recording."""
     ends = shooting.local_edges[windows.start : windows.stop, 1]
     inside = sorted(instant for instant in instants if instant < ends[-1])
     events = [windows.start + int(window) for window in np.searchsorted(ends[:-1], inside)]
@@ -56,7 +56,7 @@ def _judged_of(shooting: Shooting, windows: range, instants: Sequence[float]) ->
 
 
 def judge(shooting: Shooting, model: Fit, instants: Sequence[float] = ()) -> Judged:
-    """Refit `model` on the training windows only, then fit the judged windows' starts with its parameters held."""
+    """Refit `model` on the training windows, then fit only the initial states of the held-out windows."""
     training, judged = split(shooting, instants)
     fitted = fit(training, model.values, model.free, model.states, iterations=6)
     outside = refit_states(judged, fitted)
@@ -66,7 +66,7 @@ def judge(shooting: Shooting, model: Fit, instants: Sequence[float] = ()) -> Jud
 
 
 def instants_of(model: Fit) -> list[float]:
-    """The instants that a model moves [s]."""
+    """The instants that are free parameters of a model [s]."""
     return [model.values[parameter.name] for parameter in model.free if parameter.resolution > 0.0]
 
 
