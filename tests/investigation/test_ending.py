@@ -40,7 +40,7 @@ def test_a_member_that_is_not_certain_leaves_two_sets_without_a_test() -> None:
     found = diagnosis("missing_physics", (), None)
     found.sets = (ProbableSet(("a",), 0.9), ProbableSet(("a", "b"), 0.08))
     ending = settled([found])
-    assert ending.kind == "nothing_more" and "No test is proposed between the sets that are left" in ending.statement
+    assert ending.kind == "nothing_more" and "No test is proposed that distinguishes the remaining" in ending.statement
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What a planned test can show, before it is made: the smallest effects, and those it cannot distinguish."""
+"""What a planned test can detect, before it is made: the smallest effects, and those that it cannot distinguish."""
 
 from eha_core.detectability.certificate import Certificate, certify
 from eha_core.detectability.design import DesignedTest, design

@@ -1,4 +1,4 @@
-"""A certificate of a planned test: the smallest size of each effect that is found, and what it is confounded with."""
+"""A certificate of a planned test: the smallest detectable size of each effect, and the effects confounded with it."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from eha_core.nominal import NominalModel
 
 @dataclass(frozen=True)
 class Certificate:
-    """What a planned test can show.
+    """What a planned test can detect.
 
     Attributes:
         test: the test.
-        power: the probability with which what is listed is found.
-        samples: how many there are.
+        power: the probability with which the listed sizes are found.
+        samples: the number of samples.
         effects: the effects, in the catalogue's order. parameters: the nominal parameters.
-        stroke: the largest distance from mid stroke, as a share of the stroke.
-        scales: full values that sizes may be compared with, by unit [SI].
-        remarks: what to know of the test.
+        stroke: the largest distance from mid-stroke, as a share of the stroke.
+        scales: full scales that sizes may be compared with, by unit [SI].
+        remarks: warnings about the test.
     """
 
     test: PlannedTest
@@ -43,7 +43,7 @@ class Certificate:
 
 
 def certify(model: NominalModel, test: PlannedTest) -> Certificate:
-    """What a diagnosis would find in a recording of this test of a rig that is as modelled but for one effect.
+    """What a diagnosis would find in a recording of this test if the rig differs from the model by one effect.
 
     Raises ParameterError for an actuator that no voltage drives.
     """
@@ -66,8 +66,8 @@ def _measured(at: FittedModel) -> tuple[list[Trial], list[float]]:
 
 
 def _with_pressures(rows: Sequence[Detectable], at: FittedModel) -> tuple[Detectable, ...]:
-    """The rows with the sizes that are found where pressures are recorded too; and effects that only these show. Of
-    these sizes the linearisation is believed."""
+    """The rows with the sizes that are found if pressures are recorded, too, and effects that only these show. These
+    sizes are the linearisation's, not confirmed by fits."""
     more = {(row.effect, row.parameter): row for row in effect_rows(at, *middle_shapes(*_measured(at)))}
     known = {(row.effect, row.parameter) for row in rows}
     found = [replace(row, with_pressures=more[row.effect, row.parameter].size) for row in rows]

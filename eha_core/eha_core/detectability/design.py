@@ -1,4 +1,4 @@
-"""The test that shows the smallest sizes of given effects, among signals of a few kinds that the rig bears."""
+"""The test that detects the smallest sizes of given effects, among a few kinds of signals within the rig's limits."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from eha_core.errors import EhaError, ParameterError, remedy
 from eha_core.nominal import NominalModel
 
 SHARES = (1.0, 0.5, 0.2)
-"""Of the largest amplitude that the limits allow, at which each signal is tried: dry friction shows best where motion
-is slow."""
+"""Shares of the largest amplitude within the limits at which each signal is tried: slow motion shows dry friction
+best."""
 
 DIGITS = 3
-"""Significant digits of an amplitude, so that the file reads well."""
+"""Significant digits of an amplitude, for a readable file."""
 
 Row = Detectable | Noticeable
 Named = Mapping[str, tuple[Row, ...]]
-"""Rows by what was asked for: an effect's sizes, or a nominal parameter's change."""
+"""Rows by the requested name: an effect's sizes, or a nominal parameter's change."""
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A signal that was tried, and the sizes asked for over those that the usual test finds, their geometric mean."""
+    """A signal that was tried; `ratio`: geometric mean of the requested sizes over those that the usual test finds."""
 
     kind: str
     signal: CommandSignal
@@ -45,15 +45,15 @@ class Candidate:
 
 @dataclass(frozen=True)
 class DesignedTest:
-    """The best test for some effects, beside another.
+    """The best test for some effects, compared with a usual one.
 
     Attributes:
-        names: the effects and nominal parameters asked for.
-        kind: of the signal: multisine, steps with dwell, hold, slow triangle. signal: it, as the reference node's.
-        test: what is done and recorded.
-        found: what it shows. usual: what the other test shows.
-        margins: the limits, and what the moved rigs reach of them. usual_most: the largest share of each limit that
-            any of them uses in the other test, which nothing holds within the limits.
+        names: the requested effects and nominal parameters.
+        kind: of the signal: multisine, steps with dwell, hold, slow triangle. signal: as the reference node's.
+        test: the command, and what is recorded.
+        found: the sizes that it detects. usual: those of the usual test.
+        margins: the limits, and the shares of them that the sampled rigs reach. usual_most: the largest share of each
+            limit that any of them reaches in the usual test, which need not stay within the limits.
         tried: every signal, the best first.
     """
 
@@ -74,12 +74,12 @@ def design(model: NominalModel, names: Sequence[str], limits: Limits, usual: Pla
     Args:
         model: the rig as modelled.
         names: effects of the catalogue, or nominal parameters.
-        limits: what the rig bears.
+        limits: those of the rig.
         usual: the test that it is compared with.
 
     Raises:
         ParameterError: a name that is neither, or an actuator that no voltage drives.
-        EhaError: the rig bears none of the signals within these limits.
+        EhaError: no signal stays within these limits.
     """
     with threadpool_limits(1):
         before = linearised(model, usual)
@@ -109,7 +109,7 @@ def _check(names: Sequence[str], at: FittedModel) -> None:
     for name in names:
         if name not in known:
             what = remedy(name, sorted(known), "give effects that these channels can show, or nominal parameters")
-            raise ParameterError(f"--for {name}: nothing that this test could show; {what}")
+            raise ParameterError(f"--for {name}: this test cannot show it; {what}")
 
 
 def _test(usual: PlannedTest, times: Array, signal: CommandSignal) -> PlannedTest:
@@ -117,7 +117,7 @@ def _test(usual: PlannedTest, times: Array, signal: CommandSignal) -> PlannedTes
 
 
 def _found(at: FittedModel, names: Sequence[str], sure: bool = False) -> dict[str, tuple[Row, ...]]:
-    """What a test shows of each name; `sure`: the sizes of effects confirmed by fits."""
+    """The detectable sizes of each name; `sure`: with the sizes of effects confirmed by fits."""
     tried = [trial for trial in trials(at) if trial.column.effect.id in names]
     chosen, factors = middle_shapes(tried, smallest(at, tried).tolist())
     effects = effect_rows(at, chosen, confirmed(at, chosen, factors) if sure else factors) if tried else ()
@@ -130,25 +130,26 @@ def _found(at: FittedModel, names: Sequence[str], sure: bool = False) -> dict[st
 
 
 def _ratio(sizes: Mapping[str, Sequence[float]], usual: Mapping[str, Sequence[float]]) -> float:
-    """The geometric mean over what was asked for, of each the largest of its independent sizes: half the size counts
-    alike for a leak and for friction. A size that the usual test does not find at all is any test's gain."""
+    """The geometric mean of the ratios over all requested names, each with its largest independent size: half the size
+    counts the same for a leak and for friction. A size that the usual test does not find counts as a gain of any test.
+    """
     ratios = [max(sizes[name]) / max(usual[name]) if np.isfinite(max(usual[name])) else max(sizes[name])
               for name in sizes]  # fmt: skip
     return float(np.exp(np.mean(np.log(ratios))))
 
 
 def _sizes(rows: Sequence[Row]) -> list[float]:
-    """The sizes of one effect, or a parameter's change; of a leak the coefficient, for its flow depends on the test."""
+    """The sizes of one effect, or a parameter's change; for a leak its coefficient, as its flow depends on the test."""
     return [row.change if isinstance(row, Noticeable) else row.size if row.size is not None else inf for row in rows]
 
 
 def _signals(margins: Margins, times: Array) -> Iterator[tuple[str, CommandSignal]]:
-    """The signals that the rig bears, at a few shares of the largest amplitude at which it does."""
+    """The signals within the limits, at a few shares of the largest amplitude within them."""
     for kind, made in kinds().items():
         for make in made:
             amplitude = margins.largest_amplitude(make, times)
             for share in SHARES if amplitude > 0.0 else ():
-                # rounded down, for up would pass a limit
+                # rounded down: rounding up would exceed a limit
                 digits = 10.0 ** (np.floor(np.log10(share * amplitude)) - DIGITS + 1)
                 yield kind, make(float(f"{np.floor(share * amplitude / digits) * digits:.{DIGITS}g}"))
 

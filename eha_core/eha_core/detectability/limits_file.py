@@ -1,4 +1,4 @@
-"""What a rig bears, from a YAML file; what the file does not say is taken from the model."""
+"""A rig's limits from a YAML file; limits that the file does not give are the model's."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def read_limits(path: str | Path | None, model: NominalModel) -> Limits:
 
 
 def _positive(value: object) -> float | None:
-    """A value as a positive number; YAML takes 25e6, which has no point, for text."""
+    """A value as a positive number; YAML reads 25e6, without a point, as text."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         return None
     try:

@@ -1,4 +1,4 @@
-"""Whether a test stays within limits on rigs whose parameters differ from the modelled ones as far as is believed."""
+"""Whether a test stays within limits on rigs whose parameters differ from the modelled ones within their priors."""
 
 from __future__ import annotations
 
@@ -18,34 +18,34 @@ from eha_core.plant import simulate_many
 from eha_core.plant.plant_file import require_voltage
 
 RIGS = 59
-"""Moved rigs, none of which may pass a limit: then with 95 % confidence fewer than 5 % of such rigs would (0.95^59 is
-0.048)."""
+"""Sampled rigs, none of which may exceed a limit: then, with 95 % confidence, fewer than 5 % of such rigs would
+(0.95^59 is 0.048)."""
 
 TOGETHER = 20
-"""Rigs that are simulated at once, for the memory that their rows take."""
+"""Rigs that are simulated at once, limited by the memory of their rows."""
 
 EVERY = 10
-"""Steps between two rows that are held against the limits: 2 ms, in which a valve hardly moves."""
+"""Steps between two rows that are compared with the limits: 2 ms, in which a valve hardly moves."""
 
 FULL = 0.97
-"""Share of a limit that an amplitude is chosen to reach on the rig that reaches most."""
+"""Share of a limit that the amplitude is chosen for, on the rig that reaches most."""
 
 PASSES = 4
-"""Simulations of each signal in search of its amplitude, for what is reached is nearly linear in it."""
+"""Simulations of each signal to find its amplitude: the response is nearly linear in it."""
 
 FIRST = 0.02
-"""Share of the largest voltage with which the search begins: no end of the stroke is near."""
+"""Share of the largest voltage with which the search begins, far from the ends of the stroke."""
 
 
 @dataclass(frozen=True)
 class Margins:
-    """Limits, and rigs that have to stay within them: the one as modelled first, then RIGS with moved parameters.
+    """Limits, and rigs that have to stay within them: the one as modelled first, then RIGS with sampled parameters.
 
     Attributes:
-        model: the rig as modelled. limits: what may be reached.
+        model: the rig as modelled. limits: the limits.
         rigs: values of each rig, in the names of the actuator's parts.
-        shares: (rigs,) of what each reaches of each limit in the test that `reached` was given, by the limit's name.
-        bands: of a few quantities over `time` [s], the least and the most of any rig, and that of the rig as modelled:
+        shares: for each rig, the share of each limit that it reaches in the test of `reached`, by the limit's name.
+        bands: of a few quantities over `time` [s], the least of any rig, that of the rig as modelled, and the most:
             (3, samples).
     """
 
@@ -58,8 +58,8 @@ class Margins:
 
     @classmethod
     def of(cls, model: NominalModel, limits: Limits) -> Margins:
-        """Rigs drawn evenly from one prior standard deviation to either side of each nominal parameter, but for the
-        stroke, which is seen. Raises ParameterError for an actuator that no voltage drives."""
+        """Rigs with parameters drawn uniformly within one prior standard deviation of the nominal ones; the stroke,
+        which is known, is not varied. Raises ParameterError for an actuator that no voltage drives."""
         require_voltage(model.composition)
         values, named = model.values, model.composition.named
         plant = free_nominal_parameters(values, "voltage", 0.0, model.unknown, model.composition)
@@ -76,11 +76,11 @@ class Margins:
 
     @property
     def most(self) -> dict[str, float]:
-        """The largest share of each limit that any of the rigs uses."""
+        """The largest share of each limit that any of the rigs reaches."""
         return {name: max(each[name] for each in self.shares) for name in self.shares[0]}
 
     def reached(self, voltages: Array, times: Array) -> Margins:
-        """The same with what a test of these voltages [V], held from these times [s] on, reaches."""
+        """The same with the shares that a test reaches with these voltages [V], held from these times [s] on."""
         shares, bands = [], dict[str, list[Array]]()
         for rows, columns in self._motions(voltages, times):
             shares += [self._shares(one) for one in rows]
@@ -93,9 +93,9 @@ class Margins:
         return replace(self, shares=tuple(shares), time=time, bands=found)
 
     def largest_amplitude(self, make: Callable[[float], CommandSignal], times: Array) -> float:
-        """The largest amplitude [V] found at which no rig passes a limit; 0 where there is none.
+        """The largest amplitude [V] found at which no rig exceeds a limit; 0 where there is none.
 
-        `make`: the signal of an amplitude. Raises EhaError where a limit is passed at rest.
+        `make`: the signal of an amplitude. Raises EhaError where a limit is exceeded at rest.
         """
         rest, held = self._worst(0.0 * times[: len(times) // 4], times[: len(times) // 4]), 0.0
         over = {name: float(np.max(share)) for name, share in rest.items() if np.max(share) >= FULL}
@@ -121,7 +121,7 @@ class Margins:
         return self.model.values["saturation_current"] * self.model.values["coil_resistance"]
 
     def _worst(self, voltages: Array, times: Array) -> dict[str, Array]:
-        """(rigs,) the share of each limit that is used, by its name."""
+        """(rigs,) the share of each limit that is reached, by its name."""
         found = [self._shares(one) for rows, _ in self._motions(voltages, times) for one in rows]
         return {name: np.array([each[name] for each in found]) for name in found[0]}
 
@@ -129,7 +129,7 @@ class Margins:
         return self.limits.shares(rows, EVERY * STEPS[0], self.model.values["atmospheric_pressure"])
 
     def _motions(self, voltages: Array, times: Array) -> Iterator[tuple[Array, tuple[str, ...]]]:
-        """The rigs' rows (rigs, samples, columns), some at a time, with the columns' names."""
+        """The rigs' rows (rigs, samples, columns), TOGETHER at a time, with the columns' names."""
         period = float(times[1] - times[0])
         command = np.repeat(voltages, round(period / STEPS[0]))
         for first in range(0, len(self.rigs), TOGETHER):

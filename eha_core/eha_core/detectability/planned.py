@@ -1,4 +1,4 @@
-"""A test that is planned: a command on the rig as modelled, and what is to be recorded with which noise."""
+"""A planned test: a command on the rig as modelled, and the channels to be recorded with their noise."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from eha_core.recording.simulated import POSITION_NOISE, PRESSURE_NOISE
 Array = NDArray[np.float64]
 
 NOISE = {"position": POSITION_NOISE, "pressure_a": PRESSURE_NOISE, "pressure_b": PRESSURE_NOISE}
-"""Standard deviation of each channel's noise at factor 1 [m, Pa]: what can be recorded, too."""
+"""The channels that can be recorded, and the standard deviation of each one's noise at factor 1 [m, Pa]."""
 
 LONGEST = 600.0
 """s; a longer test takes minutes and gigabytes (assumed)."""
@@ -33,14 +33,14 @@ LONGEST = 600.0
 
 @dataclass(frozen=True)
 class PlannedTest:
-    """A command, and what is recorded of what it does.
+    """A command, and how the response is recorded.
 
     Attributes:
         times, voltages: the command [V] from each instant on [s].
         duration: [s].
-        channels: what is recorded beside the command, some of NOISE.
+        channels: those of NOISE that are recorded in addition to the command.
         noise: factor on NOISE.
-        rate: samples a second [Hz].
+        rate: samples per second [Hz].
     """
 
     times: Array
@@ -73,13 +73,13 @@ class PlannedTest:
 
 @dataclass(frozen=True)
 class RigAsModelled(FittedModel):
-    """The rig as modelled in this test: a fit that is exact, and `motion`, what the test does."""
+    """The rig as modelled in this test: an exact fit, and `motion`, the response."""
 
     motion: Trajectory
 
 
 def linearised(model: NominalModel, test: PlannedTest) -> RigAsModelled:
-    """The test without noise and without a fault, as the search sees it over its long windows, nothing to fit left.
+    """The noise-free test of the rig as modelled, linearised as in the search over its long windows.
 
     Raises ParameterError for an actuator that no voltage drives.
     """
@@ -108,7 +108,7 @@ def linearised(model: NominalModel, test: PlannedTest) -> RigAsModelled:
     travel = float(np.max(np.abs(motion.position)))
     plant = free_nominal_parameters(values, "voltage", travel, model.unknown, model.composition)
     pool = Pool(problem, plant, Trace())
-    # a command that does not begin at zero starts coil and spool otherwise than windows do, which is no noise
+    # with a command that does not begin at zero, coil and spool start differently from the windows: that is no noise
     exact = replace(pool.at_rest(NOTHING, values, states), data=0.0, objective=0.0)
     scales = characteristic_scales([observation], problem.shooting, exact)
     return RigAsModelled((observation,), pool, NOTHING, exact, scales, motion)

@@ -1,6 +1,6 @@
-"""Whether a size suffices, as the linearisation says: the nominal equations are fitted to what it does, noise-free.
+"""Whether the linearisation's smallest size suffices: the nominal equations are fitted to its noise-free response.
 
-A response that nominal parameters compensate almost may be compensated better when they move far.
+Nominal parameters that nearly compensate for a response may compensate for it better when they move far.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from eha_core.diagnosis.search.columns import Column
 from eha_core.identification.fit import exact, fit
 
 ITERATIONS = 8
-"""Of such a fit at most; most end after two, and what has not ended by then leaves more."""
+"""Most iterations of such a fit; most fits end after two, and an unfinished one only has a larger residual."""
 
 ROUNDS = 3
-"""How often a size is enlarged at most."""
+"""Most enlargements of a size."""
 
 SHORT = 0.9
-"""Share of the energy that is needed below which a size is enlarged: 5 per cent of the size."""
+"""Share of the required energy below which a size is enlarged: 5 per cent of the size."""
 
 LARGER = 3.0
-"""Factor by which it is enlarged at most in one round."""
+"""Largest factor of one enlargement."""
 
 
 def left_by_nominal(at: FittedModel, column: Column, thorough: bool = False) -> float:
-    """Chi^2 that the nominal equations leave of what a column does, at their best; `thorough`: with derivatives at the
-    simulation's own step, without which a fit may end early in a flat valley."""
+    """Chi^2 of the best fit of the nominal equations to a column's response; `thorough`: with derivatives at the
+    simulation's own step size, without which a fit may end early in a flat valley."""
     shooting = at.pool.problem.shooting
     rows, _ = shooting.simulate({**at.fit.values, **column.beside(at.fit.values).values}, at.fit.states)
     pairs = zip(shooting.samplings, shooting.sample(rows), strict=True)
@@ -40,8 +40,8 @@ def left_by_nominal(at: FittedModel, column: Column, thorough: bool = False) -> 
 
 
 def confirmed(at: FittedModel, tried: Sequence[Trial], factors: Sequence[float]) -> list[float]:
-    """The factors, those enlarged whose response the nominal equations explain better than the linearisation says; inf
-    where that takes more than the catalogue's bound. None is made smaller."""
+    """The factors, enlarged where the nominal equations explain the response better than the linearisation predicts;
+    inf where that exceeds the catalogue's bound. None is reduced."""
     columns = [trial.at(factor if isfinite(factor) else 1.0) for trial, factor in zip(tried, factors, strict=True)]
     seen = responses(at, columns)
     return [_confirmed(at, trial, factor, seen.share(place) < COMPENSATED)

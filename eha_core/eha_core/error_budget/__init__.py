@@ -1,4 +1,4 @@
-"""What each departure of a rig from its model costs in tracking error: shares of the RMSE, and what a repair gains."""
+"""The tracking error due to each departure of a rig from its model: shares of the RMSE, and the gain of each repair."""
 
 from eha_core.error_budget.rig import Departure, Rig, rig_from_changes, rig_from_document
 from eha_core.error_budget.shares import Budget, RepairStep, Share, error_budget

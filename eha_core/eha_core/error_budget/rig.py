@@ -1,4 +1,4 @@
-"""A rig as a model and what it departs from it by: the effects found, a leakage that grew, and other parameters."""
+"""A rig as a model and its departures from it: the effects found, an increased leakage, and other parameters."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ from eha_core.quantities import quantity
 Array = NDArray[np.float64]
 
 LEAKAGES = ("internal_leakage", "external_leakage")
-"""Parameters of the model that wear raises and new seals lower: each departs, and is repaired, by itself."""
+"""Parameters of the model that wear increases and new seals reduce: each is a departure, and is repaired, by itself."""
 
 LEAKAGE_UNIT = "m^3/(s Pa)"
 
 PARAMETERS = "parameters"
-"""The departure that all other parameters make together. They are the rig's own, and no repair brings them back."""
+"""The departure of all other parameters together. They belong to the rig, and no repair changes them."""
 
 MOST = 10
-"""Departures of which every subset is simulated: 1,024 closed loops, some seconds."""
+"""Most departures, since every subset is simulated: 1,024 closed loops take some seconds."""
 
 
 @dataclass(frozen=True)
 class Departure:
-    """One thing by which the rig is not as modelled.
+    """One difference of the rig from its model.
 
     Attributes:
         name: an effect's id, one of LEAKAGES, or PARAMETERS.
-        statement: it in words.
-        values: parameters (SI, by their names in the equations) where it is there.
-        absent: the same parameters where it is not.
-        repairable: whether a repair would take it away.
+        statement: the difference in words.
+        values: parameters (SI, by their names in the equations) with it.
+        absent: the same parameters without it.
+        repairable: whether a repair removes it.
     """
 
     name: str
@@ -61,7 +61,7 @@ class Rig:
         departures: at most MOST.
         deviations: standard deviations [SI] of the departures' values as far as they are known, by name.
         correlation: (n, n) of the errors of those values, in the order of `deviations`.
-        remarks: what was taken for granted, in sentences.
+        remarks: assumptions, in sentences.
         composition: the actuator's parts.
     """
 
@@ -86,7 +86,7 @@ def rig_from_changes(
 ) -> Rig:
     """A rig whose departures from the model (`modelled`, every parameter of the equations) are given by name.
 
-    Raises ParameterError for a name or a value that does not fit, EhaError where nothing departs or too much does.
+    Raises ParameterError for a wrong name or value, EhaError without a departure or with too many.
     """
     require_voltage(composition)
     composition.changed(composition.nominal_values(), changes)
@@ -96,9 +96,9 @@ def rig_from_changes(
 
 
 def rig_from_document(document: Mapping[str, Any], source: str) -> Rig:
-    """The rig of a diagnosis, as `diagnosis.json` has it; of several recordings, with the values of the first.
+    """The rig of a diagnosis, from the content of `diagnosis.json`; with several recordings, with the first's values.
 
-    Raises EhaError where it is no such document, or it found nothing that departs.
+    Raises EhaError where it is no such document, or where no departure was found.
     """
     composition, fitted = fitted_plant(document, source)
     require_voltage(composition)
@@ -116,7 +116,7 @@ def _departures(
     source: str, modelled: Mapping[str, float], fitted: Mapping[str, float], leaks: Sequence[str],
     statements: Mapping[str, str],
 ) -> tuple[Departure, ...]:  # fmt: skip
-    """What the fitted values differ from the modelled ones by; `leaks` of LEAKAGES count by themselves."""
+    """The departures of the fitted from the modelled values; those of LEAKAGES in `leaks` count by themselves."""
     found = [_of_effect(effect, fitted, statements) for effect in effects() if effect.is_active(fitted)]
     for name in leaks:
         statement = f"{name.replace('_', ' ')} is {quantity(fitted[name], LEAKAGE_UNIT)}"
@@ -135,13 +135,13 @@ def _departures(
 
 
 def _of_effect(effect: Effect, fitted: Mapping[str, float], statements: Mapping[str, str]) -> Departure:
-    """An effect that always acts: an instant of the recording is no instant of the task."""
+    """The departure of an effect, which always acts here: the recording's times are not those of the task."""
     absent = neutral(effect)
     values = {**absent, **{name: fitted[name] for name in effect.parameter_names()}}
     for name, row in zip(effect.parameter_names(), effect.parameters, strict=True):
         if row.relative_to == "time" and not row.logarithmic:
             values[name] = row.lower
-    described = "a law that is in no catalogue, as recovered"
+    described = "a recovered law that is not in the catalogue"
     if effect.named:
         described = effect.describe({row.name: values[f"{effect.id}.{row.name}"] for row in effect.parameters})
     return Departure(effect.id, statements.get(effect.id, described), values, absent)
@@ -150,7 +150,7 @@ def _of_effect(effect: Effect, fitted: Mapping[str, float], statements: Mapping[
 def _uncertainty(
     document: Mapping[str, Any], departures: Sequence[Departure]
 ) -> tuple[dict[str, float], Array]:
-    """Standard deviations of the departures' values as far as the diagnosis knows them, and their correlation."""
+    """The known standard deviations of the departures' values, and their correlation."""
     known = {row["name"]: row["std"] for row in document["parameters"]}
     for effect in document["effects"]:
         known |= {f"{effect['id']}.{name}": row["std"] for name, row in effect["parameters"].items()}

@@ -1,6 +1,6 @@
-"""Shapley's shares of a quantity that each subset of some players has a value of; the order that lowers it fastest.
+"""Shapley's shares of a quantity that is known for each subset of some players, and the order of fastest reduction.
 
-A subset is a whole number whose bit k says that player k is in it; `values[subset]` is the quantity.
+A subset is a whole number whose bit k is set if player k is in it; `values[subset]` is the quantity.
 
 Source: L. S. Shapley, "A value for n-person games", Contributions to the Theory of Games II, Princeton 1953.
 """
@@ -17,14 +17,14 @@ Array = NDArray[np.float64]
 
 
 def players_of(values: Array) -> int:
-    """How many players there are to (2^n,) values."""
+    """The number of players n of (2^n,) values."""
     return len(values).bit_length() - 1
 
 
 def shares(values: Array) -> Array:
-    """Shares (n,) that add up to the whole set's value less the empty one's.
+    """Shares (n,) that add up to the complete set's value minus the empty one's.
 
-    A player's is what it adds, in the mean over all orders in which the players can come one after another.
+    A player's share is the value that it adds, averaged over all orders in which the players can be added.
     """
     count = players_of(values)
     subsets = np.arange(len(values))
@@ -38,13 +38,13 @@ def shares(values: Array) -> Array:
 
 
 def without_each(values: Array) -> Array:
-    """The quantity (n,) when one player alone leaves the whole set."""
+    """The quantity (n,) of the complete set without each player."""
     whole = len(values) - 1
     return values[[whole & ~(1 << player) for player in range(players_of(values))]]
 
 
 def fastest_removal(values: Array, removable: Sequence[int]) -> list[int]:
-    """These players one after another out of the whole set, each time the one without which least is left."""
+    """The order in which these players are removed from the complete set, each time the one with the lowest rest."""
     subset, order, rest = len(values) - 1, [], list(removable)
     while rest:
         best = min(rest, key=lambda player: float(values[subset & ~(1 << player)]))

@@ -1,4 +1,4 @@
-"""The error budget: the task simulated with every subset of a rig's departures, and what each of them costs."""
+"""The error budget: the task is simulated with every subset of a rig's departures, which gives each one's share."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from eha_core.parameters import catalogue
 Array = NDArray[np.float64]
 
 SURE = 1.96
-"""Standard deviations to either side that hold 95 % of a normal distribution."""
+"""Standard deviations to either side that contain 95 % of a normal distribution."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A value [m] and half of its 95 % interval [m]: what the uncertainty of the departures' values makes of it."""
+    """A value [m] and half of its 95 % interval [m] due to the uncertainty of the departures' values."""
 
     value: float
     reach: float = 0.0
@@ -29,7 +29,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Share:
-    """What one departure costs: its share of the RMSE, and what taking it away alone lowers the RMSE by."""
+    """One departure's share of the RMSE, and the reduction of the RMSE if it alone is removed."""
 
     name: str
     statement: str
@@ -40,7 +40,7 @@ class Share:
 
 @dataclass(frozen=True)
 class RepairStep:
-    """The repair that gains most after those before it, and the RMSE then [m]."""
+    """The repair with the largest gain after those before it, and the RMSE after it [m]."""
 
     name: str
     rmse: Figure
@@ -48,17 +48,17 @@ class RepairStep:
 
 @dataclass(frozen=True)
 class Budget:
-    """Where a rig's tracking error comes from.
+    """The sources of a rig's tracking error.
 
     Attributes:
         source: where the rig was read.
         task: the motion.
         today: RMSE of the rig with all its departures.
-        modelled: RMSE of the rig as modelled: the share of no departure. With the shares it adds up to `today`.
+        modelled: RMSE of the rig as modelled, without departures. With the shares it adds up to `today`.
         shares: of each departure, the largest first.
-        order: the repairs, the fastest way down first.
+        order: the repairs, the largest gain first.
         subsets: RMSE [m] of each subset of the departures, by the names in it.
-        remarks: what was taken for granted.
+        remarks: assumptions.
     """
 
     source: str
@@ -77,12 +77,12 @@ class Budget:
 
 
 def error_budget(rig: Rig, task: Task) -> Budget:
-    """Simulate the task with every subset of the departures, and share its RMSE out among them by Shapley's value.
+    """Simulate the task with every subset of the departures, and divide its RMSE among them by Shapley's value.
 
-    Intervals: each value that has a standard deviation is moved by one, and the subsets that have it are simulated
-    again. The differences, as a linear model, carry the covariance of the values over to every figure.
+    Intervals: each value with a known standard deviation is moved by one, and the subsets with it are simulated again.
+    The differences, as a linear model, propagate the covariance of the values to every figure.
 
-    Raises ParameterError where the rig cannot do the task.
+    Raises ParameterError where the rig cannot perform the task.
     """
     departures = rig.departures
     subsets = [_members(departures, subset) for subset in range(2 ** len(departures))]
@@ -106,14 +106,14 @@ def _members(departures: Sequence[Departure], subset: int) -> list[Departure]:
 
 
 def _directions(rig: Rig) -> dict[str, float]:
-    """Which way each uncertain value is moved: up, or down where its bound is nearer than a standard deviation."""
+    """The sign of each uncertain value's move: up, or down where its bound is nearer than a standard deviation."""
     everything = rig.values(rig.departures)
     return {name: 1.0 if everything[name] + deviation <= catalogue()[name].upper else -1.0
             for name, deviation in rig.deviations.items()}  # fmt: skip
 
 
 def _moved(rig: Rig, directions: Mapping[str, float]) -> list[dict[str, float]]:
-    """Each uncertain value a standard deviation further on."""
+    """Each uncertain value, moved by its standard deviation."""
     everything = rig.values(rig.departures)
     return [{name: max(everything[name] + way * rig.deviations[name], catalogue()[name].lower)}
             for name, way in directions.items()]  # fmt: skip
@@ -128,7 +128,7 @@ def _summed_up(
     order = shapley.fastest_removal(values, [k for k, departure in enumerate(departures) if departure.repairable])
 
     def figures(rmse: Array) -> Array:
-        """Today, as modelled, shares, gains, and what the repairs leave."""
+        """Today's RMSE, that as modelled, the shares, the gains, and the RMSE after each repair."""
         left = len(rmse) - 1 - np.cumsum([1 << place for place in order])
         return np.concatenate([rmse[[-1, 0]], shapley.shares(rmse), rmse[-1] - shapley.without_each(rmse), rmse[left]])
 

@@ -1,4 +1,4 @@
-"""What the rig is to do while its error is counted: follow a reference under a controller, or take a voltage."""
+"""The task of an error budget: to follow a reference under a controller, or to respond to a voltage in open loop."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ LONGEST = 600.0
 
 @dataclass(frozen=True)
 class Task:
-    """A motion that is asked for.
+    """A required motion.
 
     Attributes:
-        signal: the reference [m] of a controller, or the voltage [V] where there is none.
-        controller: one of `eha_core.control.CONTROLLERS`, made for the rig as modelled; empty: open loop. The error is
-            then the difference from what the rig as modelled does under the same voltage.
+        signal: the reference [m] of a controller, or the voltage [V] without one.
+        controller: one of `eha_core.control.CONTROLLERS`, designed for the rig as modelled; empty: open loop. The error
+            is then the difference from the motion of the rig as modelled under the same voltage.
         duration: [s].
-        skip: seconds at the start that are not counted.
-        rate: commands, and samples of the error, a second [Hz].
+        skip: seconds to ignore at the start.
+        rate: commands, and samples of the error, per second [Hz].
         command_limit: largest voltage of the controller, either sign [V].
         step_size: the plant's step [s].
     """
@@ -44,7 +44,7 @@ class Task:
     step_size: float = 1e-4
 
     def __post_init__(self) -> None:
-        """Check the values and what they mean together."""
+        """Check the values, alone and in combination."""
         if self.controller and self.controller not in CONTROLLERS:
             raise ParameterError(
                 f"there is no controller {self.controller!r}; {remedy(self.controller, CONTROLLERS)}"
@@ -71,15 +71,15 @@ class Task:
     def rmse(
         self, sets: Sequence[Mapping[str, float]], modelled: Mapping[str, float], composition: Composition
     ) -> Array:
-        """Root mean square [m] of the true position's error, of each parameter set (`modelled` is what the controller
-        knows). ParameterError where the reference begins outside the stroke."""
+        """Root mean square [m] of the true position's error, for each parameter set (`modelled` are those of the
+        controller's design). Raises ParameterError where the reference begins outside the stroke."""
         errors = self._errors(sets, modelled, composition)
         return np.asarray(np.sqrt(np.mean(np.square(errors), axis=1)))
 
     def _errors(
         self, sets: Sequence[Mapping[str, float]], modelled: Mapping[str, float], composition: Composition
     ) -> Array:
-        """Errors [m] that count, (sets, samples)."""
+        """Errors [m] after `skip`, (sets, samples)."""
         if not self.controller:
             return self._open_loop(sets, modelled, composition)
         start, stroke = float(self.signal.value(0.0)), min(values["actuator_displacement"] for values in sets)
@@ -96,7 +96,7 @@ class Task:
     def _open_loop(
         self, sets: Sequence[Mapping[str, float]], modelled: Mapping[str, float], composition: Composition
     ) -> Array:
-        """The same under the voltage, the model's motion being what is wanted."""
+        """The same in open loop, relative to the model's motion under the same voltage."""
         command = np.asarray(self.signal.value(np.arange(round(self.duration / self.step_size)) * self.step_size))
         reached = _positions([modelled, *sets], command, self.steps, self.step_size, composition)
         return np.asarray((reached[1:] - reached[0])[:, round(self.skip * self.rate) :])

@@ -1,4 +1,4 @@
-"""A rig that interrogates itself: test after test, each chosen by what the diagnosis of all before left open."""
+"""A rig that investigates itself: a series of tests, each chosen by the diagnosis of all tests before it."""
 
 from eha_core.investigation.ending import ENDINGS, Ending
 from eha_core.investigation.loop import MARGIN, Bounds, Investigation, Step, investigate

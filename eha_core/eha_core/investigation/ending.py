@@ -1,4 +1,4 @@
-"""When an investigation ends, and why: from what the diagnosis of all tests so far leaves open."""
+"""When and why an investigation ends, from the diagnoses of all tests so far."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def sets_of(diagnosis: Diagnosis) -> tuple[tuple[str, ...], ...]:
 
 
 def settled(diagnoses: Sequence[Diagnosis]) -> Ending | None:
-    """Why no further test is to be made after the last of these diagnoses; None where one is."""
+    """Why no further test is needed after the last of these diagnoses; None where one is."""
     last = diagnoses[-1]
     if last.verdict == "unknown_physics":
         return Ending("nothing_more", f"no set of effects of the catalogue explains the tests. {last.summary}")
@@ -44,7 +44,7 @@ def settled(diagnoses: Sequence[Diagnosis]) -> Ending | None:
         return Ending("resolved", last.summary)
     test = last.next_experiment
     if test is None:
-        return Ending("nothing_more", f"{last.summary} No test is proposed between the sets that are left.")
+        return Ending("nothing_more", f"{last.summary} No test is proposed that distinguishes the remaining sets.")
     if not test.reference:
         return Ending("nothing_more", test.statement)
     if test.record:
@@ -53,11 +53,11 @@ def settled(diagnoses: Sequence[Diagnosis]) -> Ending | None:
     if test.expected < PERHAPS:
         return Ending("nothing_more", test.statement)
     if any(_same(last, earlier) for earlier in diagnoses[:-1]):
-        return Ending("nothing_more", f"the test that is proposed was made and left the same rivals: {test.statement}")
+        return Ending("nothing_more", f"the proposed test was made already and left the same rivals: {test.statement}")
     return None
 
 
 def _same(one: Diagnosis, other: Diagnosis) -> bool:
-    """Whether two diagnoses leave the same sets and propose the same test."""
+    """Whether two diagnoses have the same possible sets and propose the same test."""
     tests = [each.next_experiment.reference if each.next_experiment else None for each in (one, other)]
     return tests[0] == tests[1] and set(sets_of(one)) == set(sets_of(other))

@@ -1,4 +1,4 @@
-"""The loop: run a test, diagnose all tests together, and choose the next by what is left open."""
+"""The loop: run a test, diagnose all tests together, and choose the next one by the remaining rivals."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from eha_core.plausibility import admit
 from eha_core.recording import Recording
 
 MARGIN = 0.8
-"""Share of each limit that a proposed test may reach on the rivals' models: the rest is for what these do not know, and
-for the watch, which stops the motion ahead of a limit (assumed)."""
+"""Share of each limit that a proposed test may reach on the rivals' models: the rest is for their errors, and for the
+watch, which stops the motion before a limit (assumed)."""
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """After how many tests, and after how many seconds of wall-clock time, no further test begins."""
+    """Number of tests, and seconds of wall-clock time, after which no further test begins."""
 
     tests: int = 5
     seconds: float = 3600.0
@@ -34,7 +34,7 @@ class Bounds:
 
 @dataclass(frozen=True)
 class Step:
-    """One test: what was recorded of it, what all tests so far say together, and how long that took [s]."""
+    """One test: its recording, the joint diagnosis of all tests so far, and how long both took [s]."""
 
     test: VoltageTest
     recording: Recording
@@ -44,7 +44,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Investigation:
-    """Every step, and how it ended; `ending` is None while it goes on."""
+    """Every step, and the ending; `ending` is None while it runs."""
 
     limits: Limits
     steps: tuple[Step, ...] = ()
@@ -52,7 +52,7 @@ class Investigation:
 
     @property
     def found(self) -> Diagnosis | None:
-        """What all tests together say; None before the first."""
+        """The diagnosis of all tests together; None before the first."""
         return self.steps[-1].diagnosis if self.steps else None
 
 
@@ -66,20 +66,20 @@ def investigate(
     progress: Callable[[str], None] = lambda _: None,
     jobs: int = 2,
 ) -> Investigation:
-    """Drive a rig with test after test until one set of effects remains, no test would tell more, or a bound is met.
+    """Drive a rig with tests until one set of effects remains, no test would distinguish more, or a bound is reached.
 
     Args:
-        rig: what moves and records.
+        rig: moves and records.
         model: the nominal model, whose actuator a voltage drives.
-        limits: what the rig bears.
+        limits: those of the rig.
         first: the first test.
         bounds: how many tests, and how long.
         told: receives the investigation after each step and at its end.
-        progress: receives what is being done.
+        progress: receives a message for each step of the work.
         jobs: threads of a diagnosis.
 
     Raises:
-        EhaError: the actuator is driven by no voltage, or a recording cannot be right. A motion that was stopped is no
+        EhaError: no voltage drives the actuator, or a recording is implausible. A motion that was stopped is not an
             error but an ending.
     """
     require_voltage(model.composition)
@@ -106,11 +106,11 @@ def _step(
     rig: Rig, model: NominalModel, limits: Limits, test: VoltageTest, before: Sequence[Step],
     progress: Callable[[str], None], jobs: int,
 ) -> Step:  # fmt: skip
-    """Run a test from mid stroke, and diagnose it together with those before."""
+    """Run a test from mid-stroke, and diagnose it together with those before."""
     began, number = time.monotonic(), len(before) + 1
 
     def say(message: str) -> None:
-        rig.check()  # a diagnosis takes a minute, and who stops the rig does not want to wait for its end
+        rig.check()  # a diagnosis takes a minute: a stop must not wait for its end
         progress(f"test {number}: {message}")
 
     say(f"a {test.signal.signal} of voltage ({test.signal.settings()}) for {test.duration:g} s")
@@ -123,7 +123,7 @@ def _step(
 
 
 def _ending(steps: Sequence[Step], bounds: Bounds, elapsed: float) -> Ending | None:
-    """Why the last step was the last; None where another test is to be made."""
+    """Why the investigation ends after the last step; None where another test follows."""
     ending = settled([step.diagnosis for step in steps])
     if ending is None and len(steps) >= bounds.tests:
         ending = Ending("limit_of_tests", f"{len(steps)} tests were made; {steps[-1].diagnosis.summary}")

@@ -1,4 +1,4 @@
-"""What a rig is asked to do: a motion, which is a voltage over time and position until it is over."""
+"""The motion of a rig in a test: a voltage as a function of time and position until the motion is over."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from eha_core.recording import Recording
 from eha_core.signals import make_signal
 
 Motion = Callable[[float, float], float | None]
-"""The voltage [V] after so many seconds at this position [m]; None: the motion is over."""
+"""The voltage [V] at an elapsed time [s] and a position [m]; None: the motion is over."""
 
 RETURN_TIME = 0.5
-"""s; time constant with which the piston comes back to mid stroke: much slower than any valve (assumed)."""
+"""s; time constant of the return to mid-stroke: much slower than any valve (assumed)."""
 
 NEAR = 0.05
-"""Share of the position's limit within which the piston counts as in mid stroke (assumed)."""
+"""Share of the position's limit within which the piston counts as at mid-stroke (assumed)."""
 
 PATIENCE = 10.0
-"""s after which a return ends where it is: a valve that overlaps may not bring the piston all the way (assumed)."""
+"""s; longest return: an overlapped valve may not bring the piston all the way (assumed)."""
 
 GENTLE = 0.5
-"""Share of the largest speed with which it comes back at most (assumed)."""
+"""Largest speed of the return, as a share of the limit (assumed)."""
 
 
 class MotionStopped(EhaError):
@@ -35,19 +35,19 @@ class Rig(Protocol):
     """A rig that moves, records and can be stopped."""
 
     def run(self, motion: Motion, name: str) -> Recording:
-        """Move to the motion's end and return what was recorded of it under this name, with zero voltage again.
+        """Run the motion to its end, set zero voltage, and return its recording under this name.
 
-        Raises MotionStopped, after zero voltage, where somebody or a limit stopped it.
+        Raises MotionStopped, after zero voltage, where a person or a limit stopped it.
         """
 
     def check(self) -> None:
-        """Raise MotionStopped if somebody has stopped the rig since, while it was at rest."""
+        """Raise MotionStopped if the rig was stopped while it was at rest."""
 
 
 def from_mid_stroke(test: VoltageTest, velocity_gain: float, limits: Limits) -> Motion:
-    """Slowly back to mid stroke, where a test is planned to begin, and then the test; one motion only.
+    """The slow return to mid-stroke, where a test begins, and then the test, as one motion.
 
-    `velocity_gain`: of the rig as modelled [(m/s)/V].
+    `velocity_gain`: that of the rig as modelled [(m/s)/V].
     """
     signal = make_signal(test.signal.signal, dict(test.signal.parameters))
     largest = min(limits.voltage, GENTLE * limits.speed / velocity_gain)

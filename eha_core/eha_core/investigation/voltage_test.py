@@ -1,4 +1,4 @@
-"""A test of an investigation: a voltage of some duration, and what it is for."""
+"""A test of an investigation: a voltage of some duration, and its purpose."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from eha_core.nominal import NominalModel
 from eha_core.signals import from_text
 
 FIRST_DURATION = 10.0
-"""s; of a first test that nobody chose: what a proposed test lasts at least, too."""
+"""s; default duration of a first test, and shortest of a proposed one."""
 
 FIRST_SHARE = 0.5
-"""Of the largest amplitude at which no rig within the priors passes a limit: what the rig is missing is not known yet
-(assumed)."""
+"""Share of the largest amplitude at which no rig within the priors exceeds a limit: the missing physics is not known
+yet (assumed)."""
 
 RATE = 500.0
-"""Hz; at which a first test is tried on the model."""
+"""Hz; rate at which a first test is simulated with the model."""
 
 
 @dataclass(frozen=True)
 class VoltageTest:
-    """A voltage that a rig is driven with for `duration` [s]; `purpose` in a sentence."""
+    """A voltage that drives a rig for `duration` [s]; `purpose` in a sentence."""
 
     signal: CommandSignal
     duration: float
@@ -41,7 +41,7 @@ class VoltageTest:
 
     @property
     def largest(self) -> float:
-        """The largest voltage of it [V], either sign."""
+        """Its largest voltage [V], either sign."""
         times = np.arange(round(self.duration * RATE)) / RATE
         return float(np.max(np.abs(self.signal.voltage(times))))
 
@@ -51,9 +51,9 @@ def first_test(command: str, duration: float, model: NominalModel, limits: Limit
 
     Args:
         command: a signal of voltage such as "multisine:amplitude=0.05"; empty: a multisine whose amplitude is half of
-            the largest at which no rig within the model's priors passes a limit.
-        duration: its length [s]; 0: as long as a proposed test at least.
-        model: the rig as modelled. limits: what it bears.
+            the largest at which no rig within the model's priors exceeds a limit.
+        duration: its length [s]; 0: FIRST_DURATION.
+        model: the rig as modelled. limits: those of the rig.
 
     Raises:
         ParameterError: the command is no signal.

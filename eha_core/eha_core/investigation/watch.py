@@ -1,4 +1,4 @@
-"""Whether a rig that moves is about to pass a limit, from what it measures."""
+"""Whether a moving rig is about to exceed a limit, from its measurements."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.quantities import quantity
 
 AHEAD = 0.05
-"""s that are looked ahead: zero voltage takes effect within some hundredths of a second (assumed)."""
+"""s; prediction horizon: zero voltage takes effect within some hundredths of a second (assumed)."""
 
 WINDOW = 0.02
-"""s over which the speed is measured; at 500 Hz noise of 10 um makes 1 mm/s of it."""
+"""s over which the speed is measured; at 500 Hz, noise of 10 um gives an error of 1 mm/s."""
 
 IN_SIGHT = 0.95
-"""Share of the largest pressure at which it is in sight (assumed); it rises too fast to be looked ahead for."""
+"""Share of the largest pressure at which it counts as in sight (assumed); it rises too fast for a prediction."""
 
 
 class Watch:
-    """Follows a motion's samples and says in one line what is in sight.
+    """Follows a motion's samples and reports a limit in sight in one line.
 
     Args:
-        limits: of position, speed and pressure; energy and voltage are planned and not watched.
+        limits: of position, speed and pressure; energy and voltage are planned, not watched.
     """
 
     def __init__(self, limits: Limits) -> None:
@@ -31,10 +31,10 @@ class Watch:
         self._positions: deque[tuple[float, float]] = deque()
 
     def trouble(self, time: float, position: float, pressures: Mapping[str, float]) -> str:
-        """What of this sample would pass a limit soon; empty if nothing does.
+        """The quantity of this sample that would soon exceed a limit, in words; empty if none would.
 
         Args:
-            time: [s]. position: from mid stroke [m]. pressures: gauge [Pa], by channel, those that are measured.
+            time: [s]. position: from mid-stroke [m]. pressures: gauge [Pa], by channel, those that are measured.
         """
         measured = {"position": position, **pressures}
         for name, value in measured.items():

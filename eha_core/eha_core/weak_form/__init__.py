@@ -1,4 +1,4 @@
-"""Equations held against measured channels without simulating, and laws found in what they lack by sparse regression.
+"""Residuals of equations evaluated with measured channels, without simulation, and laws found in them by regression.
 
 After D. A. Messenger and D. M. Bortz, "Weak SINDy", Multiscale Modeling & Simulation 19 (2021).
 """

@@ -1,9 +1,9 @@
-"""Dry friction read off the force balance of the measured channels: which form it has, and its values.
+"""Dry friction from the force balance of the measured channels: its form, and its values.
 
-The balance M x'' + B x' + K x + load = A_a P_a - A_b P_b - friction is averaged with test functions that lie between
-two reversals, where friction's sign is known and a sensor's play and lag hardly matter. The form and the terms that
-stand together with it are chosen by the Bayesian information criterion over all small subsets. Whatever is wrong with
-the valve's flow does not matter. Values are within a few per cent where the motion covers the speeds that they need.
+The balance M x'' + B x' + K x + load = A_a P_a - A_b P_b - friction is averaged with test functions between two
+reversals, where friction's sign is known and a sensor's play and lag hardly matter. The form, and the terms together
+with it, are chosen by the Bayesian information criterion over all small subsets. Errors of the valve's flow do not
+matter. Values are accurate to a few per cent if the motion covers the speeds that they need.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ from eha_core.identification.segments import smooth
 from eha_core.weak_form.grid import HOPS, Grid, make_grid
 
 HALF_WIDTH = 0.03
-"""s; of the test functions: short enough to fit between two reversals."""
+"""s; half width of the test functions, short enough to fit between two reversals."""
 
 SPANS, LESS = (HALF_WIDTH, 0.5 * HALF_WIDTH), 0.8
-"""s over which the speed is smoothed; the second where it leaves less than this share of the first's residual variance
-(by development rigs: 0.14 to 0.78 where the piston sticks and slips within a test function, 0.9 to 1.2 elsewhere, where
-the shorter span only adds noise to the speed)."""
+"""s over which the speed is smoothed; the second if its residual variance is less than this share of the first's (on
+development rigs 0.14 to 0.78 where the piston sticks and slips within a test function, 0.9 to 1.2 elsewhere, where the
+shorter span only adds noise to the speed)."""
 
 MOVING = 0.02
 NOISE_TIMES = 4.0
-"""The piston moves where its speed exceeds this share of its usual speed, and so many times its estimate's noise."""
+"""The piston moves where its speed exceeds MOVING of its standard deviation, and this multiple of its noise."""
 
 FEWEST = 60
-"""Test functions between reversals that an estimate needs; with fewer there is none."""
+"""Fewest test functions between reversals for an estimate."""
 
 MOST_TERMS = 3
-"""Terms besides the balance's own that are tried together (assumed)."""
+"""Most terms besides the balance's own that are tried together (assumed)."""
 
 CLEAR = 10.0
-"""What dry friction must lower the information criterion by: very strong evidence by the usual scale."""
+"""Reduction of the information criterion required of dry friction: very strong evidence by the usual scale."""
 
 STRIBECK_SPEEDS = np.geomspace(0.02, 1.5, 20)
 """Stribeck velocities that are tried, in standard deviations of the speed."""
@@ -51,8 +51,8 @@ MOST_OF_LOAD = 0.5
 
 @dataclass(frozen=True)
 class DryFriction:
-    """The form (an effect's id, "" for none) and values by short parameter name [SI]; `clear`: how much lower the
-    criterion is than the next form's."""
+    """The form (an effect's id, "" for none) and values by short parameter name [SI]; `clear`: by how much the
+    criterion is below the next form's."""
 
     form: str
     values: Mapping[str, float]
@@ -66,7 +66,7 @@ class _Form:
     stribeck_velocity: float = 0.0
 
     def values(self, found: Array, area: float) -> dict[str, float] | None:
-        """The effect's parameters, None where they have the wrong sign."""
+        """The effect's parameters; None where they have the wrong sign."""
         if self.effect == "coulomb_friction" and found[0] > 0.0:
             return {"force": float(found[0])}
         if self.effect == "load_friction" and 0.0 < found[0] < MOST_OF_LOAD * area:
@@ -81,8 +81,9 @@ class _Form:
 
 
 def dry_friction(observation: Observation, values: Mapping[str, float]) -> tuple[DryFriction, ...]:
-    """The forms of dry friction that the force balance of a recording allows, the most probable first; no friction is
-    one of them. Empty where position or a pressure was not measured, or the piston hardly moves in one direction."""
+    """The forms of dry friction compatible with the force balance of a recording, the most probable first; one of them
+    is no friction. Empty without position or a pressure, or where there are too few test functions between reversals.
+    """
     measured = [observation.channel(name) for name in ("position", "pressure_a", "pressure_b")]
     if any(channel is None for channel in measured):
         return ()
@@ -94,9 +95,8 @@ def dry_friction(observation: Observation, values: Mapping[str, float]) -> tuple
 def _over_a_span(
     span: float, duration: float, channels: Sequence[Measured], values: Mapping[str, float]
 ) -> tuple[tuple[DryFriction, ...], float]:
-    """The forms that the balance of position and both pressures allows, speeds smoothed over a span [s], and the
-    residual's variance in the most probable one [N^2], raised by what its terms cost; none and infinity where too few
-    test functions are left."""
+    """The forms compatible with the force balance, with speeds smoothed over a span [s], and the residual variance of
+    the most probable one [N^2], including the cost of its terms; empty and infinity with too few test functions."""
     spacing = max(float(np.median(np.diff(channel.time))) for channel in channels)
     grid = make_grid(duration, spacing, channels, HALF_WIDTH)
     x, a, b = (np.interp(grid.time, channel.time, channel.values) for channel in channels)
@@ -125,7 +125,7 @@ def _over_a_span(
         if found is not None and (form.effect not in best or criterion < best[form.effect][0]):
             best[form.effect] = criterion, DryFriction(form.effect, found, 0.0)
     if best["coulomb_friction"][0] > best[""][0] - CLEAR if "coulomb_friction" in best else True:
-        # friction that follows the load is a term of the balance's own left side: alone it proves nothing
+        # friction proportional to the load is also a term of the balance's left side: alone it is no evidence
         best.pop("load_friction", None)
     ranked = sorted(best.values(), key=lambda item: item[0])
     least = ranked[0][0]
@@ -134,9 +134,9 @@ def _over_a_span(
 
 
 def _between_reversals(grid: Grid, velocity: Array, noise: float, spacing: float, span: float) -> NDArray[np.bool_]:
-    """Which test functions lie where the piston, whose speed is smoothed over a span [s], moves in one direction."""
+    """Flags of the test functions under which the piston moves in one direction; the speed is smoothed over `span`."""
     samples = max(5, round(span / spacing))
-    of_speed = noise / spacing * np.sqrt(12.0 / samples**3)  # of a slope fitted to so many samples
+    of_speed = noise / spacing * np.sqrt(12.0 / samples**3)  # noise of a slope fitted to these samples
     threshold = max(NOISE_TIMES * of_speed, MOVING * float(np.std(velocity)))
     windows = np.lib.stride_tricks.sliding_window_view(velocity, len(grid.weight))[:: len(grid.weight) // HOPS]
     moving = (windows.min(axis=1) > threshold) | (windows.max(axis=1) < -threshold)
@@ -144,7 +144,7 @@ def _between_reversals(grid: Grid, velocity: Array, noise: float, spacing: float
 
 
 def _forms(grid: Grid, velocity: Array, difference: Array) -> Iterator[_Form]:
-    """No friction, and each form with the columns that its sizes multiply."""
+    """No friction, and each form with the regression columns of its values."""
     sign = np.sign(velocity)
     steady = grid.average(sign)
     yield _Form("", ())

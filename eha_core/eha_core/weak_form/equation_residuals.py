@@ -1,9 +1,9 @@
-"""The equations held against the measured channels themselves, without simulating: the weak form.
+"""The equations' residuals with the measured channels, without simulation: the weak form.
 
-Each equation is multiplied by a test function in time and integrated; by parts, derivatives fall on the test function
-and no measured channel is differentiated. What its coefficients, regressed anew, cannot bring to zero is the equation's
-residual. A wrong flow equation leaves the force equation's residual at the noise, and the other way round, so the
-residuals tell the equations apart before any hypothesis is made. After D. A. Messenger and D. M. Bortz, "Weak SINDy",
+Each equation is multiplied by a test function in time and integrated by parts, so that derivatives act on the test
+function and no measured channel is differentiated. Its coefficients are regressed; what remains is the equation's
+residual. A wrong flow equation does not affect the force equation's residual, and vice versa, so that the residuals
+show which equation is wrong before any hypothesis is made. After D. A. Messenger and D. M. Bortz, "Weak SINDy",
 Multiscale Modeling & Simulation 19 (2021).
 """
 
@@ -23,21 +23,21 @@ from eha_core.plant import COLUMNS
 from eha_core.weak_form.grid import Grid, make_grid
 
 SPEED_SPAN = 0.04
-"""s; the position is smoothed over this to give the speed that laws are over."""
+"""s over which the position is smoothed for the speed that laws depend on."""
 
 EQUATIONS = ("force", "continuity_a", "continuity_b")
 
 
 @dataclass(frozen=True)
 class EquationResidual:
-    """What one equation lacks, averaged with each test function.
+    """The missing part of one equation, averaged with each test function.
 
     Attributes:
         equation: one of EQUATIONS.
         time: (n,) of the test functions' centres [s].
-        missing: (n,) the force on the piston [N], or the flow into the chamber [m^3/s], that its terms do not bring.
-        noise: standard deviation of `missing` that the sensors' noise makes.
-        terms: (n, k) the terms whose coefficients were regressed; `missing` has no part along them.
+        missing: (n,) the force on the piston [N], or the flow into the chamber [m^3/s], that its terms do not explain.
+        noise: standard deviation of `missing` due to the sensors' noise.
+        terms: (n, k) the terms whose coefficients were regressed; `missing` is orthogonal to them.
         grid: the grid and its test functions.
         states: position [m], velocity [m/s], pressure difference [Pa], spool position [A] and time [s] on the grid,
             and in a chamber's equation the `flow_an_ampere` of opening [m^3/(s A)] into it.
@@ -53,7 +53,7 @@ class EquationResidual:
 
     @property
     def residual(self) -> Array:
-        """(n,) what is missing in units of its noise."""
+        """(n,) the missing part in units of its noise."""
         freedom = max(1, len(self.missing) - self.terms.shape[1])
         return np.asarray(self.missing / self.noise * np.sqrt(len(self.missing) / freedom))
 
@@ -64,10 +64,10 @@ class EquationResidual:
 
 
 def smallest(alternatives: Sequence[tuple[EquationResidual, ...]]) -> tuple[EquationResidual, ...]:
-    """Of residuals made with several models, the smallest of the force equation and the smallest pair of continuities.
+    """Of residuals with several models, the smallest of the force equation and the smallest pair of continuities.
 
-    What is not regressed (areas, pressures of the lines, stroke, the valve's motion) comes from the model. Fitted
-    values are right where nothing is missing, and may be biased where something is.
+    The quantities that are not regressed (areas, pressures of the lines, stroke, the valve's motion) are the model's.
+    Fitted values are right if no physics is missing, and may be biased otherwise.
     """
     found = [residuals for residuals in alternatives if residuals]
     if not found:
@@ -80,7 +80,7 @@ def smallest(alternatives: Sequence[tuple[EquationResidual, ...]]) -> tuple[Equa
 
 
 def equation_residuals(observation: Observation, shooting: Shooting, model: Fit) -> tuple[EquationResidual, ...]:
-    """The residual of every equation whose channels were measured; none where position or a pressure is missing."""
+    """The residual of every equation whose channels were measured; empty without position or a pressure."""
     pressure_a, pressure_b = observation.channel("pressure_a"), observation.channel("pressure_b")
     position = observation.channel("position")
     if position is None or pressure_a is None or pressure_b is None:
@@ -133,7 +133,7 @@ def force_residual(
     noises: tuple[float, ...],
     values: Mapping[str, float],
 ) -> EquationResidual:
-    """The piston's: M x'' + B x' + K x - (A_a P_a - A_b P_b), its coefficients free, is the force that is missing.
+    """The piston's: the missing force is M x'' + B x' + K x - (A_a P_a - A_b P_b), with free coefficients.
 
     `a` and `b`: pressures on the grid [Pa]; `noises`: of position [m] and of both pressures [Pa].
     """
@@ -161,10 +161,10 @@ def continuity_residual(
     leaked: Array | None = None,
     given: Array | None = None,
 ) -> EquationResidual:
-    """A chamber's: what it is swept by, less the valve's flow, compression and leakage, is the flow that is missing.
+    """A chamber's: the missing flow is the swept flow minus the valve's flow, compression and leakage.
 
-    `leaked`: the flow from chamber A to B [m^3/s] that was turned on while recording. `given`: what enters it [m^3/s]
-    where no valve's spool makes it.
+    `leaked`: the flow from chamber A to B [m^3/s] of a leak that was opened while recording. `given`: the flow into the
+    chamber [m^3/s] where no valve's spool determines it.
     """
     x, speed, spool = states["position"], states["velocity"], states["spool position"]
     sign = 1.0 if side == "a" else -1.0

@@ -1,4 +1,4 @@
-"""Where the weak form's test functions stand in a recording, and which of them span no gap."""
+"""The places of the weak form's test functions in a recording, and which of them contain no gap."""
 
 from __future__ import annotations
 
@@ -13,17 +13,16 @@ from eha_core.identification.observation import Measured
 from eha_core.weak_form.weighting import HALF_WIDTH, weighting
 
 HOPS = 4
-"""Test functions that begin within the length of one: 33 a second, so that a force of 10 Hz is not taken for a slower
-one."""
+"""Test functions that begin within the length of one: 33 per second, so that a force of 10 Hz is not aliased."""
 
 GAP = 0.01
-"""s without a sample of a channel that a test function may not span: a straight line across is no measurement."""
+"""s; longest gap of a channel under a test function: a longer straight line is not a measurement."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """An even grid of times [s], and a test function with its derivatives on it; `gap_free` marks the places where no
-    channel has a gap under it."""
+    """An even grid of times [s], and a test function with its derivatives on it; `gap_free` flags the places without a
+    gap of any channel under it."""
 
     time: Array
     step: float
@@ -54,8 +53,8 @@ class Grid:
 
 
 def make_grid(duration: float, step: float, channels: Sequence[Measured], half_width: float = HALF_WIDTH) -> Grid:
-    """Test functions of `half_width` [s] all over a duration [s], on a grid of `step` [s], for channels that may have
-    gaps."""
+    """Test functions of `half_width` [s] over the whole duration [s], on a grid of `step` [s], for channels that may
+    have gaps."""
     sampled = weighting(step, half_width)
     half = len(sampled.weight) // 2
     time = np.asarray(np.arange(0.0, duration, step), dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Terms that an engineer would write a law with, over one variable; those with a number inside are searched for."""
+"""Terms in which an engineer would write a law of one variable; those with an inner parameter are searched."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ BELLS = (0.05, 0.1, 0.2, 0.4)
 """Widths of a bell that are tried, as shares of the range."""
 
 PLACES = np.linspace(0.1, 0.9, 17)
-"""Where a contact or a bell is tried, as shares of the range."""
+"""Places of a contact or a bell that are tried, as shares of the range."""
 
 EVALUATIONS = 40
-"""Of a term's criterion, to make its numbers exact: a simplex then ends within a thousandth of its first step."""
+"""Evaluations that refine a term's inner parameters: a simplex ends within a thousandth of its first step."""
 
 FREQUENCY_STEP = 0.2
-"""Cycles over the whole range from one frequency that is tried to the next: a peak is about one wide."""
+"""Step between the frequencies that are tried, in cycles over the range: a peak is about one wide."""
 
 
 def powers(symbol: str) -> tuple[Term, ...]:
-    """The terms without a number inside: constant, powers, drag, and the root of turbulent flow."""
+    """The terms without an inner parameter: constant, powers, drag, and the root of turbulent flow."""
     bare = symbol.strip("()")
     return (
         Term("1", (np.ones_like,)),
@@ -41,7 +41,7 @@ def powers(symbol: str) -> tuple[Term, ...]:
 
 
 def searched(data: RegressionData, symbol: str) -> tuple[Term, ...]:
-    """A smooth sign, a contact and a bell, each where it explains most."""
+    """A smooth sign, a contact and a bell, each with the parameters that explain most."""
     low, reach = float(np.min(data.at)), float(np.ptp(data.at))
     largest = float(np.max(np.abs(data.at)))
     places = [low + share * reach for share in PLACES]
@@ -67,9 +67,9 @@ def searched(data: RegressionData, symbol: str) -> tuple[Term, ...]:
 
 
 def best_wave(data: RegressionData, symbol: str, slowest: float, fastest: float, pitch: bool) -> Term:
-    """The sine whose frequency explains most: the peak of the periodogram, made exact.
+    """The sine whose frequency explains most: the refined peak of the periodogram.
 
-    `slowest` and `fastest`: cycles a unit of the variable. `pitch`: write the wave's length and not its frequency.
+    `slowest` and `fastest`: cycles per unit of the variable. `pitch`: write the wavelength instead of the frequency.
     """
 
     def wave(frequency: float) -> Term:
@@ -94,7 +94,7 @@ def _best(
     starts: Iterable[tuple[float, ...]],
     steps: tuple[float, ...],
 ) -> Term:
-    """The member of a family that explains most beside a constant and a line: the best start, made exact."""
+    """The member of a family that explains most together with a constant and a line: the best start, refined."""
     beside = powers(symbol)[:2]
 
     def criterion(numbers: Sequence[float]) -> float:

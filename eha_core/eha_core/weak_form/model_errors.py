@@ -1,8 +1,8 @@
-"""Which of the model's equations a measurement departs from, beside a simulation of the same command.
+"""The residuals of the model's equations in a measurement, compared with a simulation of the same command.
 
-With e = measured - simulated, the difference of the two sets of equations, linear in e, is held against the measured
-channels in its weak form (see `weighting`). What one equation lacks is then left in that equation alone, in units of
-what the sensors' noise leaves in it, and where the simulation was started from cancels out.
+With e = measured - simulated, the difference of the two sets of equations, linear in e, is evaluated in its weak form
+(see `weighting`). The missing part of an equation then appears in that equation alone, in units of the sensors' noise
+in it, and the simulation's initial state cancels out.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def equation_residuals(
     parameters: Mapping[str, float],
     period: float,
 ) -> dict[str, Array]:
-    """What each of EQUATIONS lacks over time, in units of its noise.
+    """The residual of each of EQUATIONS over time, in units of its noise.
 
     Args:
         errors: measured minus simulated of each of CHANNELS, (n,).
@@ -38,8 +38,7 @@ def equation_residuals(
         model: the simulated rows, n of them, `period` [s] apart.
         parameters: the model's.
 
-    Returns (n - 2 half,) values each, at the centres of the test
-    functions; nothing where the rows are shorter than one.
+    Returns (n - 2 half,) values each, at the centres of the test functions; empty where the rows are shorter than one.
     """
     weight, slope, curvature = weighting(period)
     if len(model.time) < len(weight):
@@ -77,7 +76,7 @@ def equation_residuals(
 
 
 def _flow_changes(model: Trajectory, a: Array, b: Array) -> tuple[Array, Array]:
-    """How much more flows into port A and out of port B at the measured pressures than at the simulated ones."""
+    """The flows into port A and out of port B at the measured pressures, minus those at the simulated ones."""
     opens = model.spool_position >= 0.0
     drop_a = np.where(opens, model.supply_pressure - model.pressure_a, model.pressure_a - model.return_pressure)
     drop_b = np.where(opens, model.pressure_b - model.return_pressure, model.supply_pressure - model.pressure_b)

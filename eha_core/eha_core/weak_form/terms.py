@@ -1,8 +1,8 @@
-"""The fewest terms that explain what was seen of an unknown function.
+"""Sparse regression: the fewest terms that explain the observations of an unknown function.
 
-PySINDy's optimisers propose: FROLS adds terms one after the other, SSR takes them away. Which of their proposals stands
-is decided by the Bayesian information criterion, with every number in a term paid for. After B. de Silva et al.,
-"PySINDy", Journal of Open Source Software 5 (2020), and S. A. Billings, "Nonlinear System Identification" (2013).
+PySINDy's optimisers propose sets of terms: FROLS adds terms one by one, SSR removes them. The Bayesian information
+criterion chooses among them and counts every parameter of a term. After B. de Silva et al., "PySINDy", Journal of Open
+Source Software 5 (2020), and S. A. Billings, "Nonlinear System Identification" (2013).
 """
 
 from __future__ import annotations
@@ -23,23 +23,24 @@ Function = Callable[[Array], Array]
 
 MOST_TERMS = 4
 WORTH = 10.0
-"""What another term must take off the Bayesian information criterion: very strong evidence by the usual scale ..."""
+"""Reduction of the Bayesian information criterion required of another term: very strong evidence by the usual scale."""
 
 SLIGHT = 0.005
-"""... and the share of the variance that it must take away: what is measured is never as exact as it is many."""
+"""Share of the variance that it must also explain: many samples do not make a measurement more exact."""
 
 PRECISION = 1e-5
-"""Share of the variance below which nothing is asked to be explained: 0.3 % of the amplitude."""
+"""Share of the variance that need not be explained: 0.3 % of the amplitude."""
 
 ALIKE = 1.0 - 1e-8
-"""Correlation from which two terms are one."""
+"""Correlation from which two terms count as one."""
 
 
 @dataclass(frozen=True)
 class Term:
-    """A function of the variable with free coefficients: `text` as it is written, `parts` one for each coefficient.
+    """A function of the variable with free coefficients: `text` as written, `parts` one for each coefficient.
 
-    A sine has two parts, sine and cosine, and `text` is its argument. `searched`: numbers inside that were searched.
+    A sine has two parts, sine and cosine, and `text` is its argument. `searched`: number of inner parameters that were
+    searched.
     """
 
     text: str
@@ -57,10 +58,10 @@ class Term:
 
 @dataclass(frozen=True)
 class RegressionData:
-    """What was seen of an unknown function of `at` (times,).
+    """Observations of an unknown function of `at` (times,).
 
-    `rows` turns any function's values (..., times) into what would be seen of them (..., n), of which `seen` (n,) was
-    seen. `total`: the sum of squares that is to be explained. `independent`: how many of the n count.
+    `rows` maps any function's values (..., times) to observations (..., n); `seen` (n,) are the actual ones. `total`:
+    the sum of squares to be explained. `independent`: the number of independent observations among the n.
     """
 
     at: Array
@@ -72,7 +73,7 @@ class RegressionData:
 
 @dataclass(frozen=True)
 class Sum:
-    """Terms with the coefficients of each, the share of the variance that they explain, and the criterion of that."""
+    """Terms with their coefficients, the share of the variance that they explain, and their information criterion."""
 
     terms: tuple[Term, ...]
     coefficients: tuple[tuple[float, ...], ...]
@@ -94,7 +95,7 @@ class Sum:
 
 
 def sparsest(data: RegressionData, terms: Sequence[Term]) -> Sum:
-    """The sum of fewest terms that is not clearly worse than a longer one; of no term where none is worth it."""
+    """The sum of fewest terms that is not clearly worse than a longer one; without terms where none is significant."""
     columns = [_columns(data, term) for term in terms]
     sums = [
         _solved(data, [terms[k] for k in support], [columns[k] for k in support])
@@ -118,7 +119,7 @@ def fitted(data: RegressionData, terms: Sequence[Term]) -> Sum:
 
 
 def _columns(data: RegressionData, term: Term) -> Array:
-    """What would be seen of each part of a term: (parts, n)."""
+    """The observations of each part of a term: (parts, n)."""
     return data.rows(np.stack([part(data.at) for part in term.parts]))
 
 
@@ -140,7 +141,7 @@ def _solved(data: RegressionData, terms: Sequence[Term], columns: Sequence[Array
 
 
 def _supports(data: RegressionData, columns: Sequence[Array]) -> list[tuple[int, ...]]:
-    """Sets of terms to try: each alone, each pair, and the longer ones that greedy optimisers pass through."""
+    """Sets of terms to try: each alone, each pair, and the longer ones that greedy optimisers visit."""
     from pysindy.optimizers import FROLS, SSR  # takes a second to import, and few recordings need it
 
     owners = [k for k, parts in enumerate(columns) for _ in parts]
@@ -163,7 +164,7 @@ def _supports(data: RegressionData, columns: Sequence[Array]) -> list[tuple[int,
 
 
 def _apart(unit: Array) -> list[int]:
-    """Which columns (k, n) of unit length are there, and are not another one before them once more."""
+    """Indices of the columns (k, n) of unit length that are not zero and not a duplicate of an earlier one."""
     alike = np.abs(unit @ unit.T)
     found: list[int] = []
     for k in range(len(unit)):
@@ -173,9 +174,9 @@ def _apart(unit: Array) -> list[int]:
 
 
 def _passed(optimiser: Any, columns: Array, target: Array) -> Iterator[NDArray[np.intp]]:
-    """The sets of columns on an optimiser's way; none where it meets columns that depend on each other."""
+    """The sets of columns that an optimiser visits; empty where columns are linearly dependent."""
     with warnings.catch_warnings():
-        # columns that nearly depend on each other are expected: the criterion judges what comes of them
+        # nearly dependent columns are expected: the criterion decides on the result
         warnings.simplefilter("ignore")
         try:
             optimiser.fit(columns, target)

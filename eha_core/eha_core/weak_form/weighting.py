@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 HALF_WIDTH = 0.06
-"""s; wide enough to average noise, narrow against a reversal's duration."""
+"""s; wide enough to average noise, narrow compared with a reversal's duration."""
 
 FEWEST = 8
-"""Samples on either side of the centre, at least."""
+"""Fewest samples on either side of the centre."""
 
 
 class Weighting(NamedTuple):
