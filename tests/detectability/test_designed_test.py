@@ -89,7 +89,7 @@ def test_the_largest_amplitude_meets_the_limit_that_comes_first() -> None:
 def test_a_limit_that_is_passed_at_rest_and_a_name_that_nothing_has_are_refused() -> None:
     with pytest.raises(EhaError, match="pressure: at rest a rig within the priors is at"):
         design(nominal_of({}), NAMES, replace(LIMITS, pressure=12e6), planned(duration=2.0))
-    with pytest.raises(ParameterError, match="--for coulomb_frictoin: nothing .* did you mean coulomb_friction"):
+    with pytest.raises(ParameterError, match="--for coulomb_frictoin: this test cannot show it; did you mean coulomb_"):
         design(nominal_of({}), ("coulomb_frictoin",), LIMITS, planned(duration=2.0))
 
 
