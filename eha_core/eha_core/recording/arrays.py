@@ -1,4 +1,4 @@
-"""A recording made of arrays or of a data frame, checked and brought to the model's units as a file's is."""
+"""A recording from arrays or a data frame, checked and converted to the model's units like one from a file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from eha_core.recording.raw import RawRecording
 from eha_core.recording.samples import Samples
 
 IN_MEMORY = "in memory"
-"""What takes the place of the path of a recording that no file holds."""
+"""In place of the path of a recording that is not in a file."""
 
 
 def from_arrays(

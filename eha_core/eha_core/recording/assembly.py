@@ -1,4 +1,4 @@
-"""Puts the samples of channels together: in order, in the model's units, on one time axis."""
+"""Assembles the samples of channels: in order, in the model's units, on one time axis."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from eha_core.recording.units import in_model_units
 from eha_core.recording.writer import PARAMETERS_RECORD
 
 STANDARD_ATMOSPHERE = 101325.0
-"""Taken from absolute pressures where the recording does not say `atmospheric_pressure` [Pa]."""
+"""Subtracted from absolute pressures where the recording has no `atmospheric_pressure` [Pa]."""
 
 PARTS = "plant."
-"""How the names of stored parameters begin that say which parts the actuator has."""
+"""Prefix of the stored parameters that name the actuator's parts."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Channel:
         unit: SI unit as text.
         topic: topic, or CSV column, that it came from.
         type: message type, or "csv".
-        rule: how it was taken from there; None where it was no file's.
+        rule: how it was read from there; None where it is not from a file.
     """
 
     name: str
@@ -49,18 +49,18 @@ class Channel:
 
 @dataclass(frozen=True)
 class Assembled:
-    """Channels on one time axis, and what was said about them.
+    """Channels on one time axis, with parameters and remarks.
 
     Attributes:
         path: where it was read from.
         channels: what was measured, by channel name, in the order of CHANNEL_KINDS.
         start_stamp: the first stamp of any channel [ns].
         duration: from the first to the last sample of any channel [s].
-        parameters: the nominal parameters that the recorder stored, by name [SI]; empty where it stored none.
+        parameters: the nominal parameters that the recorder stored, by name [SI]; may be empty.
         leakage_changes: (time [s], coefficient [m^3/(s Pa)]) of each message on `internal_leakage`.
         damaged: which part of a damaged file could be read; None where the file is sound.
-        remarks: what was kept out or put right while reading, one line each.
-        parts: the actuator's parts by kind, as a nominal file has them under `plant:`; empty where none were stored.
+        remarks: exclusions and corrections while reading, one line each.
+        parts: the actuator's parts by kind, as a nominal file has them under `plant:`; may be empty.
     """
 
     path: Path
@@ -141,7 +141,7 @@ def _parameters(raw: RawRecording, remarks: list[str]) -> dict[str, float]:
 
 
 def _parts(raw: RawRecording) -> dict[str, str]:
-    """Which parts the recorder said that the actuator has, by kind."""
+    """The actuator's parts that the recorder stored, by kind."""
     stored = raw.metadata.get(PARAMETERS_RECORD, {})
     return {name.removeprefix(PARTS): part for name, part in stored.items() if name.startswith(PARTS)}
 

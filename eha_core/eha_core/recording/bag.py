@@ -1,4 +1,4 @@
-"""Opens what holds recorded messages: an .mcap file, a rosbag2 folder with one or more files, or a .db3 file."""
+"""Opens files of recorded messages: an .mcap file, a rosbag2 folder with one or more files, or a .db3 file."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _READ_ONLY = apsw.SQLITE_OPEN_READONLY | apsw.SQLITE_OPEN_URI
 _COMPUTED = re.compile(r"generated\s+always|\bas\s*\(|\bvirtual\s+table\b", re.IGNORECASE)
 _ENDINGS = ("*.mcap", "*.db3", f"*.mcap{ENDING}", f"*.db3{ENDING}")
 _Read = TypeVar("_Read")
-_ROW = 32  # bytes of a row beside its message
+_ROW = 32  # bytes of a row in addition to its message
 
 
 def bag_topics(path: Path) -> dict[str, RawTopic]:
@@ -59,7 +59,7 @@ def read_bag(path: Path, sinks: Sinks) -> RawRecording:
 
 
 def bag_extent(path: Path) -> float | None:
-    """s from the first to the last message, where the files say so without being read."""
+    """Time from the first to the last message [s], where the files state it without being read."""
     extents = []
     for file in _files_of(path) if path.is_dir() else [path]:
         if file.suffix in (".db3", ENDING) or not file.is_file():
@@ -77,7 +77,7 @@ def bag_size(path: Path) -> int:
 
 
 def bag_metadata(path: Path) -> dict[str, dict[str, str]]:
-    """The metadata records of a file or a folder that can be had without reading the messages."""
+    """The metadata records of a file or a folder that are accessible without reading the messages."""
     found: dict[str, dict[str, str]] = {}
     for file in _files_of(path) if path.is_dir() else [path]:
         if file.suffix not in (".db3", ENDING) and file.is_file():
@@ -95,7 +95,7 @@ def _read_file(path: Path, sinks: Sinks) -> RawRecording:
 
 
 def _of_file(path: Path, read: Callable[[Path], _Read]) -> _Read:
-    """What is read of a file, unpacked where it is packed as a whole; messages name the file that was given."""
+    """What `read` returns of a file, or of its uncompressed copy; messages name the file that was given."""
     plain = plain_file(path)
     try:
         return read(plain)
@@ -106,7 +106,7 @@ def _of_file(path: Path, read: Callable[[Path], _Read]) -> _Read:
 
 
 def _files_of(folder: Path) -> list[Path]:
-    """The files of a rosbag2 folder in order: those metadata.yaml lists; without it, those that differ by number."""
+    """The files of a rosbag2 folder in order: those in metadata.yaml; without it, those that differ by number."""
     description = folder / "metadata.yaml"
     if description.is_file():
         try:
@@ -190,7 +190,7 @@ def _read_sqlite(path: Path, sinks: Sinks) -> RawRecording:
 
 
 def _refuse_programs(path: Path) -> None:
-    """Raise RecordingError for a database that computes what it gives, without end perhaps, in place of holding it."""
+    """Raise RecordingError for a database that computes values (views, triggers and the like), perhaps without end."""
     connection = apsw.Connection(f"file:{quote(str(path))}?immutable=1", flags=_READ_ONLY)
     try:
         for name, kind, definition in connection.execute("SELECT name, type, sql FROM sqlite_master"):

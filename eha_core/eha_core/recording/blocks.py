@@ -1,4 +1,4 @@
-"""A long record, block by block: each block a short recording, and no more of the record in memory than a few."""
+"""A long record, block by block: each block is a short recording, and only a few are in memory at a time."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from eha_core.recording.samples import Samples, put_in_order
 from eha_core.recording.topics_file import TopicsFile
 
 PIECE = 30.0
-"""s of a file that are gathered before blocks are made of them (assumed; blocks are of 10 s)."""
+"""s of a file that are collected before they are cut into blocks (assumed; blocks are of 10 s)."""
 MOST_HELD = 1_000_000
-"""Messages that are gathered at most, whatever their times say: 16 MB of numbers (assumed)."""
+"""Most messages that are collected, whatever their times: 16 MB of numbers (assumed)."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class Block:
     Attributes:
         number: counted from 0.
         start, end: [s] of the record.
-        recording: what it holds, in its own time; None where it holds nothing that can be used.
-        problem: why, then.
+        recording: its channels, in its own time; None where nothing in it is usable.
+        problem: the reason in that case.
     """
 
     number: int
@@ -50,9 +50,9 @@ Progress = Callable[[str], None]
 
 
 class Blocks(Protocol):
-    """A record that can be gone through again and again.
+    """A record that can be read block by block, repeatedly.
 
-    `duration` [s], `remarks` and `damaged` are known once it was gone through.
+    `duration` [s], `remarks` and `damaged` are known after the first pass.
     """
 
     path: Path
@@ -61,11 +61,11 @@ class Blocks(Protocol):
     damaged: str | None
 
     def each(self, take: Take, wanted: Container[int] | None = None, progress: Progress = lambda _: None) -> None:
-        """Hand every block, or those that are wanted, to `take`, in the order of time."""
+        """Pass every block, or those that are wanted, to `take`, in the order of time."""
 
 
 class BlocksInMemory:
-    """The blocks of a recording that is in memory anyway."""
+    """The blocks of a recording that is in memory."""
 
     def __init__(self, recording: Recording, length: float) -> None:
         self.path, self.duration = recording.path, recording.duration
@@ -86,7 +86,7 @@ class BlocksInMemory:
 
 
 class BlocksOfFile:
-    """The blocks of a file or folder of messages, read anew each time; only so much is held as a few blocks take.
+    """The blocks of a file or folder of messages, read again at each pass; only a few are in memory at a time.
 
     Raises RecordingError as `read_recording` does.
     """
@@ -119,7 +119,7 @@ class BlocksOfFile:
 
 
 class _Gate:
-    """Has what was gathered taken away whenever a piece of the file has passed."""
+    """Calls `gather` whenever a piece of the file was read."""
 
     def __init__(self, gather: Callable[[], None]) -> None:
         self._gather = gather
@@ -136,7 +136,7 @@ class _Gate:
 
 
 class _Watched:
-    """A topic's sink that tells the gate what comes."""
+    """A topic's sink that reports its messages to the gate."""
 
     def __init__(self, sink: Sink, gate: _Gate) -> None:
         self._sink, self._gate = sink, gate
@@ -154,7 +154,7 @@ class _Watched:
 
 
 class _Cutter:
-    """Cuts pieces of a file, as they come, into blocks of one length counted from the record's first stamp."""
+    """Cuts pieces of a file, as they arrive, into blocks of equal length, counted from the record's first stamp."""
 
     def __init__(
         self,
@@ -178,11 +178,11 @@ class _Cutter:
 
     @property
     def seen(self) -> float:
-        """s of the record so far."""
+        """Duration of the record so far [s]."""
         return (self._latest - self.start) / 1e9 if self.start is not None else 0.0
 
     def add(self, samples: Mapping[str, Samples], remarks: Sequence[str]) -> None:
-        """Take a piece; blocks that the piece before it has passed are complete."""
+        """Take a piece; blocks that end before the piece are complete."""
         self._note(remarks)
         changes = samples.get(LEAKAGE_TOPIC)
         for name in (name for name in CHANNEL_KINDS if name in samples):
@@ -204,12 +204,12 @@ class _Cutter:
             self._emit()
 
     def finish(self) -> None:
-        """Make blocks of the rest."""
+        """Cut the rest into blocks."""
         while self.start is not None and self.start + self._next * self._length < self._latest:
             self._emit()
 
     def remarks(self) -> Iterator[str]:
-        """What was left out while reading, each kind once."""
+        """What was excluded while reading, each kind once."""
         for alike in self._remarks.values():
             yield alike[0] + (f" (and so in {len(alike) - 1} more places)" if len(alike) > 1 else "")
 

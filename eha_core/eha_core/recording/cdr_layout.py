@@ -1,4 +1,4 @@
-"""Where the numbers of a CDR message lie: read once from one message, true of all others of the same structure."""
+"""The byte offsets of a CDR message's numbers: read from one message, valid for all others of the same structure."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys.store import Typestore
 
 ENCAPSULATION = 4
-"""Bytes before the fields, from which alignment counts; the second tells the order of bytes."""
+"""Bytes before the fields; alignment counts from their end, and the second is the byte order."""
 MOST_PARTS = 2**14
-"""Numbers, sequences and texts of a message that are distinguished; a robot's whole introspection has 1,000."""
+"""Most numbers, sequences and texts of a message; a robot's whole introspection has 1,000."""
 _KINDS = {
     "bool": "u1", "byte": "u1", "octet": "u1", "char": "u1", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2",
     "int32": "i4", "uint32": "u4", "int64": "i8", "uint64": "u8", "float32": "f4", "float64": "f8",
@@ -22,7 +22,7 @@ _KINDS = {
 
 @dataclass(frozen=True)
 class Run:
-    """Numbers of one kind that lie side by side; `count` is None for a field that is one number."""
+    """Adjacent numbers of one kind; `count` is None for a field that is one number."""
 
     offset: int
     kind: str
@@ -43,8 +43,8 @@ class Layout:
         runs: its numbers by path, such as `header.stamp.sec`, `position` or `statistics[3].value`.
         texts: its texts by path, such as `name[0]`.
         elements: how many elements each sequence of parts has, by path.
-        marks: bytes that say how long texts and sequences are: where two messages agree in them, and in their length,
-            the layout holds for both.
+        marks: places of the bytes with the lengths of texts and sequences: if two messages agree in these, and in their
+            own length, the layout is valid for both.
         spans: first and last byte of each text by path.
     """
 
@@ -60,7 +60,7 @@ def layout_of(store: Typestore, type_name: str, data: bytes) -> Layout:
     """The layout of a message of a type that `store` knows.
 
     Raises:
-        ValueError: the bytes are no such message, or it has too many parts.
+        ValueError: the bytes are not such a message, or it has too many parts.
     """
     walk = _Walk(store.fielddefs, data)
     try:

@@ -1,4 +1,4 @@
-"""The channels that there are: what each means, in which SI unit."""
+"""The known channels: the meaning and SI unit of each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ChannelKind:
-    """What a channel name means: its unit, and the largest magnitude of any rig, a guard against wrong units."""
+    """A channel's name, unit and meaning, and the largest magnitude on any rig, which detects wrong units."""
 
     name: str
     unit: str
@@ -31,10 +31,10 @@ CHANNEL_KINDS: dict[str, ChannelKind] = {
         ChannelKind("voltage_command", "V", "voltage at the valve's coil", 1e4),
         ChannelKind("current", "A", "coil current", 1e3),
         ChannelKind("spool", "A", "spool position, ampere-equivalent", 1e3),
-        ChannelKind("flow_a", "m^3/s", "flow into chamber 1", 10.0),
-        ChannelKind("flow_b", "m^3/s", "flow out of chamber 2", 10.0),
-        ChannelKind("pressure_a", "Pa", "pressure of chamber 1, gauge", 1e9),
-        ChannelKind("pressure_b", "Pa", "pressure of chamber 2, gauge", 1e9),
+        ChannelKind("flow_a", "m^3/s", "flow into chamber A", 10.0),
+        ChannelKind("flow_b", "m^3/s", "flow out of chamber B", 10.0),
+        ChannelKind("pressure_a", "Pa", "pressure of chamber A, gauge", 1e9),
+        ChannelKind("pressure_b", "Pa", "pressure of chamber B, gauge", 1e9),
         ChannelKind("pump_speed", "rad/s", "speed of the pump that feeds the cylinder", 1e5),
         ChannelKind("supply_pressure", "Pa", "supply pressure, gauge", 1e9),
         ChannelKind("position", "m", "piston position", 50.0),

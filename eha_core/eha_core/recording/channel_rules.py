@@ -1,4 +1,4 @@
-"""How each channel is taken from what was recorded: a rule, and the rules of the default topics."""
+"""Rules for reading channels from topics or columns, and the rules of the default topics."""
 
 from __future__ import annotations
 
@@ -11,32 +11,30 @@ from eha_core.recording.channel_kinds import FloatArray
 
 ABSOLUTE, GAUGE = "absolute", "gauge"
 _BENT = 2
-"""Points up to which what a sensor gives is a straight line."""
+"""Points of a straight characteristic; with more it is a curve."""
 
 Points = tuple[tuple[float, "float | None"], ...]
 
 
 @dataclass(frozen=True)
 class ChannelRule:
-    """How one channel is taken from a topic's field or a table's column: value = scale * raw + offset.
+    """How one channel is read from a topic's field or a table's column: value = scale * raw + offset.
 
     Attributes:
-        topic: full topic name; None where the channel's default topic serves.
-        field: path inside the message, for example `position[0]`; None where the default field serves.
-        column: a table's column; None where it is named like the channel.
+        topic: full topic name; None for the channel's default topic.
+        field: path inside the message, for example `position[0]`; None for the default field.
+        column: a table's column; None where it has the channel's name.
         scale: factor to SI units.
         offset: added after scaling [SI unit].
-        reference: for pressures, "absolute" or "gauge"; None where nothing was said, which counts as absolute.
-        unit: the unit that was named, which `scale` and `reference` already stand for.
+        reference: for pressures, "absolute" or "gauge"; None where it is not stated, which counts as absolute.
+        unit: the stated unit, which `scale` and `reference` already include.
         points: (raw, value) pairs of a sensor, in the file's numbers and in `unit`; a line through two, a smooth
-            monotone curve through more; empty where raw numbers are values. A value that is open is None.
-        minus: a second column, taken from the first: of two one-sided commands.
-        time: the column of the channel's own times; None where the table's time, or that which the file states, serves.
-        rate: of the time, rows in a second where the table has no instants [Hz]; None where it has, NaN where it is
-            open.
-        day_first: of the time, whether the day stands before the month in dates that both orders fit; None where
-            nothing was said.
-        assumed: what of it was taken without a question, in words; empty where nothing was.
+            monotone curve through more; empty where raw numbers are values. An unknown value is None.
+        minus: a second column, subtracted from the first: of two one-sided commands.
+        time: the column of the channel's own times; None for the table's time, or the one that the file states.
+        rate: of the time, rows per second of a table without times [Hz]; None where it has times, NaN where unknown.
+        day_first: of the time, whether the day is before the month in ambiguous dates; None where it is not stated.
+        assumed: assumptions, in words; empty where there are none.
     """
 
     topic: str | None = None
@@ -55,11 +53,11 @@ class ChannelRule:
 
     @property
     def is_open(self) -> bool:
-        """Whether a number of the rule is still to be said."""
+        """Whether a number of the rule is still missing."""
         return any(value is None for _, value in self.points) or (self.rate is not None and not isfinite(self.rate))
 
     def in_si(self, raw: FloatArray) -> FloatArray:
-        """The values [SI] of what was recorded."""
+        """The values [SI] of recorded numbers."""
         return np.asarray(self.scale * (self._through_points(raw) if self.points else raw) + self.offset)
 
     def _through_points(self, raw: FloatArray) -> FloatArray:
@@ -91,11 +89,11 @@ STATE_RULES: dict[str, ChannelRule] = {
     "pressure_a": ChannelRule("state", "measured_pressure_a", reference=GAUGE),
     "pressure_b": ChannelRule("state", "measured_pressure_b", reference=GAUGE),
 }
-"""Taken from the simulator's logging topic where nothing else was recorded: its sensors' values, not its truth."""
+"""Rules of the simulator's logging topic, used where nothing else was recorded: its sensors' values, not its states."""
 
 
 def entry_text(rule: ChannelRule | None) -> str:
-    """A rule as a topics file's entry on one line; numbers that are open are `null`."""
+    """A rule as a topics file's entry on one line; missing numbers are `null`."""
     if rule is None:
         return "null"
     parts = []

@@ -1,4 +1,4 @@
-"""Brings the topics of a recording onto one clock: leaps are cut off, clocks that lie apart are set alike."""
+"""Brings the topics of a recording onto one clock: jumps are cut off, different clocks are aligned."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from eha_core.recording.samples import LONGEST_GAP
 from eha_core.recording.topic_columns import DecodedTopic
 
 _CLOCKS_DIFFER = 1_000_000_000  # [ns]: longer than any transport takes
-_LONE = 5  # messages of which less than half may be out of order without a leap of the clock
+_LONE = 5  # messages of which less than half may be out of order without a jump of the clock
 _LEAP_BACK = 100_000_000  # [ns]: further than messages overtake each other
 
 
 def without_leaps(topics: Sequence[DecodedTopic]) -> tuple[list[DecodedTopic], tuple[str, ...]]:
-    """Keep of all topics the stretch between two leaps of the stamps' clock that holds most, where it leapt.
+    """Keep the stretch with most messages between two jumps of the stamps' clock, the same for all topics.
 
-    A clock that was set leaves every topic with samples of both sides; were each to choose for itself, position and
-    pressure of different moments would meet.
+    After a clock was set, every topic has samples from both sides; if each topic chose its own side, samples of
+    different times would be combined.
     """
     edges = sorted({int(edge) for topic in topics if len(topic.logged) for edge in topic.logged[1:][_leaps(topic)]})
     if not edges:
@@ -40,7 +40,7 @@ def without_leaps(topics: Sequence[DecodedTopic]) -> tuple[list[DecodedTopic], t
 
 
 def _leaps(topic: DecodedTopic) -> NDArray[np.bool_]:
-    """Before which messages, but the first, the stamps leap, and stay there, though the recorder's clock goes on."""
+    """Flags of the messages, without the first, before which the stamps jump for good, though the log times do not."""
     steps, passed = np.diff(median_filter(topic.stamps, _LONE, mode="nearest")), np.diff(topic.logged)
     return np.asarray((passed >= 0) & ((steps < -_LEAP_BACK) | (steps - passed > LONGEST_GAP)))
 

@@ -1,6 +1,6 @@
-"""What a column's name says: which quantity, of which side, measured or wanted.
+"""The meaning of a column's name: which quantity, of which side, measured or a set point.
 
-A name is divided into words. Each word that is known says something; one that is not makes the whole less than sure.
+A name is divided into words. Each known word adds to the meaning; an unknown one makes it uncertain.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ _ASCII = str.maketrans(
     }
 )  # fmt: skip
 _MOST_LEVELS = 3
-"""Levels of a name that are read together."""
+"""Most levels of a name that are read together."""
 _COMMON = 0.6
-"""Share of the names of a file that begin with a word which then says nothing of each."""
+"""Share of a file's names that begin with a word, from which the word is ignored."""
 
 
 @dataclass(frozen=True)
 class Meaning:
-    """What a name says.
+    """The meaning of a name.
 
     Attributes:
-        channels: the channels that it may be; none where it says nothing, or something else.
-        quantity: the quantity that it names; empty where it names none.
-        is_word: whether a whole word names it, and not a symbol of one letter.
-        is_sure: whether every word of it is understood.
-        is_wanted: whether it is what is asked for, and not what is measured.
-        is_other: whether it is certainly no channel.
-        side: 1 or -1 where the name is of one of two opposite directions; else 0.
+        channels: the channels that it may be; empty where the name is meaningless or means something else.
+        quantity: the quantity that it names; empty without one.
+        is_word: whether a whole word names it, not a symbol of one letter.
+        is_sure: whether every word of it is known.
+        is_wanted: whether it is a set point, not a measurement.
+        is_other: whether it is certainly not a channel.
+        side: 1 or -1 for one of two opposite directions; else 0.
     """
 
     channels: frozenset[str] = frozenset()
@@ -68,12 +68,12 @@ def words_of(name: str) -> list[str]:
 
 @lru_cache(maxsize=4096)
 def meaning_of(name: str, unit: str = "", common: frozenset[str] = frozenset()) -> Meaning:
-    """What a name says, by its last level, or where that names no channel with those before.
+    """The meaning of a name, by its last level, or together with those before if that names no channel.
 
     Args:
         name: the name, its levels divided by `/`, `.` or brackets, without its unit.
-        unit: the unit that is stated; a symbol yields to one that contradicts it.
-        common: words that most names of the file have, which say nothing.
+        unit: the stated unit; it overrides a symbol that contradicts it.
+        common: words that most names of the file have, which are ignored.
     """
     levels = [level for level in re.split(r"[./\[\]{}()|\\:]+", name) if words_of(level)]
     best = NOTHING
@@ -86,25 +86,25 @@ def meaning_of(name: str, unit: str = "", common: frozenset[str] = frozenset()) 
 
 
 def names_a_side(name: str) -> bool:
-    """Whether a name is of a quantity that has two sides, a pressure or a flow; a letter behind it is then the side."""
+    """Whether a name is of a quantity with two sides, a pressure or a flow, so that a letter after it is the side."""
     said = {QUANTITIES.get(word, LETTERS.get(word, "")) for word in _joined(words_of(name))}
     return bool(said & {"pressure", "flow"})
 
 
 def reference_in(name: str) -> str | None:
-    """Whether a name says that its pressure is "absolute" or "gauge"; None where it says neither, or both."""
+    """The pressure reference that a name states, "absolute" or "gauge"; None where it states neither, or both."""
     said = {words_known.REFERENCES[word] for word in words_of(name) if word in words_known.REFERENCES}
     return next(iter(said)) if len(said) == 1 else None
 
 
 def without_reference(name: str) -> str:
-    """A name without the word at its end that says against what its pressure is measured, as in `pA_kPa_abs`."""
+    """A name without the pressure reference at its end, as in `pA_kPa_abs`."""
     start, mark, last = re.fullmatch(r"(.*?)([\s_-]*)([A-Za-z]*)", name, re.DOTALL).groups()  # type: ignore[union-attr]
     return start if mark and last.lower() in words_known.REFERENCES else name
 
 
 def common_words(names: list[str]) -> frozenset[str]:
-    """Words that most names of a file begin with: they name the rig, and say nothing of the column."""
+    """Words that most names of a file begin with: they name the rig, not the column."""
     counts: dict[str, int] = {}
     for name in names:
         for word in words_of(name)[:1]:
@@ -122,7 +122,7 @@ def _of_words(words: list[str], unit: str, common: frozenset[str]) -> Meaning:
     letters = [LETTERS[word] for word in words if word in LETTERS and _agrees(LETTERS[word], known)]
     named = quantities or letters[:1]
     is_wanted = bool(said & WANTED)
-    # A commanded position is none that was measured; a commanded valve is the command.
+    # A commanded position is not a measured one; a commanded valve is the command.
     is_wanted |= "command" in quantities and bool(set(quantities) & words_known.MEASURED) and "valve" not in objects
     if said & words_known.DENIED or "other" in quantities:
         return Meaning(quantity="other", is_other=True)
@@ -143,7 +143,7 @@ def _of_words(words: list[str], unit: str, common: frozenset[str]) -> Meaning:
 
 
 def _sides(words: list[str]) -> set[str]:
-    """The sides that words name; a number is none beside a letter, as in `pB1`, the pressure B of cylinder 1."""
+    """The sides that words name; with a letter, a number is not a side, as in `pB1`, pressure B of cylinder 1."""
     by_letter = {SIDES[word] for word in words if word in SIDES and not word.isdigit()}
     return by_letter if by_letter & {"a", "b"} else {SIDES[word] for word in words if word in SIDES}
 
@@ -153,11 +153,11 @@ def _is_pressure(word: str) -> bool:
 
 
 def _joined(words: list[str]) -> list[str]:
-    """The words with those joined of which two make one, as `load cell`, and compounds divided."""
+    """The words, with pairs such as `load cell` joined and compounds divided."""
     made: list[str] = []
     for word in words:
         if made and word.isdigit() and made[-1] in words_known.NUMBERED:
-            continue  # the number of an input is none of a side
+            continue  # the number of an input is not a side
         if made and made[-1] + word in words_known.PAIRS:
             made[-1] += word
         elif made and made[-1] == "x" and QUANTITIES.get(word) == "spool":
@@ -187,14 +187,14 @@ def _is_known(word: str) -> bool:
 
 
 def _agrees(quantity: str, known: Unit | None) -> bool:
-    """Whether a symbol's quantity may be in a unit; what any sensor may give says nothing against it."""
+    """Whether a symbol's quantity may be in a unit; units that any sensor may give are compatible with all."""
     if known is None or known.si in (_USUAL_UNITS[quantity], "%", "counts", "A"):
         return True
     return known.si == "V" and quantity in ("pressure", "position")
 
 
 def _channels(named: list[str], objects: set[str], sides: set[str], si: str, is_wanted: bool) -> set[str]:
-    """The channels of what the words of a name say together."""
+    """The channels that the words of a name mean together."""
     said = set(named)
     if "time" in said:
         return {"time"}

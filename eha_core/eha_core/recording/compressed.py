@@ -1,4 +1,4 @@
-"""Compression as rosbag2 writes it beside that of MCAP's own chunks: of each message, or of whole files."""
+"""Compression that rosbag2 adds to that of MCAP's own chunks: of each message, or of whole files."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from eha_core.recording.raw import Sink, Sinks
 from eha_core.recording.unpacking import LARGEST_CHUNK, Ceiling
 
 ZSTD = b"\x28\xb5\x2f\xfd"
-"""How a Zstandard frame begins; a message in CDR begins with 0."""
+"""First bytes of a Zstandard frame; a CDR message begins with 0."""
 ENDING = ".zstd"
-"""What rosbag2 puts behind the name of a file that is compressed as a whole."""
+"""Ending of the name of a file that rosbag2 compressed as a whole."""
 _PART = 2**20
 
 
 class _UnpackingSink:
-    """Hands messages on, unpacked where they are packed."""
+    """Passes messages on, decompressed where necessary."""
 
     def __init__(self, sink: Sink, ceiling: Ceiling) -> None:
         self._sink, self._ceiling = sink, ceiling
@@ -44,7 +44,7 @@ class _UnpackingSink:
             self.add(log_time, content[start : start + length])
 
     def _plain(self, payload: bytes) -> bytes:
-        """A message's bytes; a packed one that is damaged stays as it is, and is counted by whoever decodes it."""
+        """A message's bytes, decompressed; a damaged one stays as it is, and is counted when it is decoded."""
         if payload[: len(ZSTD)] != ZSTD:
             return payload
         try:
@@ -56,16 +56,16 @@ class _UnpackingSink:
 
 
 def unpacking(sinks: Sinks, where: str, size: int) -> Mapping[str, Sink]:
-    """Sinks that take messages as they are in a bag of so many bytes, packed or not."""
+    """Sinks that take the messages, compressed or not, of a bag of `size` bytes."""
     ceiling = Ceiling(where, size)
     return {topic: _UnpackingSink(sink, ceiling) for topic, sink in sinks.items()}
 
 
 def plain_file(path: Path) -> Path:
-    """The file itself, or what a packed one unpacks to, kept until the process ends.
+    """The file itself, or a decompressed copy, which is kept until the process ends.
 
     Raises:
-        RecordingError: it does not unpack, or to more than a file of its size may.
+        RecordingError: it cannot be decompressed, or to more than a file of its size may.
     """
     if path.suffix != ENDING:
         return path
@@ -78,7 +78,7 @@ def plain_file(path: Path) -> Path:
 
 @lru_cache(maxsize=8)
 def _unpacked(path: Path, changed: int, size: int) -> TemporaryDirectory[str]:
-    """A folder that holds a file unpacked; `changed` [ns] tells its versions apart."""
+    """A folder with the decompressed file; `changed` [ns] distinguishes its versions."""
     folder = TemporaryDirectory(prefix="eha-")
     ceiling = Ceiling(str(path), size)
     try:

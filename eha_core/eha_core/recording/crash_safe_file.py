@@ -23,8 +23,8 @@ def _closing_records() -> bytes:
 class CrashSafeFile:
     """The part of a binary stream that the MCAP writer uses: write, tell, flush, close.
 
-    Bytes are held until `flush`, which puts them where the former closing records stood, followed by closing records
-    anew, in one system call. So at every instant the file on disk is a whole MCAP of what was flushed.
+    Bytes are held until `flush`, which writes them over the former closing records, followed by new ones, in one system
+    call. So the file on disk is always a complete MCAP of the flushed data.
     """
 
     def __init__(self, path: Path) -> None:
@@ -39,13 +39,13 @@ class CrashSafeFile:
         return len(data)
 
     def tell(self) -> int:
-        """Where the next byte goes [bytes from the start]."""
+        """Position of the next byte [bytes from the start]."""
         return self._flushed + len(self._pending)
 
     def flush(self) -> None:
-        """Put everything held on disk.
+        """Write all held bytes to disk.
 
-        Raises OSError (a full disk, a file that was removed); the file then holds what was flushed before.
+        Raises OSError (a full disk, a file that was removed); the file then has the data of earlier flushes.
         """
         if os.fstat(self._descriptor).st_nlink == 0:
             raise OSError(errno.ENOENT, "the file was removed")
@@ -53,7 +53,7 @@ class CrashSafeFile:
             self._put(self._ending)
 
     def close(self) -> None:
-        """Put what is held on disk, which brings the file's own ending, and close."""
+        """Write the held bytes, which include the file's own ending, to disk, and close."""
         try:
             self._put(b"")
             os.ftruncate(self._descriptor, self._flushed)
@@ -61,7 +61,7 @@ class CrashSafeFile:
             os.close(self._descriptor)
 
     def discard(self) -> None:
-        """Close the file as it was flushed last."""
+        """Close the file as of its last flush."""
         os.close(self._descriptor)
 
     def _put(self, ending: bytes) -> None:
@@ -71,7 +71,7 @@ class CrashSafeFile:
             while written < len(data):
                 written += os.pwrite(self._descriptor, data[written:], self._flushed + written)
         except OSError:
-            # A full disk may have taken a part: cut it off, the closing records fit where they stood before.
+            # A full disk may have taken a part: cut it off; the closing records fit in their former place.
             os.ftruncate(self._descriptor, self._flushed)
             os.pwrite(self._descriptor, self._ending, self._flushed)
             raise

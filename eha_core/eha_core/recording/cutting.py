@@ -1,4 +1,4 @@
-"""A stretch cut out of a recording, with its own time: what held when it began comes along."""
+"""A stretch cut out of a recording, with its own time and the values that were in force at its begin."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ import numpy as np
 from eha_core.recording.recording import Channel, FloatArray, Recording
 
 HELD = ("voltage_command",)
-"""Channels whose last value holds on."""
+"""Channels whose last value holds."""
 
 JUST_AFTER = 1e-9
-"""s; when a change of the leakage that was made before a stretch is noted in it: before all else, yet after its start,
-so that it counts against the coefficient with which the whole record began."""
+"""s; time in a stretch of a leakage change from before it: first of all, yet after its start, so that it is relative to
+the coefficient at the start of the whole record."""
 
 
 def named_stretch(path: Path, start: float, end: float) -> Path:
-    """What takes the place of the path of a stretch [s of its record]."""
+    """The name of a stretch [s of its record] in place of a path."""
     return Path(f"{path} from {start:.6g} s to {end:.6g} s")
 
 
 def cut_out(recording: Recording, start: float, end: float) -> Recording | None:
-    """What a recording holds from `start` up to `end` [s]; None where no channel has a sample there."""
+    """The part of a recording from `start` up to `end` [s]; None where no channel has a sample there."""
     channels = {}
     for name, channel in recording.channels.items():
         first, last = (int(place) for place in np.searchsorted(channel.time, [start, end]))
@@ -50,8 +50,8 @@ def cut_out(recording: Recording, start: float, end: float) -> Recording | None:
 
 
 def leakage_within(changes: Sequence[tuple[float, float]], start: float, end: float) -> tuple[tuple[float, float], ...]:
-    """What a stretch tells of the internal leakage: the coefficient with which the record began, then what was in
-    force at its own start, then its own changes, in its own time."""
+    """The internal leakage of a stretch: the coefficient at the record's start, then the one in force at the stretch's
+    start, then its own changes, in its own time."""
     before = [value for time, value in changes if time <= start]
     if not changes:
         return ()

@@ -1,4 +1,4 @@
-"""Finds the topic of each channel: by the contract's names under one namespace, or as the topics file says."""
+"""Finds the topic of each channel: by the contract's names under one namespace, or by the topics file."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ def leakage_topic(topics: Collection[str], rules: Mapping[str, ChannelRule]) -> 
 def find_rules(
     where: str, topics: Collection[str], topics_file: TopicsFile | None
 ) -> tuple[dict[str, ChannelRule], tuple[str, ...]]:
-    """Say for each channel that can be found from which topic and field it comes, and remark what was passed over.
+    """The rule of each channel that can be found, and remarks on what was skipped.
 
     Raises:
-        RecordingError: two pistons and no word which one, or a topic of the topics file is not in the recording.
+        RecordingError: there are two pistons and no choice between them, or a topic of the topics file is missing.
     """
     given = dict(topics_file.channels) if topics_file else {}
     chosen = {name: str(rule.topic) for name, rule in given.items() if rule and rule.topic}
@@ -97,7 +97,7 @@ def _default_rules(topics: Collection[str], namespace: str | None) -> dict[str, 
 
 
 def default_rule(name: str, rule: ChannelRule) -> ChannelRule:
-    """What a topics file need not say of a channel that is read by `rule`."""
+    """The defaults that a topics file need not repeat for a channel that is read by `rule`."""
     if rule.column is not None:
         return ChannelRule(topic=rule.topic, column=name)
     for rules in (DEFAULT_RULES, STATE_RULES):

@@ -1,4 +1,4 @@
-"""Joins what a field's name and its unit say."""
+"""The meaning of a field, from its name and its unit."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from eha_core.recording.inspection import Field, Inspection
 from eha_core.unit_names import unit_named
 
 LOOP = (3.5e-3, 20.5e-3)
-"""A: between these a loop current lies; its ends are 4 and 20 mA."""
+"""A; range of a current loop, whose ends are 4 and 20 mA."""
 
 
 @dataclass(frozen=True)
 class MeantField:
-    """A field, and what its name says."""
+    """A field, and the meaning of its name."""
 
     field: Field
     meaning: Meaning
 
 
 def meant(field: Field, common: frozenset[str] = frozenset()) -> MeantField:
-    """What a field's name says, without its unit; `common` are words that most names of its file begin with."""
+    """The meaning of a field's name without its unit; `common` are words that most names of its file begin with."""
     if "command_interface" in field.path:
         return MeantField(field, Meaning(frozenset({"voltage_command"}), "command", True, True))
     meaning = meaning_of(plain_name(field), field.unit, common)
@@ -31,22 +31,22 @@ def meant(field: Field, common: frozenset[str] = frozenset()) -> MeantField:
         unit is not None and unit.si == "A" and LOOP[0] <= field.low * unit.scale <= field.high * unit.scale <= LOOP[1]
     )
     if is_loop and meaning.channels == {"current"} and meaning.quantity != "current":
-        # A valve between 4 and 20 mA is commanded so; a coil's current goes both ways, or is called one.
+        # A valve's current between 4 and 20 mA is a command; a coil's current has both signs, or is named so.
         meaning = replace(meaning, channels=frozenset({"voltage_command"}))
     return MeantField(field, meaning)
 
 
 def plain_name(field: Field) -> str:
-    """A field's name without its unit; a message's only number is called by its topic."""
-    # `data` says nothing.
+    """A field's name without its unit; a message's only number has its topic's name."""
+    # `data` means nothing.
     path = re.sub(r"(^|[./])(data|fluid_pressure|value|values)(\[\d+\])?$", "", field.path)
     name = path if path and not field.path.startswith("data") else f"{field.topic}/{path}"
     if field.topic:
         return name
-    # The labels of a historian's series, and a drive's numbers of parameters, name nothing.
+    # The labels of a historian's series and a drive's parameter numbers are not names.
     name = re.sub(r"\{[^{}]*=[^{}]*\}|\b[SP]-\d-\d{4}\b", " ", name).strip() or name
     if re.fullmatch(r"[A-Za-z]{1,2}\d?\[\d+\]", name):
-        return ""  # a row of a matrix, whose symbol says nothing of its rows
+        return ""  # a row of a matrix: the matrix' symbol does not name its rows
     if field.unit:
         name = without_reference(name)
         unit = re.escape(field.unit)

@@ -22,7 +22,7 @@ Tables = Mapping[int, Sequence[str]]
 
 
 def is_named_by_version(type_name: str) -> bool:
-    """Whether a message's values have their names on a topic of their own, as ros2_control's introspection does."""
+    """Whether the names of a message's values are on another topic, as in ros2_control's introspection."""
     return type_name == _NAMED_BY_VERSION
 
 
@@ -30,7 +30,7 @@ def parse_path(topic: str, path: str) -> Steps:
     """The fields of a path, each with its index if it has one.
 
     Raises:
-        RecordingError: it is no path.
+        RecordingError: it is not a path.
     """
     steps: list[tuple[str, str | None]] = []
     position, ended = 0, False
@@ -43,7 +43,7 @@ def parse_path(topic: str, path: str) -> Steps:
 
 
 def check_path(topic: str, path: str, steps: Steps, store: Typestore, type_name: str) -> None:
-    """Raise RecordingError where messages of a type can have no number there."""
+    """Raise RecordingError where messages of a type cannot have a number at a path."""
     kind: tuple[Any, Any] = (Nodetype.NAME, type_name)
     for name, index in steps:
         fields = dict(store.fielddefs[kind[1]][1]) if kind[0] == Nodetype.NAME else {}
@@ -65,13 +65,13 @@ def uses_names(steps: Steps) -> bool:
 
 
 def find(topic: str, steps: Steps, layout: Layout, tables: Tables, version: int | None) -> Run | None:
-    """Where the number lies in messages of a layout; None where they lack the element.
+    """The place of the number in messages of a layout; None where they lack the element.
 
     An index may be a number, the name of a part that has one, or, in a message with joint names, a joint:
     `position[piston]` is the joint of that name, or the only one.
 
     Raises:
-        RecordingError: which joint or part is meant is open.
+        RecordingError: it is not clear which joint or part is meant.
     """
     path = ""
     for name, index in steps[:-1]:
@@ -114,7 +114,7 @@ def _element(topic: str, path: str, index: str, layout: Layout, tables: Tables, 
 
 
 def _names(path: str, layout: Layout) -> list[str]:
-    """What the elements of a sequence are called: parts by their own `name`, numbers by the sequence `name`."""
+    """The names of a sequence's elements: of parts their own `name`, of numbers the sequence `name`."""
     if path in layout.elements:
         return [layout.texts.get(f"{path}[{k}].name", "") for k in range(layout.elements[path])]
     siblings = f"{path.rpartition('.')[0]}.name".lstrip(".")
@@ -122,5 +122,5 @@ def _names(path: str, layout: Layout) -> list[str]:
 
 
 def names_topic(topic: str) -> str:
-    """The topic beside an introspection topic that carries the names of its values."""
+    """The topic with the names of an introspection topic's values."""
     return f"{topic.rpartition('/')[0]}/names"

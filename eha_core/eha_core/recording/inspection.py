@@ -1,4 +1,4 @@
-"""Lists what a file holds: every number that could be a channel, how often, in which range and unit."""
+"""Lists the contents of a file: every number that could be a channel, with its rate, range and unit."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ from eha_core.recording.topic_columns import BLOCK, TopicColumns
 from eha_core.tables import Table, is_table, read_table
 
 MOST_TOPICS = 1000
-"""Topics of a recording that are listed; a robot has some hundred (assumed)."""
+"""Most topics of a recording that are listed; a robot has some hundred (assumed)."""
 MOST_FIELDS = 200
-"""Numbers of a topic, or columns of a table, that are listed."""
+"""Most numbers of a topic, or columns of a table, that are listed."""
 LONGEST_ARRAY = 12
-"""Numbers of an unnamed array that are listed one by one; longer ones are images, scans or covariances."""
+"""Longest unnamed array that is listed; longer ones are images, scans or covariances."""
 KINDS = {
     "csv": "text table", "lvm": "LabVIEW measurement file", "mat": "MAT file", "parquet": "Parquet file",
     "json": "JSON records", "xlsx": "workbook", "tdms": "TDMS file", "mdf": "MDF file",
     "bag": "recording of ROS 2 messages",
 }  # fmt: skip
-"""What each kind of file is called."""
+"""The name of each kind of file."""
 _HEADS = ("header.", "layout.")
-"""Parts of messages that hold no numbers of a rig."""
+"""Parts of messages without a rig's numbers."""
 _NO_CHANNEL = (".sec", ".nanosec", "variance", "names_version")
 _ABSOLUTE = "sensor_msgs/msg/FluidPressure"
-"""The message whose definition says that its pressure is absolute."""
+"""The message that defines its pressure as absolute."""
 
 
 @dataclass(frozen=True)
@@ -55,15 +55,15 @@ class Field:
         count: finite values.
         low: lowest value, as recorded.
         high: highest value.
-        rate: values in a second of the topic's stamps; NaN in a table, which has one time for all.
-        unit: what the file, the message's type or the name states; empty where nothing does.
-        first: the first value; NaN where there is none.
-        step: the usual step from one value to the next; zero where they do not increase all the way.
-        reference: "absolute" for a pressure whose message says so; else None.
-        repeated: rows in a second, by its first and last, of a column that often stands and never goes back.
-        time: the column of its own times; empty where the table's time serves.
+        rate: values per second of the topic's stamps; NaN in a table, which has one time for all.
+        unit: stated by the file, the message's type or the name; else empty.
+        first: the first value; NaN without one.
+        step: the usual step from one value to the next; zero where they do not always increase.
+        reference: "absolute" for a pressure whose message defines it so; else None.
+        repeated: rows per second, by its first and last value, of a column that often repeats and never decreases.
+        time: the column of its own times; empty for the table's time.
         problem: why it cannot be used; empty where it can.
-        day_first: of dates that both orders of day and month fit, the one that makes the shorter record; else None.
+        day_first: of ambiguous dates, the order of day and month that makes the shorter record; else None.
         outline: lowest and highest value of each of some hundred stretches, as recorded.
     """
 
@@ -86,16 +86,16 @@ class Field:
 
 @dataclass(frozen=True)
 class Inspection:
-    """What a file holds.
+    """The contents of a file.
 
     Attributes:
         path: the file.
         kind: "csv", "lvm", "mat", "parquet" or "bag".
         fields: its numbers.
         topics: message types by topic; empty for a table.
-        remarks: what was left out.
-        damaged: what of a bag could not be read; None where it is sound.
-        rate: rows in a second that a table states [Hz]; None where it states none.
+        remarks: what was excluded.
+        damaged: the part of a bag that could not be read; None where it is sound.
+        rate: rows per second that a table states [Hz]; None where it states none.
     """
 
     path: Path
@@ -108,7 +108,7 @@ class Inspection:
 
 
 def inspect_file(path: str | Path) -> Inspection:
-    """List what a file, or a rosbag2 folder, holds.
+    """List the contents of a file or a rosbag2 folder.
 
     Raises:
         RecordingError: nothing in it can be read.
@@ -169,7 +169,7 @@ def _of_bag(path: Path) -> Inspection:
 
 
 class _Watch:
-    """Takes the messages of one topic and keeps the range of each number in them."""
+    """Takes the messages of one topic and keeps the range of each of their numbers."""
 
     def __init__(self, topic: RawTopic, tables: Tables) -> None:
         self.remarks: list[str] = []
@@ -240,7 +240,7 @@ class _Watch:
             self._ranges[path] = (count + len(finite), low, high)
 
     def fields(self) -> list[Field]:
-        """The topic's numbers; none where it has none, or no message of it can be read."""
+        """The topic's numbers; empty where it has none, or no message of it can be read."""
         try:
             self._reduce()
         except RecordingError as error:
@@ -260,7 +260,7 @@ class _Watch:
 
 
 def _paths(layout: Layout, type_name: str, tables: Tables) -> list[str]:
-    """Paths of the numbers of a message that could be a channel, elements by their names where they have some."""
+    """Paths of a message's numbers that could be channels; elements by their names, where they have names."""
     paths = []
     for path, run in layout.runs.items():
         if path.startswith(_HEADS) or path.endswith(_NO_CHANNEL):
@@ -276,7 +276,7 @@ def _paths(layout: Layout, type_name: str, tables: Tables) -> list[str]:
 
 
 def long_arrays(layout: Layout) -> list[str]:
-    """The paths of a message's unnamed arrays that are too long to be listed and not too long for a rig's signals."""
+    """The paths of a message's unnamed arrays that are too long to be listed but may be a rig's signals."""
     return [
         path for path, run in layout.runs.items()
         if run.count is not None and LONGEST_ARRAY < run.count <= MOST_FIELDS and run.size >= 4
@@ -286,7 +286,7 @@ def long_arrays(layout: Layout) -> list[str]:
 
 
 def _by_names(path: str, layout: Layout) -> str:
-    """The path with the numbers of parts that have a name replaced by it: `statistics[3].value` by its name."""
+    """The path with the indices of named parts replaced by their names, as in `statistics[3].value`."""
 
     def name(match: re.Match[str]) -> str:
         text = layout.texts.get(f"{match[1]}.name", "")
@@ -305,5 +305,5 @@ def _element_names(path: str, count: int, layout: Layout, tables: Tables) -> lis
 
 
 def _fits(name: str) -> bool:
-    """Whether a name can stand in a path."""
+    """Whether a name can be used in a path."""
     return bool(name) and not name.isdigit() and not re.search(r"[\[\]\n]", name)

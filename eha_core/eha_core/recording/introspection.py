@@ -20,7 +20,7 @@ from eha_core.recording.message_types import recorded_types
 from eha_core.recording.raw import RawTopic
 
 MOST_VERSIONS = 256
-"""Messages of names that are read; a controller manager sends one for each interface that comes or goes."""
+"""Most messages of names that are read; a controller manager sends one whenever an interface is added or removed."""
 
 
 def value_names(path: Path, topics: Mapping[str, RawTopic], topic: str) -> Tables:

@@ -1,4 +1,4 @@
-"""Reads MCAP files from front to back, so that what is sound in a damaged file is saved."""
+"""Reads MCAP files from front to back, so that the sound parts of a damaged file are recovered."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _KINDS: dict[int, Any] = {
     Opcode.FOOTER: Footer, Opcode.SCHEMA: Schema, Opcode.CHANNEL: Channel, Opcode.MESSAGE: Message,
     Opcode.CHUNK: Chunk, Opcode.METADATA: Metadata,
 }  # fmt: skip
-"""The records that matter here; others are passed over."""
+"""The records that are read; others are skipped."""
 
 
 class _Collector:
-    """Sorts records into topics, and hands messages to those who want them."""
+    """Sorts records into topics, and passes messages to the topics' sinks."""
 
     def __init__(self, sinks: Sinks, ceiling: Ceiling) -> None:
         self.recording = RawRecording()
@@ -53,9 +53,9 @@ class _Collector:
             self.recording.metadata.setdefault(record.name, {}).update(record.metadata)
 
     def add_content(self, content: bytes, is_cut: bool = False) -> None:
-        """Take the records of a chunk, all or none; of one whose end is missing those that are whole.
+        """Take all records of a chunk, or none if one is damaged; of a chunk without an end, the complete ones.
 
-        Raises one of UNREADABLE where they are damaged.
+        Raises one of UNREADABLE for a damaged chunk.
         """
         found = _walk(content, is_cut)
         for record in found.others:
@@ -67,7 +67,7 @@ class _Collector:
                 sink.add_block(content, first, np.array(ends, dtype=np.int64) - first, logged)
 
     def _count(self, channel: int, count: int) -> Sink | None:
-        """Count messages of a channel; return who wants them."""
+        """Count messages of a channel, and return the sink for them; None without one."""
         self.message_count += count
         if channel not in self._topics:
             self.lost_messages += count
@@ -88,7 +88,7 @@ class _Collector:
 
 @dataclass
 class _Found:
-    """The records of a chunk: where each channel's messages begin and end, when they were recorded, and the rest."""
+    """The records of a chunk: the places and log times of each channel's messages, and the other records."""
 
     messages: dict[int, tuple[list[int], list[int], list[int]]]
     others: list[McapRecord]
@@ -120,7 +120,7 @@ def _walk(content: bytes, is_cut: bool) -> _Found:
 
 
 def mcap_topics(path: Path) -> dict[str, RawTopic]:
-    """The topics of a file by name: from its summary, or where that is missing from its whole length.
+    """The topics of a file by name: from its summary, or without one from the whole file.
 
     Raises:
         RecordingError: as `read_mcap`.
@@ -138,11 +138,11 @@ def mcap_topics(path: Path) -> dict[str, RawTopic]:
 def read_mcap(path: Path, sinks: Sinks) -> RawRecording:
     """Read the messages of the topics that `sinks` names.
 
-    Chunks with a wrong checksum are left out, and after broken structure reading goes on at the next chunk that the
-    summary knows; `damage` of the result then says what was lost.
+    Chunks with a wrong checksum are skipped, and after a broken structure reading continues at the next chunk that the
+    summary lists; `damage` of the result lists what was lost.
 
     Raises:
-        RecordingError: the file cannot be opened, is no MCAP, or unpacks to more than a file of its size may.
+        RecordingError: the file cannot be opened, is not an MCAP, or decompresses to more than its size allows.
     """
     with opened(path) as (stream, size):
         return _read_records(stream, size, _Collector(sinks, Ceiling(str(path), size)))
@@ -154,7 +154,7 @@ def _read_records(stream: IO[bytes], size: int, collector: _Collector) -> RawRec
     for record in (*summary.schemas.values(), *summary.channels.values()) if summary else ():
         collector.add(record)
     damage = collector.recording.damage
-    # A damaged length is only believed up to the next chunk that the summary knows.
+    # A damaged length counts only up to the next chunk that the summary lists.
     starts = [len(MCAP0_MAGIC), *chunk_starts]
     for start, end in zip(starts, [*chunk_starts, size], strict=True):
         broken_at = _collect(stream, start, end, end == size, collector)
@@ -178,7 +178,7 @@ def _read_records(stream: IO[bytes], size: int, collector: _Collector) -> RawRec
 
 
 def _collect(stream: IO[bytes], start: int, end: int, is_last: bool, collector: _Collector) -> int | None:
-    """Collect the records from byte `start` to byte `end`; return where their structure breaks, if it does."""
+    """Collect the records from byte `start` to byte `end`; return the byte at which their structure breaks, if any."""
     position = start
     for record, after in _records(stream, start, end):
         position = after
@@ -207,7 +207,7 @@ def _records(stream: IO[bytes], start: int, end: int) -> Iterator[tuple[McapReco
             return
         kind, length = RECORD_HEAD.unpack(head)
         position += RECORD_HEAD.size + length
-        if kind == 0 or position > end:  # no record is of kind 0, but zeroed bytes look so
+        if kind == 0 or position > end:  # no record has kind 0, but zeroed bytes look like it
             return
         try:
             yield (_parse(kind, stream.read(length)) if kind in _KINDS else None), position
@@ -222,7 +222,7 @@ def _parse(kind: int, content: bytes) -> McapRecord:
 
 
 def _add_chunk(chunk: Chunk, collector: _Collector) -> None:
-    """Hand all records of a chunk to the collector, or none and count it if it is damaged."""
+    """Pass all records of a chunk to the collector; of a damaged one none, and count it."""
     try:
         content = unpacked(chunk, collector.ceiling)
         if chunk.uncompressed_crc not in (0, zlib.crc32(content)):
@@ -233,7 +233,7 @@ def _add_chunk(chunk: Chunk, collector: _Collector) -> None:
 
 
 def _add_cut_chunk(stream: IO[bytes], start: int, collector: _Collector) -> bool:
-    """Hand on the whole records at the beginning of a chunk that the file's end cuts off; False if none is there."""
+    """Pass on the complete records of a chunk that the file's end cuts off; False if there are none."""
     stream.seek(start)
     data = stream.read()
     try:

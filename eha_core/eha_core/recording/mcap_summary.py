@@ -1,4 +1,4 @@
-"""What an MCAP file says of itself at its end: whether it was finished, what times it spans, its metadata."""
+"""The summary at the end of an MCAP file: whether it was finished, its time span, its metadata."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from zstandard import ZstdError
 
 from eha_core.errors import RecordingError
 
-# What parsing of arbitrary bytes raises: ends too early, bad lengths and text, checksums, broken compression.
+# Errors of parsing arbitrary bytes: early ends, bad lengths and text, checksums, broken compression.
 UNREADABLE = (McapError, ZstdError, struct.error, ValueError, RuntimeError, MemoryError, OverflowError, LookupError)
 RECORD_HEAD = struct.Struct("<BQ")  # kind, length
 _CHECKSUM_SIZE = 4
@@ -41,13 +41,13 @@ def opened(path: Path) -> Iterator[tuple[IO[bytes], int]]:
 
 
 def is_finished(path: Path) -> bool:
-    """Whether an MCAP has the end that its recorder writes when it stops. Raises OSError where it cannot be read."""
+    """Whether an MCAP has the footer that its recorder writes when it stops. Raises OSError where it is unreadable."""
     with path.open("rb") as stream:
         return summary_of(stream, path.stat().st_size) is not None
 
 
 def mcap_extent(path: Path) -> tuple[int, int] | None:
-    """The log times of the first and last message [ns]; None where the file has no summary that tells them."""
+    """The log times of the first and last message [ns]; None where the file has no summary with them."""
     with opened(path) as (stream, size):
         summary = summary_of(stream, size)
         statistics = summary.statistics if summary else None
@@ -57,7 +57,7 @@ def mcap_extent(path: Path) -> tuple[int, int] | None:
 
 
 def mcap_metadata(path: Path) -> dict[str, dict[str, str]]:
-    """The metadata records that the summary knows, by name, without reading the messages."""
+    """The metadata records that the summary lists, by name, without reading the messages."""
     with opened(path) as (stream, size):
         found: dict[str, dict[str, str]] = {}
         if summary_of(stream, size) is None:

@@ -1,4 +1,4 @@
-"""Serialises many messages of one shape at once: a pattern of bytes in which only some numbers change."""
+"""Serialises many messages of one layout at once: a byte pattern in which only some numbers change."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def encode_rows(
 
     Args:
         type_name: "package/msg/Name".
-        columns: numbers by field; a field that is a sequence of floats takes them as its one element.
+        columns: numbers by field; a field that is a sequence of floats gets them as its only element.
         stamps: header stamps [ns], for a type with a header.
         fixed: fields that are the same in every message.
     """

@@ -1,6 +1,6 @@
-"""Message types: where definitions are found, and fields to CDR bytes and back.
+"""Message types: their definitions, and the serialisation of fields to CDR.
 
-Nothing is written down here: the standard messages come from the type store of the rosbags library, all others from
+No definition is repeated here: the standard messages come from the type store of the rosbags library, all others from
 the .msg files that their package installs under `<prefix>/share/<package>/msg`.
 """
 
@@ -27,8 +27,8 @@ _TEXT_TYPES = ("string", "wstring")
 
 
 def _message_folders(package: str) -> Iterator[Path]:
-    """The folders that may hold a package's .msg files: ROS prefixes, this environment, the source tree, and where the
-    package is that an import would find."""
+    """The folders that may contain a package's .msg files: ROS prefixes, this environment, the source tree, and the
+    importable package."""
     prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
     for prefix in (*prefixes, sys.prefix):
         yield Path(prefix) / "share" / package / "msg"
@@ -45,7 +45,7 @@ def typestore() -> Typestore:
 
 
 def require_type(type_name: str) -> Typestore:
-    """Return the store once it knows `type_name` ("package/msg/Name") and all it contains.
+    """The store, with `type_name` ("package/msg/Name") and all types in it added.
 
     Raises:
         RecordingError: no definition of the type, or of one inside it, is installed.
@@ -90,7 +90,7 @@ def definition_of(type_name: str) -> tuple[str, str]:
 
 
 def encode(type_name: str, fields: Mapping[str, Any]) -> bytes:
-    """Serialise a message given as nested mappings and sequences to CDR; fields left out are zero or empty."""
+    """Serialise a message, given as nested mappings and sequences, to CDR; omitted fields are zero or empty."""
     store = require_type(type_name)
     return bytes(store.serialize_cdr(_build(store, type_name, fields), type_name))
 
@@ -117,16 +117,16 @@ def _build_field(store: Typestore, description: Any, value: Any) -> Any:
 
 
 LARGEST_DEFINITION = 2**17
-"""Characters of a type with all it contains; the longest of ROS's own has 2**14."""
+"""Most characters of a type with all types in it; the longest of ROS's own has 2**14."""
 DEEPEST_TYPE = 20
-"""Levels of types in types; ROS's own have 6."""
+"""Most levels of nested types; ROS's own have 6."""
 MOST_ELEMENTS = 2**20
-"""Numbers and texts of fixed count in a message; an hour of decoding is no price for a definition of 40 lines."""
+"""Most numbers and texts in fixed arrays of a message: a definition of 40 lines must not cost an hour of decoding."""
 
 
 @lru_cache(maxsize=64)
 def _recorded_types(type_name: str, encoding: str, definition: str) -> Typestore | None:
-    """The store that a recording's own definition of a type makes; None where that is damaged or beyond all measure."""
+    """The store made from a recording's own definition of a type; None where that is damaged or too large."""
     store = get_typestore(Stores.EMPTY)
     if len(definition) > LARGEST_DEFINITION:
         return None
@@ -143,7 +143,7 @@ def _recorded_types(type_name: str, encoding: str, definition: str) -> Typestore
 
 
 def _elements(types: Any, type_name: str, levels: int) -> int:
-    """How many elements of fixed count a type has, those of its parts included. Raises ValueError if it is too deep."""
+    """The number of elements in a type's fixed arrays, with its parts'. Raises ValueError if it is nested too deep."""
     if levels == 0:
         raise ValueError(f"{type_name} contains types too deep")
     total = 1
@@ -157,10 +157,10 @@ def _elements(types: Any, type_name: str, levels: int) -> int:
 
 
 def recorded_types(type_name: str, encoding: str, definition: str) -> tuple[Typestore, str | None]:
-    """The types by which a recording's messages are read, and a remark where they are not its own.
+    """The types for reading a recording's messages, and a remark where they are not its own.
 
-    A recording without definitions (the SQLite bags of older distributions) is read by the installed ones, and so is
-    one whose definition is damaged.
+    A recording without definitions (the SQLite bags of older distributions), or with a damaged one, is read by the
+    installed ones.
 
     Raises:
         RecordingError: the type is neither defined in the recording nor installed.

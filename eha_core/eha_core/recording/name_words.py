@@ -1,4 +1,4 @@
-"""The words of which loggers make the names of columns, in English, German, French and Spanish, and what they say.
+"""The words in column names of loggers, in English, German, French and Spanish, and their meanings.
 
 Words are in small ASCII letters: `ae` for a German umlaut, no accents.
 """
@@ -37,7 +37,7 @@ LETTERS = {
     "t": "time", "p": "pressure", "x": "position", "v": "velocity", "f": "force", "q": "flow", "u": "voltage",
     "i": "current", "n": "turning",
 }  # fmt: skip
-"""Symbols; they say less than a word, and yield to one."""
+"""Symbols; a word takes precedence over them."""
 OBJECTS = _of(
     valve="valve ventil valves servo servovalve servoventil proportional solenoid coil spule magnet vanne valvula prop",
     cylinder="cylinder zylinder zyl cyl actuator aktor ram jack verin cilindro piston kolben",
@@ -53,18 +53,18 @@ SIDES = _of(
 WANTED = _all(
     "ref reference des desired target set setpoint soll sollwert demand demanded consigne goal planned wanted"
 )
-"""What is asked for is not what is measured."""
+"""Words of set points, which are not measurements."""
 DENIED = _all(
     "err error fehler abweichung deviation diff difference delta dp max min limit limits alarm status flag enable sim"
     " simulated model modelled est estimated predicted temp temperature temperatur pilot accumulator speicher"
 )
-"""What is derived, or of another part than the cylinder."""
+"""Words of derived quantities, and of other parts than the cylinder."""
 MEASURED = _all("position velocity force pressure flow angle torque")
-"""Quantities that are measured, so that a command of theirs is wanted."""
+"""Measured quantities, whose command is a set point."""
 REFERENCES = _of(
     absolute="abs absolute absolut absolutdruck", gauge="gauge rel relative relativ ueberdruck relativdruck"
 )
-"""Words that say against what a pressure is measured."""
+"""Words of a pressure's reference."""
 FILLERS = _all(
     "main plot data value sensor measured meas messwert ist istwert actual act fbk feedback signal sig ch chan"
     " channel ai"
@@ -75,7 +75,7 @@ FILLERS = _all(
     " untitled ave avg average mean mittel mittelwert rms abs rel gauge absolute interface interfaces controller"
     " lbl y z d r lr fl l j joint states oel oil"
 )
-"""Words that say nothing of what is measured."""
+"""Words without a meaning for the measured quantity."""
 FIRST = _all(
     "up extend extending a 1 out open plus pos positive forward fwd heben ausfahren auf raise lift vor right rechts"
 )
@@ -83,7 +83,7 @@ SECOND = _all(
     "down retract retracting b 2 in close closed minus neg negative backward back bwd rev reverse senken einfahren ab"
     " lower zurueck left links"
 )
-"""What the two one-sided commands of a valve are called; the first moves the piston out."""
+"""Words of a valve's two one-sided commands; the first moves the piston out."""
 INDEX = _all(
     "sample samples index idx nr no num number count counter row rows point points scan record lfd nummer seq"
     " sequence n k"
@@ -91,16 +91,16 @@ INDEX = _all(
 )
 """Words of columns that count rows."""
 TANK_LETTERS, SUPPLY_LETTERS = _all("t r"), _all("p s 0")
-"""Letters behind a pressure: `pT` and `pP` are those of the tank and the pump."""
+"""Letters after a pressure: `pT` and `pP` are those of the tank and the pump."""
 NUMBERED = _all(
     "ai ain ch chan channel analog input in group plot sensor sig signal dev mod module slot card"
     " cyl cylinder zyl zylinder actuator aktor axis achse ram jack rig valve ventil pump pumpe motor joint"
 )
-"""Words behind which a number only counts."""
+"""Words after which a number only counts."""
 PAIRS = _all("loadcell xdot xvalue xv flowrate headside rodside rodend capend blindend")
-"""Words that are written apart too, as `load cell`."""
+"""Words that are also written as two, such as `load cell`."""
 EVERY = (QUANTITIES, LETTERS, OBJECTS, SIDES, WANTED, REFERENCES, FILLERS, FIRST, SECOND)
-"""All that is known."""
+"""All known words."""
 COMPOUNDED = (QUANTITIES, OBJECTS, SIDES)
 """The second words of compounds such as `kolbendruck`."""
 STEMS = (*COMPOUNDED, WANTED, DENIED)

@@ -1,4 +1,4 @@
-"""The outline of a signal for a small plot: lowest and highest value of some hundred stretches, whatever its length."""
+"""The outline of a signal for a small plot: lowest and highest value in each of some hundred stretches."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from eha_core.recording.channel_kinds import FloatArray
 
 STRETCHES = 150
-"""Stretches of an outline at least, where there are as many values; at most twice as many (assumed: a small plot is 300
-pixels wide)."""
+"""Fewest stretches of an outline of at least as many values; at most there are twice as many (assumed: a small plot is
+300 pixels wide)."""
 
 Pairs = tuple[tuple[float, float], ...]
 
 
 class Outline:
-    """Takes the values of a signal part by part, and keeps no more of them than the outline."""
+    """Takes the values of a signal part by part, and keeps only the outline."""
 
     def __init__(self) -> None:
         self._width = 1

@@ -1,4 +1,4 @@
-"""A thread that finishes what it was given, whatever interrupts the thread that waits for it."""
+"""A thread that completes its actions even if the thread that waits for them is interrupted."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _Actions: TypeAlias = "SimpleQueue[tuple[Callable[[], None], _Outcome] | None]"
 
 
 class OwnThread:
-    """Does actions one after another, each to its end; it ends with its owner.
+    """Runs actions one after another, each to its end; it ends with its owner.
 
-    Python raises KeyboardInterrupt in the main thread, between any two of its steps. A `SimpleQueue` hands over in one
-    step of C, so nothing is left half done; an executor or a condition takes its locks in Python, and an interrupt
-    between two lines leaves them taken for ever.
+    Python raises KeyboardInterrupt in the main thread between any two bytecodes. A `SimpleQueue` transfers an item in
+    one step of C, which cannot be interrupted; an executor or a condition takes locks in Python, and an interrupt
+    between two lines would leave them locked.
 
     Args:
         name: the thread's name, as debuggers and `threading.enumerate` show it.
@@ -29,14 +29,14 @@ class OwnThread:
         weakref.finalize(self, self._actions.put, None)
 
     def do(self, action: Callable[[], None]) -> None:
-        """Have an action done, also when the wait for its end is interrupted; raises what it raised."""
+        """Run an action to its end, even if the wait for it is interrupted; raises the action's exception."""
         outcome: _Outcome = SimpleQueue()
         self._actions.put((action, outcome))
         if (error := outcome.get()) is not None:
             raise error
 
     def end(self) -> None:
-        """Let the thread end after what it was given so far."""
+        """Let the thread end after its pending actions."""
         self._actions.put(None)
 
 
@@ -45,8 +45,8 @@ def _serve(actions: _Actions) -> None:
         action, outcome = given
         try:
             action()
-        except BaseException as error:  # whoever waits gets it
+        except BaseException as error:  # passed to the waiting thread
             outcome.put(error)
         else:
             outcome.put(None)
-        del given, action, outcome  # while it waits it keeps nobody's file open
+        del given, action, outcome  # no reference keeps a file open while the thread waits

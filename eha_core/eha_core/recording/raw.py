@@ -1,4 +1,4 @@
-"""What the file formats hand over: which topics there are, and their messages, not decoded, to whoever wants them."""
+"""The interface of the file formats: their topics, and sinks that take the serialised messages."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ class Sink(Protocol):
 
 
 Sinks = Mapping[str, Sink]
-"""Who takes the messages, by topic; those of other topics are passed over."""
+"""The sinks of messages by topic; other topics are skipped."""
 
 
 @dataclass
 class RawRecording:
-    """All topics of a recording, its metadata records, how many messages each topic has, and what was damaged."""
+    """A recording's topics, metadata records, message counts by topic, and damage."""
 
     topics: dict[str, RawTopic] = field(default_factory=dict)
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)

@@ -26,7 +26,7 @@ from eha_core.tables import is_table, read_table
 __all__ = ["PARTS", "STANDARD_ATMOSPHERE", "MessageFile", "assemble", "open_messages", "read_recording"]
 
 MAY_BE_EMPTY = ("velocity", "force")
-"""Channels that a joint's messages may leave out by their definition: that they do is no remark."""
+"""Channels that a joint's messages may omit by their definition, without a remark."""
 
 
 def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = None) -> Recording:
@@ -34,10 +34,10 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
 
     Args:
         path: an .mcap or .db3 file, a rosbag2 folder, or a table: .csv, .lvm, .mat, .parquet.
-        topics: a topics file, or one that is loaded already; without it channels are found by the contract's names.
+        topics: a topics file, or a loaded one; without it channels are found by the contract's names.
 
     Raises:
-        RecordingError: nothing usable is there, or it is open what is meant; the message says what to do.
+        RecordingError: there is nothing usable, or the channels are not clear; the message gives the remedy.
     """
     path = Path(path)
     topics_file = topics_of(topics)
@@ -55,7 +55,7 @@ def read_recording(path: str | Path, topics: str | Path | TopicsFile | None = No
 
 @dataclass(frozen=True)
 class MessageFile:
-    """A file or folder of messages whose topics are known: which channels it has, and who takes their messages."""
+    """A file or folder of messages with known topics: its channels, and the sinks of their messages."""
 
     path: Path
     rules: Mapping[str, ChannelRule]
@@ -65,7 +65,7 @@ class MessageFile:
     asked: Collection[str]
 
     def collect(self) -> tuple[dict[str, Samples], list[str]]:
-        """The samples of each channel since the last call, on one clock, and what was left out."""
+        """The samples of each channel since the last call, on one clock, and remarks on exclusions."""
         decoded = [sink.finish() for sink in self.sinks.values()]
         remarks = [remark for topic in decoded for remark in topic.remarks]
         decoded, leap_remarks = without_leaps(decoded)

@@ -1,4 +1,4 @@
-"""The ways to read a field as a channel: in which unit, through which points of a sensor, against which pressure."""
+"""The ways to read a field as a channel: its unit, the points of a sensor, the reference of a pressure."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ _USUAL = {
     "m^3/s": (1e-6, 2e-2),
     "rad/s": (1.0, 2e3),
 }  # fmt: skip
-"""Largest magnitudes of rigs, by SI unit; they order questions, and answer none."""
+"""Usual largest magnitudes on rigs, by SI unit; they order questions, but do not answer them."""
 _BELOW_USUAL, _ABOVE_USUAL = 100.0, 2.0
-"""How far below or above those a stated unit may bring a channel and still be believed: a piston may creep, and nothing
-is much larger."""
+"""Factors below and above these within which a stated unit is accepted: a piston may creep, but nothing is much
+larger."""
 BELOW_ZERO = -2e4
-"""Pa: below this a pressure is gauge; a sensor's zero is not that far off."""
+"""Pa; a pressure below this is gauge: a sensor's zero is not that far off."""
 _ATMOSPHERE_MATTERS = 20e5
-"""Pa: a pressure that reaches more is read as gauge without a question: an atmosphere is 5 % of it at most."""
+"""Pa; a pressure that reaches more is read as gauge without a question: an atmosphere is 5 % of it at most."""
 _RARE = frozenset(("mbar", "kgf/cm^2", "100ns", "daN", "kgf", "m^3/h", "Hz", "deg/s", "GPa"))
-"""Units that are taken where they are stated, and not offered where none is."""
+"""Units that are accepted where they are stated, but never offered."""
 _VALUE_UNITS = {
     "Pa": "bar", "m": "mm", "m/s": "mm/s", "V": "V", "A": "A", "N": "kN", "m^3/s": "l/min", "rad/s": "rpm",
 }  # fmt: skip
-"""In which unit a sensor's points are asked for, by SI unit."""
+"""The unit of a sensor's points in questions, by SI unit."""
 _RATED_VOLTAGE = 10.0
 """V at 100 % of most proportional and servo valves with electronics of their own."""
 
@@ -40,17 +40,17 @@ class Reading:
     """One way to read a channel.
 
     Attributes:
-        channel: which channel.
-        field: from which field.
-        unit: in which unit; None where it is SI, or stated by its message.
-        reference: against which pressure.
-        points: what a sensor's numbers mean, in `unit`; None where that is still to be said.
-        minus: a second field that is taken from the first.
-        rate: of the time, rows in a second; NaN where that is still to be said.
-        day_first: of the time, whether the day stands before the month in its dates; None where nothing hangs on it.
-        is_certain: whether nothing of it was guessed.
-        assumed: what was taken without a question, for want of a word; empty where nothing was.
-        hint: what helps to answer.
+        channel: the channel.
+        field: the field.
+        unit: its unit; None where it is SI, or stated by its message.
+        reference: "absolute" or "gauge" for a pressure.
+        points: the characteristic of a sensor, in `unit`; None where it is still missing.
+        minus: a second field that is subtracted from the first.
+        rate: of the time, rows per second; NaN where it is still missing.
+        day_first: of the time, whether the day is before the month in its dates; None where it does not matter.
+        is_certain: whether nothing was guessed.
+        assumed: what was assumed without a question, in words; empty where nothing was.
+        hint: help for the answer.
     """
 
     channel: str
@@ -72,20 +72,20 @@ def si_of(channel: str) -> str:
 
 
 def is_usual(channel: str, field: Field, scale: float = 1.0) -> bool:
-    """Whether a field's numbers in a unit are within any rig's."""
+    """Whether a field's numbers, in a unit, are within the usual range of rigs."""
     return max(abs(field.low), abs(field.high)) * scale <= CHANNEL_KINDS[channel].largest
 
 
 def is_likely(channel: str, field: Field, unit: Unit) -> bool:
-    """Whether a stated unit makes of a field's numbers what a rig may have; a wrong word in a header is off by more."""
+    """Whether a field's numbers in a stated unit are plausible for a rig; a wrong unit in a header is off by more."""
     low, high = _USUAL[si_of(channel)]
     return low / _BELOW_USUAL <= max(abs(field.low), abs(field.high)) * unit.scale <= _ABOVE_USUAL * high
 
 
 def readings_of(channel: str, one: MeantField, any_range: bool = True) -> list[Reading]:
-    """The ways to read a field as a channel; one that is certain where nothing is open.
+    """The ways to read a field as a channel; a single certain one where nothing is unclear.
 
-    Where no unit makes a rig's of its range, all of them, or none unless `any_range`.
+    Where its range is plausible in no unit, all of them with `any_range`, else none.
     """
     field, si = one.field, si_of(channel)
     unit = unit_named(field.unit)
@@ -94,7 +94,7 @@ def readings_of(channel: str, one: MeantField, any_range: bool = True) -> list[R
             return through
         if not one.meaning.is_word:
             return []
-        unit = None  # a name beats a unit that contradicts it
+        unit = None  # a name takes precedence over a unit that contradicts it
     elif unit is not None and channel == "voltage_command" and one.meaning.quantity == "current":
         return []
     if unit is not None and is_likely(channel, field, unit):
@@ -111,7 +111,7 @@ def readings_of(channel: str, one: MeantField, any_range: bool = True) -> list[R
 
 
 def likely_units(channel: str, field: Field, any_range: bool = True) -> list[Unit]:
-    """The units that make a rig's of a field's range."""
+    """The units in which a field's range is plausible for a rig."""
     si = si_of(channel)
     fitting = [unit for name, unit in UNITS.items() if unit.si == si and unit.reference is None and name not in _RARE]
     low, high = _USUAL[si]
@@ -120,7 +120,7 @@ def likely_units(channel: str, field: Field, any_range: bool = True) -> list[Uni
 
 
 def _with_references(channel: str, field: Field, unit: Unit, is_told: bool) -> list[Reading]:
-    """A reading in a unit that no file states; `is_told` where its numbers leave no other."""
+    """The readings in a unit that no file states; `is_told`: its numbers allow no other unit."""
     reading = _in_unit(channel, field, unit, is_told)
     if is_told and not reading.is_certain:
         return [reading, *_other_reference(reading)]
@@ -151,7 +151,7 @@ def _other_reference(reading: Reading) -> list[Reading]:
 
 
 def _is_loop(channel: str, one: MeantField, unit: Unit | None) -> bool:
-    """Whether a field in the channel's own unit is more likely a loop current, its name being of no coil's."""
+    """Whether a field in the channel's own unit is more likely a current loop, because its name is not a coil's."""
     if unit is None or unit.si != "A" or channel not in ("current", "spool"):
         return False
     low, high = one.field.low * unit.scale, one.field.high * unit.scale
@@ -159,7 +159,7 @@ def _is_loop(channel: str, one: MeantField, unit: Unit | None) -> bool:
 
 
 def _through_points(channel: str, one: MeantField, unit: Unit) -> list[Reading] | None:
-    """The readings of what a sensor or a card gave, whose meaning is asked for; None for other units."""
+    """The readings of a sensor's or a card's raw numbers, whose characteristic is asked for; None for other units."""
     field, si = one.field, si_of(channel)
     value = _VALUE_UNITS[si]
     reference = GAUGE if CHANNEL_KINDS[channel].is_pressure else None
@@ -178,7 +178,7 @@ def _through_points(channel: str, one: MeantField, unit: Unit) -> list[Reading] 
 
 
 def _places(channel: str, one: MeantField, unit: Unit) -> tuple[float, float] | None:
-    """The numbers of a sensor's range at which its value is asked for, as they are in the file."""
+    """The raw numbers at the ends of a sensor's range, at which its values are asked for."""
     field = one.field
     if unit.si == "A":
         low, high = field.low * unit.scale, field.high * unit.scale

@@ -1,4 +1,4 @@
-"""What a recording is once it has been read: channels in SI units on one time axis, and what was said about them."""
+"""A recording after reading: channels in SI units on one time axis, with parameters and remarks."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ __all__ = ["CHANNEL_KINDS", "Channel", "ChannelKind", "FloatArray", "Recording"]
 
 @dataclass(frozen=True)
 class Recording(Assembled):
-    """A recording as the rest of the library sees it; its attributes are those of `Assembled`."""
+    """A recording as the rest of the library uses it; its attributes are those of `Assembled`."""
 
     @classmethod
     def of(cls, parts: Assembled) -> Recording:
-        """A recording of what was put together."""
+        """A recording of assembled channels."""
         return cls(**{row.name: getattr(parts, row.name) for row in fields(parts)})
 
     @classmethod
@@ -34,11 +34,11 @@ class Recording(Assembled):
         Args:
             time: (n,) instants [s].
             pressures: whether pressures are "absolute" or "gauge" [Pa].
-            name: what the recording is called in reports.
+            name: the recording's name in reports.
             channels: voltage_command [V], position [m], velocity [m/s], pressure_a, pressure_b [Pa], force [N] ...
 
         Raises:
-            RecordingError: an array of another length, an unknown channel, or numbers that can only be in another unit.
+            RecordingError: an array of another length, an unknown channel, or numbers that must be in another unit.
         """
         return cls.of(arrays.from_arrays(time, channels, pressures, name))
 
@@ -58,10 +58,10 @@ class Recording(Assembled):
             columns: the column of each channel that has another name, as {"position": "x_piston"}.
             time: the column with the times; by default `time`, else the frame's index. Dates count from the first.
             pressures: whether pressures are "absolute" or "gauge" [Pa].
-            name: what the recording is called in reports.
+            name: the recording's name in reports.
 
         Raises:
-            RecordingError: a column that is not there, or what `from_arrays` refuses.
+            RecordingError: a column is missing, or the errors of `from_arrays`.
         """
         return cls.of(arrays.from_dataframe(frame, columns or {}, time, pressures, name))
 

@@ -1,4 +1,4 @@
-"""Puts the samples of one channel in order: stamps that increase, values that are finite, all else counted."""
+"""Orders the samples of one channel: increasing stamps and finite values; the rest is excluded and counted."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eha_core.recording.channel_kinds import FloatArray
 
 LONGEST_GAP = 3_600_000_000_000
-"""ns without a sample from which on what lies beyond is of another run, or its stamps are wrong."""
+"""ns without a sample, after which the rest is of another run or has wrong stamps."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class Samples:
 
 
 def put_in_order(samples: Samples) -> tuple[Samples, tuple[str, ...]]:
-    """Keep the finite samples of the longest run of increasing stamps; also say what was kept out.
+    """The finite samples of the longest run of increasing stamps, and remarks on what was excluded.
 
-    A clock that jumps back costs the shorter side, a stamp that lies far ahead only itself.
+    After a clock jumps back, the shorter side is excluded; of a stamp far ahead only that sample.
     """
     remarks = []
     stamps, values = samples.stamps, samples.values
@@ -54,12 +54,12 @@ def put_in_order(samples: Samples) -> tuple[Samples, tuple[str, ...]]:
 def on_one_span(
     ordered: Mapping[str, Samples], recorded: Mapping[str, Samples], held: Collection[str]
 ) -> tuple[dict[str, Samples], tuple[str, ...]]:
-    """Put all channels on the time span of the longest one, where some kept another; also say what was kept out.
+    """All channels on the time span of the longest one, and remarks on what was excluded.
 
     Args:
-        ordered: the channels in order, each by itself.
+        ordered: the channels, each in order.
         recorded: the same as recorded.
-        held: channels whose last value holds on, so that they may end before others begin.
+        held: channels whose last value holds, so that they may end before others begin.
     """
     measured = {name: series for name, series in ordered.items() if name not in held} or dict(ordered)
     longest = max(measured, key=lambda name: len(measured[name].stamps))

@@ -1,4 +1,4 @@
-"""Simulates the actuator without waiting and records it with the simulator node's topics."""
+"""Simulates the actuator faster than real time and records it with the simulator node's topics."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ VELOCITY_NOISE = 1e-3
 
 @dataclass(frozen=True)
 class Experiment:
-    """What is simulated.
+    """An experiment to simulate.
 
     Attributes:
         command_times: instants from which each voltage holds, increasing [s]; before the first the voltage is zero.
@@ -52,7 +52,7 @@ class Experiment:
         rate: publishing rate [Hz]; a period must be a whole number of steps.
         noise: sensor noise as a multiple of POSITION_NOISE, VELOCITY_NOISE and PRESSURE_NOISE.
         seed: seed of the noise.
-        initial_position: where the piston starts [m].
+        initial_position: of the piston [m].
         composition: the actuator's parts.
         inputs: of a source that no voltage drives, (times [s], values [SI]) of each of its channels.
     """
@@ -72,7 +72,7 @@ class Experiment:
 
     @property
     def steps_per_period(self) -> int:
-        """Plant steps between two published states; raises ParameterError where that is no whole number."""
+        """Plant steps between two published states; raises ParameterError where that is not a whole number."""
         steps = 1.0 / (self.rate * self.step_size)
         if steps < 0.5 or abs(steps - round(steps)) > 1e-6 * steps:
             raise ParameterError(
@@ -122,7 +122,7 @@ def simulate(experiment: Experiment) -> Simulated:
     """Run an experiment, far faster than real time.
 
     Raises:
-        ParameterError: a parameter, a change or the rate does not fit.
+        ParameterError: a parameter, a change or the rate is wrong.
     """
     plant = Plant(experiment.parameters, experiment.step_size, experiment.initial_position, experiment.composition)
     every, periods = experiment.steps_per_period, experiment.periods
@@ -145,7 +145,7 @@ def simulate_sweep(experiment: Experiment, name: str, values: Sequence[float]) -
     """Run an experiment once for each value of a parameter, all in lock-step.
 
     Raises:
-        ParameterError: as `simulate`, and where the experiment changes a parameter on its way.
+        ParameterError: as `simulate`, and where the experiment changes a parameter while it runs.
     """
     if experiment.changes:
         raise ParameterError("a sweep changes nothing on its way; give every parameter from the start, without @S")
@@ -165,12 +165,12 @@ def simulate_sweep(experiment: Experiment, name: str, values: Sequence[float]) -
 
 
 def _first_steps(experiment: Experiment) -> NDArray[np.int64]:
-    """The first step in which each command holds."""
+    """The first step of each command."""
     return np.ceil(experiment.command_times / experiment.step_size - 1e-6).astype(np.int64)
 
 
 def _driving(experiment: Experiment) -> FloatArray:
-    """What drives the source in each step: (steps,) voltages, or (steps, inputs) of what was measured, at mid step."""
+    """The source's input in each step: (steps,) voltages, or (steps, inputs) of the measured channels, at mid-step."""
     if not experiment.inputs:
         return _held_voltages(experiment)
     steps = np.arange(experiment.periods * experiment.steps_per_period)
@@ -197,7 +197,7 @@ def _recorded(
     parameters: Mapping[str, float],
     changes: Sequence[tuple[int, str, float]],
 ) -> Simulated:
-    """The record of rows that the plant went through; `changes` are (period, parameter, value)."""
+    """The record of the plant's rows; `changes` are (period, parameter, value)."""
     _add_noise(states, experiment)
     period = experiment.steps_per_period * experiment.step_size * _NANOSECONDS
     first_steps = _first_steps(experiment)
@@ -233,10 +233,10 @@ Message = tuple[int, int, str, str, bytes]
 
 
 def write_simulated(path: str | Path, record: Simulated, instruments_only: bool = False) -> int:
-    """Write a simulated record with the simulator node's topics; return how many messages it holds.
+    """Write a simulated record with the simulator node's topics; return the number of messages.
 
-    With `instruments_only` the file has what a rig's instruments give and nothing that tells of the model: no state, no
-    effort, no leakage, no parameters. The same record always gives the same bytes.
+    With `instruments_only` the file has only the channels of a rig's instruments and nothing of the model: no state,
+    effort, leakage or parameters. The same record always gives the same bytes.
 
     Raises:
         RecordingError: the file exists already or cannot be written.
@@ -293,7 +293,7 @@ def _leakage_messages(record: Simulated) -> Iterator[Message]:
     leakage = record.column("internal_leakage")
     changed = np.flatnonzero(np.append(True, np.diff(leakage) != 0.0))
     stamps = record.stamps[changed]
-    # A value that is set is in force, and published, from that instant on: one period before a state shows it.
+    # A new value is in force, and published, at once: one period before a state shows it.
     set_at = [stamp for stamp, name, _ in record.changes if name == "internal_leakage"]
     before = record.stamps[np.maximum(changed - 1, 0)]
     stamps = np.where(np.isin(before, set_at), before, stamps)

@@ -28,11 +28,11 @@ STATES = {
     "flow_b": "flow_b",
     "supply_pressure": "supply_pressure",
 }
-"""The plant's column behind each channel: of usual instruments, and of what they do not show."""
+"""The plant's column of each channel: those of usual instruments, and those that these do not measure."""
 
 
 def as_recording(record: Simulated, states: bool = False) -> Recording:
-    """A simulated record as `write_simulated` and a reader would hand it on; with `states`, those channels too."""
+    """A simulated record as after `write_simulated` and reading; with `states`, also the channels of STATES."""
     hidden, driving = record.composition.source.hides, record.inputs
     columns = {name: column for name, column in (SENSORS | (STATES if states else {})).items() if column not in hidden}
     samples = {name: Samples(record.stamps, record.column(column)) for name, column in columns.items()}
@@ -46,7 +46,7 @@ def as_recording(record: Simulated, states: bool = False) -> Recording:
 def write_csv(path: str | Path, record: Simulated, instruments_only: bool = False) -> int:
     """Write a simulated record as a table with a header row: absolute pressures, SI; returns the number of rows.
 
-    Without `instruments_only` it has what usual instruments do not show, too.
+    Without `instruments_only` it also has the channels that usual instruments do not measure.
 
     Raises:
         RecordingError: the file exists already or cannot be written.

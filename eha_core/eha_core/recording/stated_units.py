@@ -1,4 +1,4 @@
-"""The unit that a name or a message's type states."""
+"""The unit stated by a name or a message's type."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ _OF_TYPE = {
     ("geometry_msgs/msg/Wrench", "force."): "N",
     ("geometry_msgs/msg/WrenchStamped", "wrench.force."): "N",
 }
-"""Units that a message's definition states, by its type and how the path begins."""
+"""Units that a message's definition states, by its type and the begin of the path."""
 _NO_UNITS = frozenset(("in", "at", "d", "h", "t", "l", "min", "day", "k", "hz", "w", "g"))
-"""Units, in small letters, that at the end of a name mean something else more often."""
+"""Units, in small letters, that usually mean something else at the end of a name."""
 
 
 def unit_of_name(name: str, names: tuple[str, ...] = ()) -> str:
-    """The unit that a name states, in brackets or at its end, as `x_mm` and `p_A (bar)` do; empty where it has none.
+    """The unit that a name states in brackets or at its end, as in `x_mm` and `p_A (bar)`; empty without one.
 
     Args:
         name: a column's name.
-        names: all columns' names: of `valve_A` and `valve_B` neither ends in a unit.
+        names: all columns' names: neither `valve_A` nor `valve_B` ends in a unit.
     """
     if stated := unit_in(name):
         return stated
@@ -41,7 +41,7 @@ def unit_of_name(name: str, names: tuple[str, ...] = ()) -> str:
         return match[1]
     if re.search(r"\bin\s+$", name[: match.start(1)]) and match[1] in UNITS:
         return match[1]
-    # One letter may be part of the name, as in p_A and x_m; it is a unit after a word, or where it is the usual one.
+    # A single letter may be part of the name, as in p_A and x_m; it is a unit after a word, or if it is the usual one.
     before = name[: match.start()].lower()
     usual = (match[1], before[:1]) in (("V", "u"), ("V", "v"), ("N", "f"), ("s", "t"), ("A", "i"))
     is_side = match[1] == "A" and (name[: match.start(1)] + "B" in names or names_a_side(before))
@@ -51,11 +51,11 @@ def unit_of_name(name: str, names: tuple[str, ...] = ()) -> str:
 
 
 def unit_of_type(type_name: str, path: str) -> str:
-    """The unit of a message's number by its definition, or by an interface's name; empty where neither tells."""
+    """The unit of a message's number by its definition or by an interface's name; else empty."""
     for (of_type, start), unit in _OF_TYPE.items():
         if of_type == type_name and path.startswith(start):
             return unit
-    # An interface of ros2_control is called by its joint and its kind; what a command's effort is, the hardware says.
+    # An interface of ros2_control is named by its joint and kind; the meaning of a command's effort depends on the rig.
     if "command_interface" in path:
         return ""
     return {"position": "m", "velocity": "m/s", "effort": "N"}.get(path.rpartition("/")[2].partition("]")[0], "")

@@ -1,4 +1,4 @@
-"""Says which channel each number of a file may be, by its name, unit and numbers: for certain, or as a question."""
+"""Suggests which channel each number of a file may be, by its name, unit and range: certain, or as a question."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ _CHANNELS = (
     "supply_pressure", "position", "velocity", "force",
 )  # fmt: skip
 _USUAL_CHANNELS = ("voltage_command", "position", "pressure_a", "pressure_b")
-"""What a column without a telling name is asked to be, where no other column is it."""
+"""The channels that are asked for among columns without a meaningful name, where no other column is one."""
 _IN_PLACE = "is this to be the force of the oil on the piston, in place of both pressures?"
 MOST_UNNAMED = 12
-"""Fields without a telling name that are offered."""
+"""Most fields without a meaningful name that are offered."""
 _ONE_SIDED = 1e-3
-"""Share of its largest value that a one-sided command may go below zero."""
+"""Share of its largest value by which a one-sided command may be below zero."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """What only somebody who knows the rig can say of a channel, and the possible answers, the likely one first.
+    """A question about a channel that only the user can answer, and the possible answers, the likely one first.
 
-    None among them means no such channel. `is_open` marks a question after fields of which neither name nor unit
-    says anything.
+    None among them means no such channel. `is_open` marks a question about fields with neither a meaningful name nor a
+    unit.
     """
 
     channel: str
@@ -46,7 +46,7 @@ class Question:
 
 @dataclass(frozen=True)
 class Suggestions:
-    """The channels of a file: those that are certain, and questions on others; `time` is among them for a table."""
+    """The channels of a file: certain ones, and questions about others; for a table, `time` is among them."""
 
     certain: tuple[Reading, ...]
     questions: tuple[Question, ...]
@@ -55,8 +55,8 @@ class Suggestions:
 def suggest(inspection: Inspection) -> Suggestions:
     """Which channels a file's numbers may be.
 
-    A channel is certain where one field alone is called so and its unit is known, by the file, its name or the type of
-    its message; everything else is asked.
+    A channel is certain if only one field has its name and the unit is known from the file, the name or the message's
+    type; everything else is a question.
     """
     certain: list[Reading] = []
     questions: list[Question] = []
@@ -92,12 +92,12 @@ def suggest(inspection: Inspection) -> Suggestions:
 
 
 def _are_torques(fields: Sequence[MeantField]) -> bool:
-    """Whether fields are of a force only by a lever: nothing to ask where both pressures tell it."""
+    """Whether fields give a force only by a lever, so that no question is needed where both pressures are known."""
     return all((unit := unit_named(one.field.unit)) is not None and unit.si == "N m" for one in fields)
 
 
 def _by_contract(inspection: Inspection) -> dict[str, Reading]:
-    """The channels that are found without a topics file."""
+    """The channels that are read without a topics file."""
     if not inspection.topics:
         named = {field.path: field for field in inspection.fields if field.count and not field.problem}
         exact = {name: named[name] for name in CHANNEL_KINDS if name in named and named[name].unit in ("", si_of(name))}
@@ -121,7 +121,7 @@ def _by_contract(inspection: Inspection) -> dict[str, Reading]:
 
 
 def _claims(fields: Sequence[MeantField]) -> dict[str, list[MeantField]]:
-    """The fields that may be each channel: those called so, or where none is, those in its unit that no name tells."""
+    """The fields that may be each channel: those named so, or else those in its unit without a meaningful name."""
     claims: dict[str, list[MeantField]] = {}
     for channel in _CHANNELS:
         called = [one for one in fields if channel in one.meaning.channels]
@@ -136,7 +136,7 @@ def _claims(fields: Sequence[MeantField]) -> dict[str, list[MeantField]]:
 
 
 def _of_channel(channel: str, claims: Mapping[str, list[MeantField]], both: bool) -> Reading | Question | None:
-    """The certain reading of a channel, or the question after it."""
+    """The certain reading of a channel, or the question about it."""
     fields = claims[channel]
     if channel == "voltage_command" and (pair := _one_sided(fields)) is not None:
         return pair
@@ -156,7 +156,7 @@ def _of_channel(channel: str, claims: Mapping[str, list[MeantField]], both: bool
 
 
 def _one_sided(fields: Sequence[MeantField]) -> Question | None:
-    """The question after a command of two one-sided columns; None where the fields are none."""
+    """The question about a command of two one-sided columns; None where the fields are not such columns."""
     if (
         len(fields) != 2
         or {one.meaning.side for one in fields} != {1, -1}
@@ -201,7 +201,7 @@ def _text(channel: str, fields: Sequence[MeantField], readings: Sequence[Reading
 
 
 def _calibration(channel: str, field: Field, readings: Sequence[Reading]) -> str:
-    """What the points of a sensor are asked by."""
+    """The question about the points of a sensor."""
     reading = next(one for one in readings if one.points)
     raw = " and at ".join(f"{place:g}" for place, _ in reading.points)
     what = channel.replace("_", " ").replace("pressure a", "pressure A").replace("pressure b", "pressure B")
@@ -211,7 +211,7 @@ def _calibration(channel: str, field: Field, readings: Sequence[Reading]) -> str
 def _open_questions(
     fields: Sequence[MeantField], certain: Sequence[Reading], questions: Sequence[Question]
 ) -> list[Question]:
-    """The questions after usual channels that no field is called, with the fields whose name and unit say nothing."""
+    """The questions about usual channels that no field is named, with the fields without a meaningful name or unit."""
     asked = [reading.field for question in questions for reading in question.readings if reading is not None]
     taken = [*asked, *(reading.field for reading in certain)]
     nameless = [
@@ -234,14 +234,14 @@ def _open_questions(
 
 
 def _is_of_a_card(one: MeantField) -> bool:
-    """Whether a field without a telling name is what a measuring card or a sensor gives, whatever it measures."""
+    """Whether a field without a meaningful name may be the raw number of a measuring card or a sensor."""
     unit, meaning = unit_named(one.field.unit), one.meaning
     tells = meaning.channels or meaning.is_wanted or meaning.is_other
     return not tells and unit is not None and unit.si in ("V", "A", "%", "counts")
 
 
 def used(suggestions: Suggestions) -> Mapping[tuple[str, str], list[str]]:
-    """The channels that each field may be, by topic and path."""
+    """The channels that each field may be, by the field's topic and path."""
     found: dict[tuple[str, str], list[str]] = {}
     readings = [*suggestions.certain, *(reading for question in suggestions.questions for reading in question.readings)]
     for reading in readings:
@@ -254,7 +254,7 @@ def used(suggestions: Suggestions) -> Mapping[tuple[str, str], list[str]]:
 
 
 def rate_of(inspection: Inspection, suggestions: Suggestions) -> float:
-    """Rows in a second of a table whose time is certain; NaN for others."""
+    """Rows per second of a table whose time is certain; NaN for others."""
     time = next((reading for reading in suggestions.certain if reading.channel == "time"), None)
     if time is None:
         return inspection.rate if inspection.rate is not None and not _asks_time(suggestions) else nan

@@ -1,4 +1,4 @@
-"""Reads the columns of a table, whatever file they are in, into samples by channel."""
+"""Reads the columns of a table, from any kind of file, into samples by channel."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from eha_core.tables import Column, Table
 from eha_core.unit_names import UNITS
 
 FEWEST = 20
-"""Times below which nothing is said of their unit."""
+"""Fewest times from which their unit is inferred."""
 FINE = 2.0**60
-"""ns from which on a float holds no times finer than 0.1 us, so that even steps come out uneven."""
+"""ns above which a float resolves no times finer than 0.1 us, so that even steps become uneven."""
 FARTHEST = 2**62
-"""ns from 1970 that a stamp may lie: 146 years."""
+"""ns; largest distance of a stamp from 1970: 146 years."""
 
 
 def channels_of(
     path: Path, table: Table, topics_file: TopicsFile | None
 ) -> tuple[dict[str, Samples], dict[str, ChannelRule], tuple[str, ...]]:
-    """The columns that are channels, and remarks on what was assumed or lost.
+    """The columns that are channels, and remarks on assumptions and losses.
 
-    Times are s, since any epoch, or what the file or the topics file says; dates, and counts that only one epoch can
-    have, are recognised.
+    Times are in s since any epoch, or as stated by the file or the topics file; dates, and counts that only one epoch
+    can have, are recognised.
 
     Raises:
         RecordingError: no time, a column that the topics file names is not there or has another length, or one loses
@@ -61,7 +61,7 @@ def channels_of(
 
 
 class _Clocks:
-    """The stamps of a table's rows: one time for all columns, or several."""
+    """The stamps of a table's rows: of one time for all columns, or of several."""
 
     def __init__(self, path: Path, table: Table, rule: ChannelRule) -> None:
         self.remarks: list[str] = []
@@ -85,16 +85,16 @@ class _Clocks:
                     f"{self._path}: no column {rule.minus!r} as long as {column!r}, for channel {channel}"
                 )
             values = values - columns[rule.minus].astype(np.float64)
-        # What is not there is counted among the table's losses.
+        # Missing values are counted among the table's losses.
         there = timed & ~np.isnan(values) if column in self._table.losses else timed
         return Samples(stamps[there[timed]], values[there])
 
     def require_main(self) -> None:
-        """Raise RecordingError where a table without channels has no time either, which is then the likely mistake."""
+        """Raise RecordingError where a table without channels also has no time, which is then the likely mistake."""
         self._of(self._time_of("", ChannelRule()), None)
 
     def _time_of(self, column: str, rule: ChannelRule) -> str:
-        """The column of a channel's times; empty where its rows are counted."""
+        """The column of a channel's times; empty where its rows are counted instead."""
         if rule.time is not None:
             return rule.time
         if self._rule.column is not None:
@@ -105,7 +105,7 @@ class _Clocks:
         return "" if rate is not None and "time" not in self._table.columns else "time"
 
     def _of(self, time: str, count: int | None) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
-        """Which rows have a time, and those times as stamps."""
+        """Flags of the rows with a time, and these times as stamps."""
         if time in self._known:
             return self._known[time]
         if time == "":
@@ -133,7 +133,7 @@ class _Clocks:
         return timed, stamps
 
     def _in_order(self, time: str) -> Column:
-        """A column of times. Raises RecordingError where day and month may stand either way, and nothing says how."""
+        """A column of times. Raises RecordingError where the order of day and month is ambiguous."""
         order = self._table.other_orders.get(time)
         if order is None or self._rule.day_first == order.day_first:
             return self._table.columns[time]
@@ -146,7 +146,7 @@ class _Clocks:
 
 
 def _lost(path: Path, table: Table, channel: str, rule: ChannelRule) -> list[str]:
-    """What of a channel's columns could not be had.
+    """The losses of a channel's columns, in words.
 
     Raises:
         RecordingError: it loses its largest or smallest values.
@@ -173,23 +173,23 @@ def _listed(table: Table) -> str:
 def stamps_of(
     where: str, times: Column, rule: ChannelRule, stated: str, rate: float | None = None
 ) -> tuple[NDArray[np.int64], tuple[str, ...]]:
-    """The times as stamps [ns], and remarks where their unit was taken from their size, or a counter began anew.
+    """The times as stamps [ns], and remarks where their unit was inferred from their size, or a counter wrapped.
 
     Args:
-        where: how messages begin.
+        where: the begin of messages.
         times: finite times in the order of the file.
-        rule: what a topics file says of them.
-        stated: the unit that the file itself states; empty where it states none.
-        rate: rows in a second that the file states [Hz]; None where it states none.
+        rule: the topics file's rule for them.
+        stated: the unit that the file itself states; empty without one.
+        rate: rows per second that the file states [Hz]; None without one.
 
     Raises:
-        RecordingError: the unit is open, or the times are beyond any calendar.
+        RecordingError: the unit is not clear, or the times are beyond any calendar.
     """
     times, wrapped = unwrapped(times)
     remarks = (f"{where} {wrapped}",) if wrapped else ()
     scale = rule.scale
     if rule.rate is not None and (usual_step(times) <= 0.0 or repeats(times)):
-        # Times that stand are coarser than the samples, which only their number tells apart.
+        # Repeated times are coarser than the samples, which only their number distinguishes.
         return np.round(np.arange(len(times)) * (1e9 / rule.rate)).astype(np.int64), remarks
     if rule.rate is not None:
         scale = 1.0 / (rule.rate * usual_step(times))
@@ -197,22 +197,22 @@ def stamps_of(
         scale, said = _scale(where, times, stated, rate)
         remarks = (*remarks, *said)
     if times.dtype == np.int64 and scale == 1e-9 and rule.offset == 0.0:
-        return times, remarks  # to the last ns, which a float cannot tell since 1970
-    # The first time is set apart, or an epoch's digits would leave none for the steps.
+        return times, remarks  # exact to the ns, which a float since 1970 is not
+    # The first time is subtracted, or an epoch's digits would leave none for the steps.
     first = float(times[0]) * scale + rule.offset
     with np.errstate(over="ignore"):
         since = (times - times[0]).astype(np.float64) * scale * 1e9
     since = _even(since, abs(float(times[0])) * scale * 1e9)
     if abs(first) * 1e9 > FARTHEST and scale in (UNITS["day"].scale, UNITS["100ns"].scale):
-        first = 0.0  # since the year 0, 1 or 1601; only how far they lie apart matters
+        first = 0.0  # since the year 0, 1 or 1601; only differences matter
     if not (abs(first) * 1e9 <= FARTHEST and float(np.max(np.abs(since))) <= FARTHEST):
         raise RecordingError(f"{where} is beyond any calendar; it must be in s, or say its `unit` in a topics file")
     return round(first * 1e9) + np.round(since).astype(np.int64), remarks
 
 
 def _even(since: FloatArray, size: float) -> FloatArray:
-    """Times [ns] since the first at even steps, where they differ from those by no more than a float of their size can
-    tell: a day's number holds 10 us."""
+    """Times [ns] since the first, at even steps where they differ from these by no more than a float's resolution: that
+    of a day number is 10 us."""
     if len(since) < FEWEST or size < FINE:
         return since
     count = np.arange(len(since), dtype=np.float64)
@@ -222,7 +222,7 @@ def _even(since: FloatArray, size: float) -> FloatArray:
 
 
 def _scale(where: str, times: Column, stated: str, rate: float | None) -> tuple[float, tuple[str, ...]]:
-    """What makes seconds of times of which no topics file says anything, and a remark where it is no certain thing."""
+    """The factor from times to seconds without a topics file's rule, and a remark where it is not certain."""
     with np.errstate(over="ignore"):
         steps = np.abs(np.diff(times).astype(np.float64))
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0

@@ -1,4 +1,4 @@
-"""Says which column of a table is its time, and in which unit: for certain, or as a question."""
+"""Suggests which column of a table is its time, and in which unit: certain, or as a question."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _ROWS = "how many samples a second? the file has no times"
 
 @dataclass(frozen=True)
 class TimeQuestion:
-    """The question after a table's time: its words, and the possible answers, the likely one first."""
+    """The question about a table's time: its text, and the possible answers, the likely one first."""
 
     text: str
     readings: tuple[Reading, ...]
 
 
 def suggest_time(inspection: Inspection, fields: Sequence[Field]) -> list[Reading | TimeQuestion]:
-    """A table's time; nothing where each of its columns has its own, or its stated rate gives the times."""
+    """A table's time; empty where each column has its own, or a stated rate gives the times."""
     own = {field.time for field in fields if field.time}
     if own:
         return _own_times(fields, own)
@@ -35,7 +35,7 @@ def suggest_time(inspection: Inspection, fields: Sequence[Field]) -> list[Readin
     moving = [field for field in named if field.step > 0.0 and field.repeated == 0.0]
     indices = [field for field in fields if _is_index(field)]
     standing = [field for field in named if field.repeated > 0.0]
-    # A date says more than a count of ms, and both more than a number of samples.
+    # A date is better than a count of ms, and both are better than a sample number.
     for field in sorted(moving, key=lambda one: (one.unit != "ns", one.unit == "", fields.index(one))):
         found = _of_times(field, rate)
         if isinstance(found, Reading):
@@ -65,14 +65,14 @@ def suggest_time(inspection: Inspection, fields: Sequence[Field]) -> list[Readin
 
 
 def _own_times(fields: Sequence[Field], own: set[str]) -> list[Reading | TimeQuestion]:
-    """What is open of the times that columns have of their own."""
+    """The readings of the columns' own times, or questions about them."""
     clocks = [field for field in fields if field.path in own]
     open_clocks = [one for field in clocks if isinstance(one := _of_times(field, None), TimeQuestion)]
     return [open_clocks[0]] if open_clocks else []
 
 
 def _is_time(field: Field) -> bool:
-    """Whether a field is called a time, or in a unit of it."""
+    """Whether a field is named a time, or has a unit of time."""
     unit = unit_named(field.unit)
     if unit is not None and unit.si != "s":
         return False
@@ -88,7 +88,7 @@ def _may_be_time(field: Field) -> bool:
 
 
 def _is_index(field: Field) -> bool:
-    """Whether a field numbers the rows: called so, and going up by whole steps."""
+    """Whether a field numbers the rows: named so, and increasing by whole steps."""
     words = [word for word in words_of(field.path) if not word.isdigit()] or (
         ["n"] if field.path.strip() == "#" else []
     )
@@ -130,7 +130,7 @@ def _of_times(field: Field, rate: float | None) -> Reading | TimeQuestion:
 
 
 def _of_standing(field: Field) -> TimeQuestion:
-    """The question after times that are coarser than the samples."""
+    """The question about times that are coarser than the samples."""
     unit = unit_named(field.unit)
     rate = field.repeated / (unit.scale if unit is not None and unit.si == "s" else UNITS["s"].scale)
     text = f'"{field.path}": several rows have the same time; are there {rate:.6g} rows in a second?'

@@ -1,4 +1,4 @@
-"""What a column of times counts: one table of the forms in which loggers write instants, and one rule to choose."""
+"""The unit of a column of times: a table of the forms in which loggers write times, and one rule to choose."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from eha_core.tables import Column
 from eha_core.unit_names import UNITS, unit_named
 
 LONGEST_STEP = 1.0
-"""s between samples from which on a time is no second's count: so slow a recording shows no actuator's dynamics."""
+"""s; longest sampling period: a slower recording does not show an actuator's dynamics, so the unit is another."""
 FASTEST = 5e4
-"""Hz; what would be recorded faster counts another unit: no logger of a rig samples its pressures so fast."""
+"""Hz; highest sampling rate: no logger samples a rig's pressures faster, so the unit is another."""
 ONLY_NS = 1e6
-"""Steps from which on a count is of ns: in us it would be slower than LONGEST_STEP."""
+"""Step from which a count is in ns: in us it would be slower than LONGEST_STEP."""
 AGREES = 0.05
-"""Share by which a stated rate and that of the times may differ: loggers' clocks are better, and round their rate."""
+"""Relative difference allowed between a stated rate and that of the times: clocks are better, but rates are rounded."""
 MOST_REPEATED = 0.2
-"""Share of steps in which times may stand: a logger that is late writes two rows at once now and then."""
+"""Largest share of repeated times: a late logger occasionally writes two rows at once."""
 _WRAPS_WITHIN = 3.0
-"""Steps by which a counter may miss its period where it begins anew."""
+"""Steps by which a counter may miss its period where it wraps."""
 _MOST_WRAPS = 0.1
-"""Share of the steps that may go backwards in a counter that wraps."""
+"""Largest share of backward steps in a counter that wraps."""
 
 
 @dataclass(frozen=True)
 class TimeForm:
-    """A way to write instants: its unit, between which values the instants of 2001 to 2096 lie, and since when."""
+    """A way to write times: its unit, the range of values of the years 2001 to 2096, and the epoch."""
 
     unit: str
     low: float
@@ -45,22 +45,23 @@ FORMS: tuple[TimeForm, ...] = (
     TimeForm("day", 730_852.0, 765_916.0, "the year 0, as MATLAB counts"),
     TimeForm("day", 2_451_910.0, 2_486_975.0, "the Julian epoch"),
 )
-"""Instants since any epoch in s, Unix and GPS alike, need no word: they go by steps of less than a second."""
+"""Times in s since any epoch, Unix and GPS alike, need no entry: their steps are less than a second."""
 _PERIODS = (
     *(2.0**bits for bits in (8, 15, 16, 31, 32)), *(2.0**32 * scale for scale in (1e-3, 1e-6)), 2.0**16 * 1e-3,
     60.0, 1e3, 3600.0, 43_200.0, 86_400.0, 1e6, 86_400e3, 86_400e6, 3600e9, 43_200e9, 86_400e9, 604_800.0,
 )  # fmt: skip
-"""Where counters begin anew: at whole bytes, of ms and us in s too; clocks at the minute, hour, noon, midnight."""
+"""Periods after which counters wrap: at whole bytes, also of ms and us in s; clocks at the minute, hour, noon,
+midnight."""
 
 
 @dataclass(frozen=True)
 class TimeUnit:
-    """What times may be counted in.
+    """The possible units of times.
 
     Attributes:
         units: the possible units, the likely one first.
         is_certain: whether the first is certain.
-        why: how it is known, where the file does not state it.
+        why: the reason, where the file does not state the unit.
     """
 
     units: tuple[str, ...]
@@ -69,11 +70,11 @@ class TimeUnit:
 
 
 def time_unit(first: float, step: float, stated: str = "", rate: float | None = None) -> TimeUnit:
-    """In which unit times are, by what the file states, how they begin and how far they go in a step.
+    """The unit of times, from the file's statement, their first value and their step.
 
     Args:
         first: the first time.
-        step: the usual step; zero where the times stand.
+        step: the usual step; zero where the times repeat.
         stated: the unit that the file states; empty for none.
         rate: the rate that the file states [Hz]; None for none.
     """
@@ -111,28 +112,28 @@ def _agree(rate: float, step: float, unit: str) -> bool:
 
 
 def _plausible(step: float) -> tuple[str, ...]:
-    """Units in which a step makes a recording of an actuator."""
+    """Units in which a step is plausible for a recording of an actuator."""
     units = ("s", "ms", "us", "100ns", "ns", "min", "h", "day")
     return tuple(one for one in units if step > 0.0 and 1.0 / FASTEST <= step * UNITS[one].scale < LONGEST_STEP)
 
 
 def usual_step(times: Column) -> float:
-    """The usual step of times that never go back; zero for others, and where most stand."""
-    # Whole numbers are distinguished as they are: ns since 1970 are more than a float holds.
+    """The usual step of times that never decrease; zero for others, and where most repeat."""
+    # Integers are compared as they are: ns since 1970 exceed a float's resolution.
     with np.errstate(over="ignore"):
         steps = np.diff(times).astype(np.float64)
     return float(np.median(steps)) if len(steps) and np.all(steps >= 0.0) and steps.any() else 0.0
 
 
 def repeats(times: Column) -> bool:
-    """Whether times often stand and never go back: a clock coarser than the samples."""
+    """Whether times often repeat and never decrease: a clock coarser than the samples."""
     with np.errstate(over="ignore"):
         steps = np.diff(times).astype(np.float64)
     return bool(len(steps) > 2 and np.all(steps >= 0.0) and steps.any() and np.mean(steps == 0.0) > MOST_REPEATED)
 
 
 def unwrapped(times: Column) -> tuple[Column, str]:
-    """Times that go on where a counter or a clock began anew, and a remark where one did."""
+    """Times continued where a counter or a clock wrapped, and a remark where one did."""
     if len(times) < 3:
         return times, ""
     with np.errstate(over="ignore"):

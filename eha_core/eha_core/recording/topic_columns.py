@@ -1,4 +1,4 @@
-"""Gathers the messages of a topic into columns of numbers, many at a time, without decoding each."""
+"""Collects the messages of a topic into columns of numbers, many at a time, without decoding each."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ Bytes = NDArray[np.uint8]
 
 _ALL_BITS = 2**64 - 1
 BLOCK = 4096
-"""Single messages that are held back until they are read together."""
+"""Single messages that are collected before they are read together."""
 MOST_LAYOUTS = 32
-"""Layouts of a topic that are tried on a block of messages; where there are more, each message is read by itself."""
+"""Most layouts of a topic that are tried on a block of messages; with more, each message is read by itself."""
 
 
 MOST_COMPARED = 2**20
-"""Bytes that are compared at once; their places take eight times as much memory."""
+"""Bytes that are compared at once; their indices take eight times as much memory."""
 
 
 @dataclass(frozen=True)
@@ -36,10 +36,10 @@ class DecodedTopic:
 
     Attributes:
         stamps: header stamps where the messages have them, else log times [ns].
-        logged: when each message was recorded [ns].
-        lead: median of log time minus stamp, which is how far the recorder's clock leads the stamps' clock [ns].
+        logged: log time of each message [ns].
+        lead: median of log time minus stamp: the lead of the recorder's clock over the stamps' clock [ns].
         columns: values by channel name, in the message's unit; NaN where a message lacks the element.
-        remarks: what was left out.
+        remarks: what was excluded.
     """
 
     name: str
@@ -52,7 +52,7 @@ class DecodedTopic:
 
 @dataclass(frozen=True)
 class _Template:
-    """A layout, the bytes by which it is recognised, and where the wanted numbers lie in it."""
+    """A layout, the bytes by which it is recognised, and the places of the wanted numbers in it."""
 
     layout: Layout
     marks: Integers
@@ -65,13 +65,13 @@ _Block = tuple[Integers, Integers, dict[str, FloatArray]]
 
 
 class TopicColumns:
-    """Takes the messages of one topic as they are read from a file; holds the wanted numbers of each and no more.
+    """Takes the messages of one topic as they are read from a file, and keeps only the wanted numbers.
 
     Args:
         topic: the topic.
         fields: paths inside the message by channel name.
         tables: the names of its values by version, for ros2_control's introspection.
-        optional: channels that are left out, with a remark, where it is open which element of the message they are.
+        optional: channels that are omitted, with a remark, where it is not clear which element they are.
 
     Raises:
         RecordingError: the type's definition is missing, or a field is not in the message.
@@ -117,7 +117,7 @@ class TopicColumns:
         """The messages since the last call as columns; they are not kept.
 
         Raises:
-            RecordingError: which element of a message is meant is open.
+            RecordingError: it is not clear which element of a message is meant.
         """
         self._flush()
         if self._problem is not None:
@@ -129,7 +129,7 @@ class TopicColumns:
         logged = np.concatenate([block[0] for block in blocks])
         stamps = np.concatenate([block[1] for block in blocks])
         columns = {channel: np.concatenate([block[2][channel] for block in blocks]) for channel in self._steps}
-        # A header that its publisher never filled in is none.
+        # A header that its publisher never filled in does not count.
         if not stamps.any():
             return DecodedTopic(name, logged, logged, 0, columns, tuple(remarks))
         return DecodedTopic(name, stamps, logged, int(np.median(logged - stamps)), columns, tuple(remarks))
@@ -140,7 +140,7 @@ class TopicColumns:
         times, payloads = zip(*self._pending, strict=True)
         self._pending = []
         lengths = np.array([len(payload) for payload in payloads], dtype=np.int64)
-        # SQLite's times are signed, MCAP's are not; of damaged ones either may be anything.
+        # SQLite's times are signed, MCAP's are not; damaged ones may have any value.
         logged = np.array([time & _ALL_BITS for time in times], dtype=np.uint64).astype(np.int64)
         content = np.frombuffer(b"".join(payloads), np.uint8)
         self._read(content, np.cumsum(lengths) - lengths, lengths, logged)
@@ -179,7 +179,7 @@ class TopicColumns:
         self, template: _Template, content: Bytes, starts: Integers, lengths: Integers, left: Integers,
         stamps: Integers, columns: Mapping[str, FloatArray],
     ) -> Integers:  # fmt: skip
-        """Read those of the messages `left` that have the template's layout; return the others."""
+        """Read the messages among `left` that have the template's layout; return the others."""
         alike = lengths[left] == template.layout.length
         rows = left[alike]
         if not len(rows):
@@ -197,7 +197,7 @@ class TopicColumns:
         return others
 
     def _template(self, data: bytes) -> _Template:
-        """The template of a message's layout. Raises ValueError for bytes that are no message of the type."""
+        """The template of a message's layout. Raises ValueError for bytes that are not a message of the type."""
         layout = layout_of(self._store, self._topic.type_name, data)
         marks = list(layout.marks)
         version = None
@@ -212,7 +212,7 @@ class TopicColumns:
             try:
                 runs[channel] = find(self._topic.name, steps, layout, self._tables, version)
             except RecordingError as problem:
-                # What the first message has and a later one lacks is missing there, and no mistake.
+                # An element of the first message that a later one lacks is missing there, which is no error.
                 if not self._templates and channel not in self._optional:
                     raise
                 if not self._templates:
@@ -229,7 +229,7 @@ def _no_messages(channels: Iterable[str]) -> _Block:
 
 
 def _agree(content: Bytes, starts: Integers, template: _Template) -> NDArray[np.bool_]:
-    """Which messages have the bytes by which the template is recognised."""
+    """Flags of the messages with the bytes by which the template is recognised."""
     step = max(1, MOST_COMPARED // len(template.marks))
     parts = [
         np.all(content[starts[first : first + step, None] + template.marks] == template.marked, axis=1)

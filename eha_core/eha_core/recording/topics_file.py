@@ -1,4 +1,4 @@
-"""Reads the topics file, which says where each channel is found, or still asks."""
+"""Reads the topics file, which maps each channel to its source or has a question about it."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from eha_core.unit_names import UNITS, Unit, unit_named
 from eha_core.yaml_file import load_yaml
 
 MOST_CANDIDATES = 3
-"""Answers to an open question that are shown in a message; the file has them all."""
+"""Most answers to an open question that are shown in a message; the file has them all."""
 OF_TIMES = ("rate", "day_first")
-"""Keys that only the time has."""
+"""Keys of the time only."""
 
 
 @dataclass(frozen=True)
 class OpenQuestion:
-    """What a topics file still asks of a channel: the words, and the possible answers, None for no such channel."""
+    """An open question about a channel: its text, and the possible answers, None for no such channel."""
 
     text: str
     candidates: tuple[ChannelRule | None, ...]
 
     @property
     def likely(self) -> ChannelRule | None:
-        """The first answer that needs no further number; None where there is none."""
+        """The first answer that needs no further number; None without one."""
         return next((one for one in self.candidates if one is not None and not one.is_open), None)
 
 
@@ -37,7 +37,7 @@ class OpenQuestion:
 class TopicsFile:
     """A topics file as read: rules by channel name (None leaves a channel out) and the namespace to look in.
 
-    `remarks` say what was assumed where the file still asks.
+    `remarks`: the answers assumed to open questions.
     """
 
     channels: Mapping[str, ChannelRule | None]
@@ -52,10 +52,10 @@ def load_topics_file(path: str | Path, assume: bool = False) -> TopicsFile:
 
     Args:
         path: the file.
-        assume: take the likely answer where the file still asks, and say so in the remarks.
+        assume: take the likely answers to open questions, and list them in the remarks.
 
     Raises:
-        RecordingError: the file is missing, is no YAML, names an unknown channel or key, or asks what is not answered.
+        RecordingError: the file is missing, is not YAML, names an unknown channel or key, or has an open question.
     """
     content = load_yaml(path, RecordingError, f"topics file {path}")
     if not isinstance(content, dict) or not isinstance(content.get("channels"), dict):
@@ -78,7 +78,7 @@ def load_topics_file(path: str | Path, assume: bool = False) -> TopicsFile:
 
 
 def assumptions(by_channel: Mapping[str, str]) -> tuple[str, ...]:
-    """What was taken without a question, one line for channels alike."""
+    """The assumptions made without a question, one line for channels with the same one."""
     channels: dict[str, list[str]] = {}
     for channel, assumed in by_channel.items():
         if assumed:
@@ -110,7 +110,7 @@ def _answered(
     """The likely answers to open questions, and remarks on them.
 
     Raises:
-        RecordingError: nothing is to be assumed, or nothing is likely.
+        RecordingError: `assume` is not set, or no answer is likely.
     """
     answers: dict[str, ChannelRule | None] = {}
     remarks = []
@@ -197,7 +197,7 @@ def _points(where: str, given: Any, may_be_open: bool) -> Points:
     """The points of a sensor in the order of their raw numbers.
 
     Raises:
-        RecordingError: they are no pairs of numbers, fewer than two, or one raw number has two values.
+        RecordingError: they are not pairs of numbers, fewer than two, or one raw number has two values.
     """
     example = "write for example `points: [[4, 0], [20, 250]]`"
     if (
@@ -231,10 +231,10 @@ def _rate(where: str, given: Any, may_be_open: bool) -> float:
 
 
 def _unit_of(where: str, channel: str, text: str) -> Unit:
-    """The unit that a topics file says of a channel.
+    """The unit that a topics file gives for a channel.
 
     Raises:
-        RecordingError: it is no unit, or one of another quantity.
+        RecordingError: it is not a unit, or one of another quantity.
     """
     si = "s" if channel == "time" else CHANNEL_KINDS[channel].unit
     fitting = [name for name, unit in UNITS.items() if unit.si == si]

@@ -1,4 +1,4 @@
-"""Writes a topics file: channels that are certain as entries, questions with their possible answers as data."""
+"""Writes a topics file: certain channels as entries, questions with their possible answers as data."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eha_core.recording.suggestions import Question, Suggestions, rule_of, used
 
 
 def topics_text(inspection: Inspection, suggestions: Suggestions) -> str:
-    """The text of a topics file that `eha diagnose --topics` takes once its questions are answered."""
+    """The text of a topics file for `eha diagnose --topics`, once its questions are answered."""
     lines = [f"# Channels of {quoted(inspection.path.name)}, as `eha inspect` found them."]
     if suggestions.questions:
         lines.append("# Where it says `ask`, put the right one of the answers in place of `{question: ..., ask: ...}`;")
@@ -39,7 +39,7 @@ def topics_text(inspection: Inspection, suggestions: Suggestions) -> str:
 
 
 def _candidate(reading: Reading | None, question: Question) -> str:
-    """A possible answer; where several columns are in question, with how far its own goes."""
+    """A possible answer; where several columns are in question, with the range of its own."""
     if reading is None:
         return entry_text(None)
     field = reading.field

@@ -1,4 +1,4 @@
-"""Brings samples to the model's units, and refuses numbers that can only be in others."""
+"""Converts samples to the model's units, and refuses numbers that must be in others."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ _UNITS = {
     "m": {"mm": "1.0e-3", "um": "1.0e-6"},
 }
 _USUAL = {"Pa": (1e6, 5e7), "m": (1e-3, 5.0)}
-"""What rigs reach, of that unit; only a message depends on it."""
+"""Usual ranges on rigs, by unit; only a message depends on them."""
 
 _MOST_OUTLIERS = 0.01
-"""A larger share of impossible samples is no run of outliers but another unit."""
+"""Largest share of impossible samples that counts as outliers; above it, the unit is another."""
 
 
 def in_model_units(
     where: str, name: str, rule: ChannelRule, samples: Samples, atmosphere: float
 ) -> tuple[Samples, tuple[str, ...]]:
-    """Scale to SI and pressures to gauge; also say what was left out or assumed.
+    """The samples in SI, pressures as gauge, and remarks on what was excluded or assumed.
 
     Raises:
-        RecordingError: the numbers cannot be in the unit that was said.
+        RecordingError: the numbers cannot be in the stated unit.
     """
     kind = CHANNEL_KINDS[name]
     values = rule.in_si(samples.values)
@@ -59,7 +59,7 @@ def in_model_units(
 
 
 def _likely_units(name: str, largest: float) -> str:
-    """The topics files that bring the channel to what rigs reach, if its unit is a usual one."""
+    """The topics files that scale the channel into the usual range of rigs, if its unit has one."""
     low, high = _USUAL.get(CHANNEL_KINDS[name].unit, (1.0, 0.0))
     units = [
         f"`channels: {{{name}: {{scale: {scale}}}}}` if it is in {unit}"

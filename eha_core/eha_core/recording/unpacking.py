@@ -1,4 +1,4 @@
-"""Unpacks compressed chunks within a ceiling, so that a small file cannot take the machine's memory."""
+"""Decompresses chunks within a limit, so that a small file cannot exhaust the machine's memory."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from zstandard import ZstdDecompressor, ZstdError
 from eha_core.errors import RecordingError
 
 LARGEST_CHUNK = 2**26
-"""Bytes that a chunk may unpack to; rosbag2 writes chunks of 0.8 MB, other recorders of up to 16 MB."""
+"""Most bytes of a decompressed chunk; rosbag2 writes chunks of 0.8 MB, other recorders of up to 16 MB."""
 ROOM = 2**25
-"""Bytes that any file may unpack to ..."""
+"""Bytes that any file may decompress to ..."""
 LARGEST_RATIO = 100
-"""... and bytes for each byte of a larger one: a rig at rest, every sample the same, packs to 1/20."""
+"""... and bytes for each byte of a larger one: a rig at rest, every sample the same, compresses to 1/20."""
 
 
 class Ceiling:
-    """Counts what a file has unpacked to against what a file of its size may."""
+    """Counts the decompressed bytes of a file against the limit for its size."""
 
     def __init__(self, where: str, size: int) -> None:
         self._where = where
         self._most = self._left = ROOM + LARGEST_RATIO * size
 
     def take(self, count: int) -> None:
-        """Count so many bytes. Raises RecordingError where they are too many."""
+        """Count bytes. Raises RecordingError where they exceed the limit."""
         self._left -= count
         if self._left < 0:
             raise RecordingError(
@@ -36,11 +36,11 @@ class Ceiling:
 
 
 def unpacked(chunk: Chunk, ceiling: Ceiling) -> bytes:
-    """The records of a chunk, uncompressed.
+    """The decompressed records of a chunk.
 
     Raises:
-        ValueError: it does not unpack to the size that it says, or to too large a one for a chunk.
-        RecordingError: the file passes its ceiling.
+        ValueError: its decompressed size is not the stated one, or too large for a chunk.
+        RecordingError: the file exceeds its limit.
     """
     if chunk.uncompressed_size > LARGEST_CHUNK:
         raise ValueError("a chunk of that size is a damaged length")
@@ -52,7 +52,8 @@ def unpacked(chunk: Chunk, ceiling: Ceiling) -> bytes:
 
 
 def unpacked_start(chunk: Chunk, most: int) -> bytes:
-    """Up to `most` bytes of a chunk's records, also where its end is missing. Raises ValueError for other packing."""
+    """Up to `most` bytes of a chunk's records, also where its end is missing. Raises ValueError for an unknown
+    compression."""
     if chunk.compression == "":
         return bytes(chunk.data[:most])
     if chunk.compression == "zstd":
@@ -63,12 +64,12 @@ def unpacked_start(chunk: Chunk, most: int) -> bytes:
 
 
 def _unzstd(data: bytes, most: int) -> bytes:
-    """What a Zstandard frame gives before it ends, is full, or breaks."""
+    """The content of a Zstandard frame up to `most` bytes or a damaged place."""
     content = bytearray()
     with ZstdDecompressor(max_window_size=LARGEST_CHUNK).stream_reader(BytesIO(data)) as reader:
         try:
             while len(content) < most and (part := reader.read(min(most - len(content), 2**18))):
                 content += part
         except ZstdError:
-            pass  # the sum over the chunk tells whether what came before is whole
+            pass  # the chunk's checksum shows whether the part before is complete
     return bytes(content)

@@ -1,4 +1,4 @@
-"""Writes recordings: MCAP with the profile `ros2`, as `ros2 bag` writes them, that outlive a killed process."""
+"""Writes recordings: MCAP with the profile `ros2`, as `ros2 bag` does, that stay readable if the process is killed."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ class _Message(NamedTuple):
 class RecordingWriter:
     """Writes one recording; a context manager.
 
-    Messages are gathered, and become a chunk that is put on disk when one comes later than `flush_period` after the
-    former flush, or when the owner calls `flush`: a node does so on a timer, since topics may fall silent. After each
-    flush the file is a whole MCAP, so `kill -9` costs only what came since. All methods that touch the disk raise
-    RecordingError; what was flushed before then stays readable. The file is written by a thread of its own: Python
-    raises KeyboardInterrupt in the main thread, wherever that is, and half a record would spoil its chunk.
+    Messages are collected in a chunk, which is written to disk when a message arrives later than `flush_period` after
+    the last flush, or when the owner calls `flush`: a node does so on a timer, because topics may become silent. After
+    each flush the file is a complete MCAP, so that `kill -9` only loses later messages. All methods that access the
+    disk raise RecordingError; flushed data stay readable. A thread of its own writes the file, because Python raises
+    KeyboardInterrupt anywhere in the main thread, and half a record would damage its chunk.
 
     Args:
         path: the .mcap file to create; its folder is made, an existing file is never overwritten.
-        parameters: the parameters in force (name -> SI value), kept as the metadata record `eha_parameters`.
+        parameters: the parameters in force (name -> SI value), stored as the metadata record `eha_parameters`.
         flush_period: longest time that messages wait in memory [s].
     """
 
@@ -93,28 +93,28 @@ class RecordingWriter:
         self.flush()
 
     def add_parameters(self, parameters: Mapping[str, object]) -> None:
-        """Keep the parameters in force (name -> SI value) in the file; also in those that a later split opens."""
+        """Store the parameters in force (name -> SI value) in the file, and in those after a split."""
         self._parameters.update(parameters)
         self.add_record(PARAMETERS_RECORD, {name: str(value) for name, value in parameters.items()})
 
     def add_record(self, name: str, content: Mapping[str, str]) -> None:
-        """Keep a metadata record in the file."""
+        """Store a metadata record in the file."""
         self._thread.do(lambda: self._writer.add_metadata(name, dict(content)))
 
     def write(self, topic: str, type_name: str, data: bytes, stamp: int, quality: OfferedQuality | None = None) -> None:
-        """Add a message that is serialised already.
+        """Add a serialised message.
 
         Args:
             topic: full topic name, with its namespace.
             type_name: "package/msg/Name".
             data: CDR bytes with their encapsulation header.
             stamp: log time [ns].
-            quality: what the publisher offers; counts for the first message of a topic.
+            quality: that of the publisher; only the one with a topic's first message counts.
         """
         if not self._is_open:
             raise RecordingError(f"{self.path}: the recording is closed")
         if topic not in self._channels:
-            definition_of(type_name)  # a type that nobody knows is refused here, and not when it is written
+            definition_of(type_name)  # an unknown type is refused here, not when it is written
         self._waiting.append(_Message(topic, type_name, data, stamp, quality or OfferedQuality()))
         self.message_count += 1
         if time.monotonic() - self._flush_time > self._flush_period:
@@ -127,7 +127,7 @@ class RecordingWriter:
         self.write(topic, type_name, encode(type_name, fields), stamp, quality)
 
     def _put(self) -> None:
-        """Add the messages that wait to the chunk in progress."""
+        """Add the waiting messages to the chunk in progress."""
         while self._waiting:
             topic, type_name, data, stamp, quality = self._waiting.popleft()
             channel = self._channels.get(topic) or self._register(topic, type_name, quality)
@@ -150,7 +150,7 @@ class RecordingWriter:
         return self._channels[topic]
 
     def flush(self) -> None:
-        """Close the chunk in progress and put it on disk."""
+        """Close the chunk in progress and write it to disk."""
         self._flush_time = time.monotonic()
         if not self._is_open:
             return
@@ -161,7 +161,7 @@ class RecordingWriter:
             raise RecordingError(f"{self.path}: recording stopped ({error.strerror})") from error
 
     def split(self) -> Path:
-        """Finish this file, go on in `<name>_1.mcap`, `<name>_2.mcap`, ... and return the path of the new file."""
+        """Finish this file, continue in `<name>_1.mcap`, `<name>_2.mcap`, ... and return the path of the new file."""
         self.close()
         self._splits += 1
         self.path = self._first_path.with_name(f"{self._first_path.stem}_{self._splits}{self._first_path.suffix}")
@@ -186,7 +186,7 @@ class RecordingWriter:
         self._file.close()
 
     def abandon(self) -> None:
-        """Close the file as it was flushed last, without a summary."""
+        """Close the file as of its last flush, without a summary."""
         if self._is_open:
             self._is_open = False
             self._thread.do(self._file.discard)
