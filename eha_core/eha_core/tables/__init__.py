@@ -1,4 +1,4 @@
-"""Files with columns of numbers, read into one form: text of many writings, and the files of measurement systems."""
+"""Files with columns of numbers, read into one form: text in many formats, and the files of measurement systems."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _MCAP, _SQLITE = b"\x89MCAP", b"SQLite format 3"
 
 
 def is_table(path: Path) -> bool:
-    """Whether a file is one of columns: by its name's ending, or where that is unknown because it holds no messages."""
+    """Whether a file has columns: by its ending, or for an unknown ending because it has no messages."""
     ending = path.suffix.lower()
     if ending in _READERS or not path.is_file():
         return ending in _READERS
@@ -47,11 +47,11 @@ def is_table(path: Path) -> bool:
 
 
 def read_table(path: Path) -> Table:
-    """Read a file of columns by the reader of its name's ending; of any other ending as text.
+    """Read a file of columns with the reader for its ending; with an unknown ending as text.
 
     Raises:
-        RecordingError: the file is of a kind that holds no columns, cannot be read as what its ending says, or a
-            library for it is missing.
+        RecordingError: the file's kind has no columns, the file does not have the format of its ending, or a library
+            for it is missing.
     """
     ending = path.suffix.lower()
     try:

@@ -1,4 +1,4 @@
-"""Makes a table of gathered columns: dates and clocks joined, own times found, signals pivoted, losses counted."""
+"""Makes a table of gathered columns: joins dates and clocks, finds own times, pivots signals, counts losses."""
 
 from __future__ import annotations
 
@@ -23,16 +23,17 @@ _TIME = re.compile(
     r"|(abs|rel)(olute|ative)? ?time)"
 )
 _CLOCKS = ("time", "zeit", "timestamp")
-"""Words with which a name of times ends."""
+"""Words at the end of a name of times."""
 _MOSTLY, _OFTEN = 0.99, 0.5
-"""Shares of steps of a column of times that do not go down, and that go up (assumed: clocks begin anew and stand)."""
+"""Smallest shares of steps of a column of times that are not negative, and that are positive (assumed: clocks wrap and
+repeat)."""
 _ALIKE = 0.02
-"""Share by which the usual steps of two clocks of the same rows may differ."""
+"""Largest relative difference between the usual steps of two clocks of the same rows."""
 _FRACTIONS = {
     10**6: re.compile(r"(ms|msec|millis|milli ?seconds?|millisekunden?|millisec|time ?ms)", re.IGNORECASE),
     10**3: re.compile(r"(us|usec|micros|micro ?seconds?|mikrosekunden?|microsec)", re.IGNORECASE),
 }
-"""Names of columns that hold what a clock in whole seconds leaves out, by ns of one count."""
+"""Names of columns with the fractions of a clock in whole seconds, by ns per count."""
 
 
 def assembled(
@@ -49,17 +50,17 @@ def assembled(
     """The table of columns that are complete.
 
     Args:
-        where: how messages begin.
-        kind: what the file is.
+        where: the begin of messages.
+        kind: the kind of file.
         columns: the columns in the order of the file.
         times: the column of a column's own times, by name.
-        rate: rows in a second that the file states [Hz].
+        rate: rows per second that the file states [Hz].
         step: first value and spacing of the first column, where its cells are empty.
-        long: which columns hold names and values, where a row holds one value of one signal.
-        remarks: what is known of losses already.
+        long: the columns of names and values, where a row has one value of one signal.
+        remarks: losses that are known already.
 
     Raises:
-        RecordingError: no column holds a number, or many numbers of one are written another way than the rest.
+        RecordingError: no column has a number, or many numbers of one are written differently from the rest.
     """
     if long is not None:
         return _long(where, kind, columns, long, remarks)
@@ -95,7 +96,7 @@ def assembled(
 
 
 def _own_times(names: Sequence[str], plain: Sequence[str], values: Mapping[str, Column]) -> dict[str, str]:
-    """The column of times before each column, in a file that has one before each signal or each of several tables."""
+    """The column of times of each column, in a file with one before each signal or each of several tables."""
     is_time = [_is_time(_bare(bare)) and _rises(values[name]) for name, bare in zip(names, plain, strict=True)]
     places = [k for k, one in enumerate(is_time) if one]
     if len(places) < 2 or places[0] != 0 or is_time[-1] or any(b - a == 1 for a, b in pairwise(places)):
@@ -111,13 +112,13 @@ def _is_time(bare: str) -> bool:
 
 
 def _rises(values: Column) -> bool:
-    """Whether values go up as times do, which the pressure of a tank or the oil's temperature, `T_oil`, does not."""
+    """Whether values increase like times, unlike a tank's pressure or the oil's temperature, `T_oil`."""
     steps = np.diff(values[np.isfinite(values.astype(np.float64))])
     return len(steps) == 0 or bool(np.mean(steps >= 0) >= _MOSTLY and np.mean(steps > 0) >= _OFTEN)
 
 
 def _are_alike(clocks: Sequence[Column]) -> bool:
-    """Whether columns of times have the same rows, and go alike but for their unit and origin."""
+    """Whether columns of times have the same rows, and differ only in unit and origin."""
     numbers = [clock.astype(np.float64) for clock in clocks]
     if len({int(np.isfinite(one).sum()) for one in numbers}) > 1:
         return False
@@ -128,7 +129,7 @@ def _are_alike(clocks: Sequence[Column]) -> bool:
 
 
 def _bare(name: str) -> str:
-    """A name without its unit, number and what it is of: `Time (s) - ch 1` is `time`."""
+    """A name without its unit, number and channel: `Time (s) - ch 1` is `time`."""
     unit = unit_in(name)
     text = re.sub(r"[\[(<{][^\])>}]*[\])>}]", " ", name) if unit else name
     text = re.sub(r"\s+-\s+.*$", "", text.strip().lower())
@@ -139,7 +140,7 @@ def _bare(name: str) -> str:
 def _clocks_joined(
     values: dict[str, Column], gathered: Mapping[str, GatheredColumn], units: dict[str, str]
 ) -> list[str]:
-    """Join a column of dates to one of clocks, and a column of fractions to a clock of whole seconds; say so."""
+    """Join a column of dates to one of clocks, and one of fractions to a clock of whole seconds; return remarks."""
     said = []
     instants = [name for name in values if gathered[name].is_instant and values[name].dtype.kind == "i"]
     dates = [name for name in instants if gathered[name].has_date and not gathered[name].has_clock]
@@ -169,7 +170,7 @@ def _clocks_joined(
 
 
 def _fills(stamps: Column, counts: NDArray[np.generic], size: int) -> bool:
-    """Whether counts are what stamps in whole seconds leave out."""
+    """Whether counts are the fractions of stamps in whole seconds."""
     numbers = counts.astype(np.float64)
     return bool(
         not (stamps % 10**9).any()
@@ -211,7 +212,7 @@ def _long(where: str, kind: str, columns: Sequence[GatheredColumn], long: LongFo
 
 
 def _goes_on(values: Column) -> bool:
-    """Whether a column of a file of single values may be a time: it changes, and it is there for every row."""
+    """Whether a column in long form may be a time: it changes, and it has a value in every row."""
     numbers = values.astype(np.float64)
     return bool(
         np.isfinite(numbers).all()

@@ -1,4 +1,4 @@
-"""Columns of cells, gathered part by part, made into a table: numbers, instants, names, and what could not be read."""
+"""Columns of cells, collected part by part and converted: numbers, times, names, and unreadable cells."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from eha_core.tables.table import Column, Loss, OtherOrder
 from eha_core.tables.time_cells import DAY, instants_of, is_instant
 
 _DECIDING = 200
-"""Filled cells from which it is seen what a column holds."""
+"""Filled cells that decide the content of a column."""
 _FEWEST_OTHERWISE = 3
 _MOST_OTHERWISE = 1e-3
-"""Numbers written another way than the rest of their column, in number and share, up to which they are slips."""
+"""Numbers written differently from the rest of their column, in number or share, below which they count as slips."""
 _AT_THE_EDGE = 0.1
 """Share of a column's range that counts as its largest, or smallest, values ..."""
 _FEWEST_RUNS, _FEWEST_CELLS = 3, 20
-"""... how many gaps there must be for a loss by value, one less where so many cells are lost ..."""
+"""... fewest gaps for a loss by value, one less where at least so many cells are lost ..."""
 _MOST_ELSEWHERE, _MOST_OFTEN = 0.1, 0.5
-"""... which share of what stands around them may lie elsewhere, and of all values at that edge."""
+"""... and largest shares of the gaps' neighbours elsewhere, and of all values at that edge."""
 
 
 class GatheredColumn:
@@ -47,7 +47,7 @@ class GatheredColumn:
         self._count = 0
 
     def read(self, cells: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.bool_], NDArray[np.int64] | None]:
-        """Cells as values, which of them hold something else, and the instants with day and month swapped."""
+        """Cells as values, flags of those with something else, and the times with day and month swapped."""
         if cells.dtype.kind != "O":
             return cells, np.zeros(len(cells), dtype=bool), None
         if self.is_text:
@@ -76,11 +76,11 @@ class GatheredColumn:
             return
         self.is_instant = sum(map(is_instant, filled)) > 0.5 * len(filled)
         behind = {found[1] for cell in filled if (found := number_of(cell, self._decimal)) is not None}
-        # Several letters behind the numbers of one column are powers of ten; one and the same is its unit.
+        # Different letters after the numbers of a column are powers of ten; a single one is its unit.
         self._is_scaled = self._is_scaled or len(behind - {""}) > 1
 
     def add(self, cells: NDArray[Any], values: NDArray[Any], unreadable: NDArray[np.bool_], other: Any) -> None:
-        """Take a part of the column as it was read."""
+        """Take a part of the column after `read`."""
         if unreadable.any():
             places = np.flatnonzero(unreadable)
             self._lost.append(places + self._count)
@@ -98,10 +98,10 @@ class GatheredColumn:
         )
 
     def values(self, where: str) -> tuple[Column, str]:
-        """The column's numbers and a remark; instants are ns, or s where some are missing.
+        """The column's numbers and a remark; times are in ns, or in s where some are missing.
 
         Raises:
-            RecordingError: many of its numbers are written another way than the rest.
+            RecordingError: many of its numbers are written differently from the rest.
         """
         if self.is_instant:
             return self._instants()
@@ -127,11 +127,11 @@ class GatheredColumn:
         known = np.isfinite(whole.astype(np.float64))
         parts = [part if other is None else other for part, other in zip(self._parts, self._others, strict=True)]
         swapped = np.where(known, self._in_ns(parts), whole)
-        if self._month_first:  # a date further on tells the order of all
+        if self._month_first:  # a later date shows the order of all
             whole = swapped
         elif all(other is not None for other in self._others):
             one, other = np.ptp(whole[known]), np.ptp(swapped[known])
-            # A record goes over midnight sooner than over a month.
+            # A record is more likely to pass midnight than the end of a month.
             if other == one:
                 day = np.datetime64(int(whole[known][0] // (DAY if self.unit == "ns" else DAY * 1e-9)), "D")
                 remark = f"assumed: {self.name}: the day stands before the month ({day}), which moves no sample"
@@ -148,11 +148,11 @@ class GatheredColumn:
         return np.asarray(np.concatenate(seconds))
 
     def loss(self, values: Column, timed: NDArray[np.bool_] | None = None) -> Loss | None:
-        """What could not be had of the column; None where nothing was lost.
+        """The losses of the column; None without any.
 
         Args:
             values: the column.
-            timed: which rows are the column's own; None: all.
+            timed: flags of the column's own rows; None: all.
         """
         missing = ~np.isfinite(values.astype(np.float64))
         lost = np.concatenate(self._lost) if self._lost else np.empty(0, dtype=np.int64)
@@ -167,7 +167,7 @@ class GatheredColumn:
 
 
 def _joined(parts: Sequence[NDArray[Any]]) -> Column:
-    """Parts of numbers as one column: whole numbers stay whole where all are."""
+    """Parts of numbers as one column; of integers if all are."""
     if all(part.dtype.kind in "iu" for part in parts):
         whole = np.concatenate(parts)
         is_exact = np.abs(whole[:1]).max(initial=0) > 2**52
@@ -176,7 +176,7 @@ def _joined(parts: Sequence[NDArray[Any]]) -> Column:
 
 
 def _quick(cells: NDArray[Any], decimal: str) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
-    """The plainly written numbers of cells by pandas, and the places of the others."""
+    """The plainly written numbers of cells, read by pandas, and the places of the others."""
     import pandas
 
     texts = pandas.Series(cells, dtype=object)
@@ -185,13 +185,13 @@ def _quick(cells: NDArray[Any], decimal: str) -> tuple[NDArray[np.float64], NDAr
         points = as_text.str.contains(POINT, regex=False)
         texts = as_text.str.replace(COMMA, POINT, regex=False).where(~points, "")
     numbers = pandas.to_numeric(texts, errors="coerce").to_numpy(dtype=np.float64, copy=True)
-    # An empty cell of pandas is NaN already.
+    # An empty cell is NaN in pandas already.
     left = np.flatnonzero(np.isnan(numbers) & np.array([isinstance(cell, str) for cell in cells], dtype=bool))
     return numbers, np.zeros(len(cells), dtype=bool), left
 
 
 def loses_by_value(values: Column, missing: NDArray[np.bool_]) -> bool:
-    """Whether cells are missing where a column is at its largest, or smallest: what stands around each gap tells."""
+    """Whether cells are missing where a column is at its largest or smallest, by the values around each gap."""
     numbers = values.astype(np.float64)
     finite = np.isfinite(numbers)
     before, after = np.flatnonzero(missing[1:] & finite[:-1]), np.flatnonzero(missing[:-1] & finite[1:]) + 1
@@ -202,7 +202,7 @@ def loses_by_value(values: Column, missing: NDArray[np.bool_]) -> bool:
     edge = _AT_THE_EDGE * (high - low)
     around = np.concatenate([before, after])
     for there in (numbers >= high - edge, numbers <= low + edge):
-        # What is at its largest most of the time loses values there by chance too.
+        # A column that is mostly at its largest value also loses values there by chance.
         often = float(np.mean(there[finite])) > _MOST_OFTEN
         if edge > 0.0 and not often and float(np.mean(there[around])) >= 1.0 - _MOST_ELSEWHERE:
             return True

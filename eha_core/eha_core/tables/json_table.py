@@ -1,4 +1,4 @@
-"""Reads JSON: one record a line, a list of records, or lists of numbers by name."""
+"""Reads JSON: one record per line, a list of records, or lists of numbers by name."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from eha_core.tables.text_header import is_value_cell
 from eha_core.tables.text_table import encoding_of
 
 DEEPEST = 4
-"""Levels of objects in objects; a record of a historian has two."""
+"""Most levels of nested objects; a historian's record has two."""
 _DECIDING = 200
 
 
@@ -27,7 +27,7 @@ def read_json_table(path: Path) -> Table:
     """Read JSON lines, or a JSON document of records or of lists; objects in objects are columns such as `a.b`.
 
     Raises:
-        RecordingError: the file is no JSON, or holds no records of numbers.
+        RecordingError: the file is not JSON, or has no records of numbers.
     """
     try:
         if path.stat().st_size > LARGEST:
@@ -61,7 +61,7 @@ def _text(value: Any) -> str:
 
 
 def _numbers(cells: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Cells that are all numbers as such."""
+    """Cells as an array of numbers, if all are numbers."""
     if all(isinstance(cell, int) and abs(cell) < 2**63 for cell in cells):
         return cells.astype(np.int64)
     if all(cell is None or isinstance(cell, (int, float)) for cell in cells):
@@ -70,7 +70,7 @@ def _numbers(cells: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def _records(path: Path, text: str) -> tuple[list[dict[str, Any]], int]:
-    """The records of a file, flat, and how many lines are none."""
+    """The records of a file, flat, and the number of lines that are not records."""
     lines = [line for line in text.splitlines() if line.strip()]
     try:
         document = json.loads(text)
@@ -96,7 +96,7 @@ def _records(path: Path, text: str) -> tuple[list[dict[str, Any]], int]:
 
 
 def _by_name(document: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """The rows of lists by name, at the top or one level below; empty where there are none."""
+    """The rows of lists by name, at the top level or one below; empty without any."""
     lists = {name: value for name, value in document.items() if isinstance(value, list) and len(value) > 1}
     if not lists:
         inner = [value for value in document.values() if isinstance(value, dict)]

@@ -1,4 +1,4 @@
-"""Tables whose rows hold one value of one signal each, as data bases write them: one column for each signal."""
+"""Tables in long form, as databases write them: each row has one value of one signal. They get a column per signal."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from eha_core.tables.table import Column
 
 MOST_SIGNALS = 200
-"""Signals of a file; what has more holds no names."""
+"""Most signals of a file; a column with more different texts has no names."""
 _NAMES = re.compile(
     r"_?(field|name|signal|signal_?name|channel|tag|tag_?name|variable|var|sensor|parameter|metric|series|topic|point"
     r"|item|measurement|quantity|messstelle|kanal|groesse|key|label|identifier|node_?id)",
@@ -25,7 +25,7 @@ _UNITS = re.compile(r"_?(unit|units|einheit|uom)", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class LongForm:
-    """The places of the columns of names, of values and of units, counted from 0; no unit's is None."""
+    """The indices, from 0, of the columns of names, of values and of units; None without units."""
 
     names: tuple[int, ...]
     value: int
@@ -35,12 +35,12 @@ class LongForm:
 def long_form_of(
     names: Sequence[str], rows: Sequence[Sequence[str]], is_value: Callable[[str], bool]
 ) -> LongForm | None:
-    """Which columns hold names and values; None for a table with a column for each signal.
+    """The columns of names and values; None for a table with a column for each signal.
 
     Args:
         names: the columns' names.
-        rows: rows of cells, for what the columns hold.
-        is_value: whether a cell holds a number or an instant.
+        rows: rows of cells, which show the columns' content.
+        is_value: whether a cell has a number or a time.
     """
     value = [k for k, name in enumerate(names) if _VALUES.fullmatch(name.strip())]
     if len(value) != 1:
@@ -64,11 +64,11 @@ def signals_of(
     """Each signal's name, unit, values, times and those times' unit.
 
     Args:
-        labels: the columns of names, one text a row; those that vary name a signal together.
-        values: one number a row.
-        time: one time a row; None where there is none.
+        labels: the columns of names, one text per row; those that vary name a signal together.
+        values: one number per row.
+        time: one time per row; None without times.
         clock: the times' unit.
-        units: one text a row, where the file has units.
+        units: one text per row, where the file has units.
     """
     varying = [label for label in labels if len(set(label.tolist())) > 1] or list(labels[:1])
     joined = varying[0]

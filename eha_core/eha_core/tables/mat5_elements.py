@@ -1,7 +1,7 @@
-"""Walks the elements of a version 5 MAT file before SciPy reads them, which believes the sizes that they claim.
+"""Checks the elements of a version 5 MAT file before SciPy reads them, because SciPy trusts the sizes that they state.
 
-The format is public (MathWorks, "MAT-File Format"): each element is a type, a size and so many bytes; a matrix is an
-element of elements, and cells and structures hold matrices.
+The format is public (MathWorks, "MAT-File Format"): each element is a type, a size and that many bytes; a matrix is an
+element of elements, and cells and structures contain matrices.
 """
 
 from __future__ import annotations
@@ -12,33 +12,33 @@ from math import prod
 
 HEAD = 128
 ROOM = 2**25
-"""Bytes that any file may unpack to ..."""
+"""Bytes that any file may decompress to ..."""
 LARGEST_RATIO = 100
-"""... and bytes for each byte of a larger one: a rig at rest, every sample the same, packs to 1/100 by zlib."""
+"""... and bytes for each byte of a larger one: a rig at rest, every sample the same, compresses to 1/100 with zlib."""
 DEEPEST = 20
-"""Levels of cells and structures in each other; a logged Simulink data set has six."""
+"""Most levels of nested cells and structures; a logged Simulink data set has six."""
 MOST_DIMENSIONS = 8
-"""Of a matrix, which has two or more: SciPy reads past the end of one that says none."""
+"""Most dimensions of a matrix; the fewest are two, because SciPy reads past the end of one without any."""
 _MATRIX, _COMPRESSED = 14, 15
 _CELL, _STRUCTURE, _OBJECT, _CHARACTERS, _SPARSE = 1, 2, 3, 4, 5
 _LAST_NUMERIC = 15
 _BYTES, _WORDS, _COUNTS = (1, 2, 16), (6,), (5,)
 _NUMBERS, _TEXTS = (1, 2, 3, 4, 5, 6, 7, 9, 12, 13), (1, 2, 3, 4, 16, 17, 18)
-"""Types of elements that names, flags, sizes, numbers and texts may have; SciPy takes others for a place in memory."""
+"""Types of elements that names, flags, sizes, numbers and texts may have; SciPy takes others for a memory address."""
 _IS_COMPLEX = 0x800
 
 
 class NoNumbers(ValueError):
-    """A variable is an object, a table or a function handle, which SciPy reads no numbers of."""
+    """A variable is an object, a table or a function handle, from which SciPy reads no numbers."""
 
 
 def unpacked(content: bytes) -> tuple[bytes, int]:
-    """A file's content with its variables uncompressed and every claimed size found to be there.
+    """A file's content with its variables decompressed and every stated size verified.
 
-    Variables without numbers are left out; their count is the second value.
+    Variables without numbers are omitted; their count is the second value.
 
     Raises:
-        ValueError: an element claims more than it holds, or the file unpacks to more than one of its size may.
+        ValueError: an element states more than it has, or the file decompresses to more than its size allows.
     """
     if len(content) < HEAD:
         raise ValueError("its header is cut")
@@ -74,7 +74,7 @@ def _inflated(data: bytes, most: int) -> bytes:
 
 
 def _element(order: str, data: bytes, position: int, end: int) -> tuple[int, int, int, int]:
-    """An element's type, first byte, size, and the byte after it. Raises ValueError where it passes the end."""
+    """An element's type, first byte, size, and the byte after it. Raises ValueError where it exceeds the end."""
     if position + 8 > end:
         raise ValueError("an element is cut")
     word, size = struct.unpack_from(f"{order}II", data, position)
@@ -91,7 +91,7 @@ def _element(order: str, data: bytes, position: int, end: int) -> tuple[int, int
 
 
 def _check(order: str, data: bytes, levels: int) -> None:
-    """Raise ValueError where a matrix claims more elements than it has bytes for."""
+    """Raise ValueError where a matrix states more elements than it has bytes for."""
     if not data:
         return
     if not levels:
@@ -128,7 +128,7 @@ def _typed(order: str, data: bytes, position: int, kinds: tuple[int, ...]) -> tu
 
 
 def _fields(order: str, data: bytes, position: int, kind: int) -> tuple[int, int]:
-    """How many matrices each element has, and where they begin."""
+    """The number of matrices in each element, and the place of the first."""
     if kind == _CELL:
         return 1, position
     if kind == _OBJECT:
@@ -137,7 +137,7 @@ def _fields(order: str, data: bytes, position: int, kind: int) -> tuple[int, int
     length = struct.unpack_from(f"{order}i", data, start)[0] if size >= 4 else 0
     start, size, position = _typed(order, data, position, _BYTES)
     names = [data[first : first + length] for first in range(start, start + size, length)] if length > 0 else []
-    # Each name has so many bytes, of which the last is a zero: it would be read on and on otherwise.
+    # Each name has `length` bytes, the last a zero: reading would not stop otherwise.
     if (size and length <= 0) or not all(len(name) == length and name[-1] == 0 for name in names):
         raise ValueError("a structure's fields have no names")
     return len(names), position

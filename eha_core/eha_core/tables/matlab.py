@@ -1,4 +1,4 @@
-"""Reads MAT files: version 5 by SciPy, version 7.3, which is HDF5, by h5py."""
+"""Reads MAT files: version 5 with SciPy, version 7.3, which is HDF5, with h5py."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from eha_core.tables.own_times import by_length
 from eha_core.tables.table import LARGEST, MOST_COLUMNS, Column, Table, as_column, distinct, refuse_large
 
 DEEPEST = 8
-"""Levels of structures in structures; a logged Simulink data set has four."""
+"""Most levels of nested structures; a logged Simulink data set has four."""
 MOST_ELEMENTS = 2**16
-"""Elements of all structure and cell arrays; a recorder writes one for each signal."""
+"""Most elements of all structure and cell arrays; a recorder writes one for each signal."""
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _LABELS = ("Name", "name", "label", "SignalName")
 _VALUES = ("Data", "data", "values", "Values")
@@ -29,11 +29,11 @@ _VALUES = ("Data", "data", "values", "Values")
 def read_mat_table(path: Path) -> Table:
     """Read the vectors of a MAT file, those inside structures by their path, such as `rec.Y.pressure`.
 
-    A structure array whose elements have a name and data, as recorders write signals, gives one column a signal. A
+    A structure array whose elements have a name and data, as recorders write signals, gives one column per signal. A
     matrix gives one column for each of its rows or columns, whichever are fewer.
 
     Raises:
-        RecordingError: the file is damaged, none, or larger than a table that is read at once.
+        RecordingError: the file is damaged, of another kind, or too large.
     """
     try:
         if path.stat().st_size > LARGEST:
@@ -62,7 +62,7 @@ def read_mat_table(path: Path) -> Table:
 
 
 class _Gathered:
-    """The columns found so far, within the ceilings."""
+    """The columns found so far, within the limits."""
 
     def __init__(self, where: str) -> None:
         self.columns: list[tuple[str, Column]] = []
@@ -76,7 +76,7 @@ class _Gathered:
         self._elements = 0
 
     def count(self, shape: Sequence[int]) -> None:
-        """Count an array's numbers before they are read or copied. Raises RecordingError where they are too many."""
+        """Count an array's numbers before they are read or copied. Raises RecordingError where there are too many."""
         self._cells += prod(shape)
         self._longest = max(self._longest, *shape, 1)
         refuse_large(self._where, self._cells, len(self.columns), self._longest)
@@ -88,7 +88,7 @@ class _Gathered:
             raise RecordingError(f"{self._where}: its structures have more than {MOST_ELEMENTS} elements; keep fewer")
 
     def add(self, path: str, values: Any) -> None:
-        """Take an array: a vector as one column, a matrix as several; what is no array of numbers is passed over."""
+        """Take an array: a vector as one column, a matrix as several; anything else than numbers is skipped."""
         array = np.squeeze(np.asarray(values))
         column = as_column(array)
         if column is None or array.ndim not in (1, 2) or max(array.shape) < 2:
@@ -108,7 +108,7 @@ class _Gathered:
             self._texts.append((path, [text.strip() for text in texts]))
 
     def name_rows(self) -> None:
-        """Call a matrix's columns by the one list of as many texts, where there is one for it alone."""
+        """Name a matrix' columns by the list of as many texts, if there is exactly one for it."""
         for path, count in self._matrices.items():
             lists = [texts for _, texts in self._texts if len(texts) == count and len(set(texts)) == count]
             alike = [other for other, rows in self._matrices.items() if rows == count]
@@ -153,12 +153,12 @@ def _walk_5(path: str, value: Any, gathered: _Gathered, levels: int) -> None:
 
 
 def _unboxed(value: Any) -> Any:
-    """A field's value, which SciPy puts into an array of one object where the structure is alone."""
+    """A field's value, which SciPy wraps in an array of one object for a single structure."""
     return value.item() if isinstance(value, np.ndarray) and value.dtype.kind == "O" and value.ndim == 0 else value
 
 
 def _structure(path: str, parent: str, entries: Mapping[str, Any], gathered: _Gathered, levels: int) -> None:
-    """A structure's fields; one that has a name and data is a signal, and a column of that name."""
+    """A structure's fields; a structure with a name and data is a signal, which gives a column of that name."""
     label = next((str(entries[key]) for key in _LABELS if isinstance(entries.get(key), str) and entries[key]), None)
     data = next((key for key in _VALUES if isinstance(entries.get(key), np.ndarray)), None)
     if label is not None and data is not None:
@@ -181,7 +181,7 @@ def _version_73(path: Path, gathered: _Gathered) -> None:
 
 
 def _own_items(h5py: Any, group: Any) -> Iterator[tuple[str, Any]]:
-    """What a group itself holds: links could lead to other files of this machine."""
+    """The items that a group itself contains: links could lead to other files of this machine."""
     for name in group:
         if isinstance(group.get(name, getlink=True), h5py.HardLink):
             yield str(name), group[name]
@@ -229,10 +229,10 @@ def _structure_73(
 
 
 def _value_73(h5py: Any, item: Any, gathered: _Gathered) -> Any:
-    """A data set's text, numbers, or the items that it refers to as a list; a group stays one."""
+    """A data set's text, numbers, or the items that it refers to as a list; a group as it is."""
     if not isinstance(item, h5py.Dataset):
         return item
-    # What lies outside of the file, or is put together from elsewhere, is none of its data.
+    # External and virtual data are not part of the file.
     if item.external or item.is_virtual or "MATLAB_empty" in item.attrs:
         return None
     gathered.count(item.shape or ())

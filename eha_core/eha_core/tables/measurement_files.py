@@ -1,4 +1,4 @@
-"""Reads measurement files whose signals have times of their own: TDMS by npTDMS, MDF by asammdf."""
+"""Reads measurement files whose signals have times of their own: TDMS with npTDMS, MDF with asammdf."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from eha_core.tables.own_times import columns_with_times
 from eha_core.tables.table import LARGEST, Column, Table, as_column, refuse_large
 
 Signal = tuple[str, str, Column, "Column | None", str]
-"""A signal's name, unit, values, times where it has some, and those times' unit."""
+"""A signal's name, unit, values, times (None without any), and the times' unit."""
 
 
 def read_tdms(path: Path) -> Table:
-    """Read the channels of a TDMS file; those with a waveform's increment have their own times [s].
+    """Read the channels of a TDMS file; those with a waveform increment have their own times [s].
 
     Raises:
-        RecordingError: the file is damaged, none, or larger than a table that is read at once.
+        RecordingError: the file is damaged, of another kind, or too large.
     """
     nptdms = required("nptdms", path, "TDMS files")
     return _table(path, "tdms", lambda: _of_tdms(nptdms, path))
 
 
 _FRAMES = "CAN_DataFrame"
-"""How MDF calls the frames that a bus logger wrote without decoding them."""
+"""MDF's name of the frames that a bus logger wrote without decoding."""
 _DATABASE = ".dbc"
 LARGEST_DATABASE = 10 * 2**20
-"""Bytes of a CAN database; a vehicle's have one or two million."""
+"""Most bytes of a CAN database; a vehicle's have one or two million."""
 
 
 def read_mdf(path: Path) -> Table:
-    """Read the signals of an MDF file, each with its own times [s]; CAN frames by the .dbc of the same name beside it.
+    """Read the signals of an MDF file, each with its own times [s]; CAN frames with the .dbc of its name beside it.
 
     Raises:
         RecordingError: as `read_tdms`.
@@ -43,7 +43,7 @@ def read_mdf(path: Path) -> Table:
     asammdf = required("asammdf", path, "MDF files")
     with path.open("rb") as file:
         head = file.read(68)
-    # What does not begin like one is not shown to the library, which leaves it open.
+    # A file that does not begin like one is not passed to the library, which would not close it.
     if not (head.startswith(b"MDF") and head[64:] in (b"##HD", b"HD\xa4\x00", b"HD\xd0\x00")):
         raise RecordingError(f"{path}: is no MDF file (it starts with other bytes)")
     return _table(path, "mdf", lambda: _of_mdf(asammdf, path))
@@ -84,7 +84,7 @@ def _signals(file: Any) -> Iterator[Signal]:
 
 
 def _decoded(file: Any, path: Path) -> Any:
-    """The signals in the CAN frames of an MDF file, by the database that lies beside it under its name.
+    """The signals in the CAN frames of an MDF file, decoded with the database of the same name beside it.
 
     Raises:
         RecordingError: there is none, it cannot be read, or it has none of the frames.
@@ -97,7 +97,7 @@ def _decoded(file: Any, path: Path) -> Any:
         )
     try:
         decoded = file.extract_bus_logging(database_files={"CAN": [(str(database), 0)]})
-    except Exception as error:  # of the library for databases, whatever a damaged one leads it to
+    except Exception as error:  # the library may raise anything for a damaged database
         raise RecordingError(f"{database}: cannot be read as a CAN database ({error})") from error
     if not decoded.groups:
         raise RecordingError(f"{path}: {database.name} describes none of its CAN frames; take the network's own")
@@ -116,7 +116,7 @@ def _table(path: Path, kind: str, signals: Any) -> Table:
             refuse_large(path, cells, len(found), longest)
     except RecordingError:
         raise
-    except Exception as error:  # damaged bytes lead the libraries to whatever Python can raise
+    except Exception as error:  # the libraries may raise anything for damaged bytes
         raise RecordingError(f"{path}: cannot be read as a {kind.upper()} file ({error})") from error
     if not found:
         raise RecordingError(f"{path}: holds no signal with numbers")

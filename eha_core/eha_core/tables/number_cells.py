@@ -1,4 +1,4 @@
-"""Cells of text as numbers: in every writing of loggers and spreadsheets, with what cannot be read set apart."""
+"""Cells of text as numbers, in every format of loggers and spreadsheets; unreadable cells are flagged."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eha_core.unit_names import unit_named
 
 POINT, COMMA = ".", ","
 MISSING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "nil", "missing", "."))
-"""Cells, in small letters, that say that there is no value."""
+"""Cells, in small letters, that mean a missing value."""
 PREFIXES = {
     "p": 1e-12,
     "n": 1e-9,
@@ -27,9 +27,9 @@ PREFIXES = {
     "M": 1e6,
     "G": 1e9,
 }
-"""What plots of instruments write behind a number in place of a power of ten."""
+"""Letters that instruments write after a number in place of a power of ten."""
 _GROUPS = {POINT: ",'\u2019\u00a0\u202f _", COMMA: ".'\u2019\u00a0\u202f _"}
-"""What may stand between thousands, by decimal point."""
+"""Separators of thousands, by decimal point."""
 _INFINITE = re.compile(r"[-+]?inf(?:inity)?", re.IGNORECASE)
 _LIKE_A_NUMBER = re.compile(r"[-+\u2212]?[\d.,'\u2019\u00a0\u202f _]*\d[\d.,'\u2019\u00a0\u202f _]*")
 
@@ -39,9 +39,9 @@ class Cells:
     """Texts as numbers.
 
     Attributes:
-        values: one number for each text; NaN where it holds none.
-        unreadable: which texts hold something that is no number.
-        units: what stands behind the numbers, once each, "" for nothing.
+        values: one number for each text; NaN without one.
+        unreadable: flags of the texts with something that is not a number.
+        units: the different texts after the numbers, "" for none.
     """
 
     values: NDArray[np.float64]
@@ -51,7 +51,7 @@ class Cells:
 
 @lru_cache
 def _forms(decimal: str) -> re.Pattern[str]:
-    """A number with its groups of thousands, its exponent and what stands behind it."""
+    """A number with its thousands, its exponent and the text after it."""
     point, group = re.escape(decimal), f"[{re.escape(_GROUPS[decimal])}]"
     plain = rf"\d+(?:{point}\d*)?|{point}\d+"
     grouped = rf"[1-9]\d{{0,2}}(?P<group>{group})\d{{3}}(?:(?P=group)\d{{3}})*(?:{point}\d*)?"
@@ -61,9 +61,9 @@ def _forms(decimal: str) -> re.Pattern[str]:
 
 
 def number_of(cell: str, decimal: str, scaled: bool = False) -> tuple[float, str] | None:
-    """The number of a cell and what stands behind it; None where it holds none.
+    """The number of a cell and the text after it; None without a number.
 
-    With `scaled` a letter such as k or m behind the number is a power of ten.
+    With `scaled`, a letter such as k or m after the number is a power of ten.
     """
     text = cell.strip().replace("\u2212", "-")
     match = _forms(decimal).fullmatch(text)
@@ -80,28 +80,28 @@ def number_of(cell: str, decimal: str, scaled: bool = False) -> tuple[float, str
 
 
 def is_number(cell: str, decimal: str = POINT) -> bool:
-    """Whether a cell holds a finite number."""
+    """Whether a cell has a finite number."""
     found = number_of(cell, decimal)
     return found is not None and bool(np.isfinite(found[0]))
 
 
 def is_missing(cell: str) -> bool:
-    """Whether a cell says that there is no value."""
+    """Whether a cell means a missing value."""
     return cell.strip().lower() in MISSING
 
 
 def looks_like_a_number(cell: str) -> bool:
-    """Whether a cell is made of digits and what may stand among them, in whatever order."""
+    """Whether a cell consists of digits and their separators, in any order."""
     return _LIKE_A_NUMBER.fullmatch(cell.strip()) is not None
 
 
 def is_grouped(cell: str, decimal: str) -> bool:
-    """Whether a cell's number may be one with thousands set apart, or one with this very mark as its decimal point."""
+    """Whether the separator in a cell's number may be that of thousands or the decimal point."""
     return re.fullmatch(rf"[-+\u2212]?[1-9]\d{{0,2}}{re.escape(decimal)}\d{{3}}", cell.strip()) is not None
 
 
 def numbers_of(cells: NDArray[Any], decimal: str, scaled: bool = False) -> Cells:
-    """An array of texts, and of numbers among them, as numbers."""
+    """An array of texts, with or without numbers among them, as numbers."""
     values = np.full(len(cells), np.nan)
     unreadable = np.zeros(len(cells), dtype=bool)
     units = set()

@@ -1,4 +1,4 @@
-"""What a file is that cannot be read, by how it begins, and what to do with it."""
+"""The kinds of files that cannot be read, recognised by their begin, and what to do with them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ READABLE = (
     ".mcap, .db3 and rosbag2 folders; text tables (.csv, .tsv, .txt, .dat, .asc, .lvm); .mat; .h5; .parquet; .xlsx;"
     " .tdms; .mf4 and .mdf; .jsonl and .json"
 )
-"""What can be read, as messages list it."""
+"""The readable kinds of files, as messages list them."""
 _HEAD = 4096
 _DECODE = (
     "export its decoded signals as CSV, or its frames as MDF (.mf4), which is read with the network's database (.dbc)"
@@ -53,7 +53,7 @@ _BY_TEXT: tuple[tuple[re.Pattern[str], str, str], ...] = (
 
 
 def refuse_other_kinds(path: Path) -> None:
-    """Raise RecordingError for a file that is known to hold no columns of numbers, saying what it is and what to do."""
+    """Raise RecordingError for a known kind of file without columns of numbers, with its kind and the remedy."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
     for start, what, remedy in _BY_BYTES:
@@ -66,7 +66,7 @@ def refuse_other_kinds(path: Path) -> None:
 
 
 def refuse_unknown(path: Path) -> None:
-    """Raise RecordingError for a file of an unknown ending that holds no text either."""
+    """Raise RecordingError for a file with an unknown ending that is not text."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
     if b"\0" in head and head[:2] not in (b"\xff\xfe", b"\xfe\xff"):

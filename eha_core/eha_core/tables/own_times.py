@@ -1,4 +1,4 @@
-"""Which column holds the times of which: signals that bring their own, and vectors of several lengths."""
+"""The columns of times of other columns: of signals with their own times, and of vectors of several lengths."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _TIME = re.compile(r"(.*[._/ ])?(t|time|tout|times|timestamps?|zeit|x_?value|x\.
 
 
 def columns_with_times(kind: str, signals: Iterable[tuple[str, str, Column, Column | None, str]]) -> Table:
-    """A table of signals, each with its name, unit, values, times (None: it has none) and their unit.
+    """A table of signals, each with its name, unit, values, times (None without any) and the times' unit.
 
-    Signals of the same times share one column of them.
+    Signals with the same times share one column of them.
     """
     signals = list(signals)
     names, remarks = distinct([signal[0] for signal in signals])
@@ -43,7 +43,7 @@ def columns_with_times(kind: str, signals: Iterable[tuple[str, str, Column, Colu
 
 
 def by_length(columns: Mapping[str, Column]) -> dict[str, str]:
-    """The time of each vector among vectors of several lengths: one as long called so, the nearest by its path."""
+    """The time of each vector among vectors of several lengths: the one of its length with the nearest path."""
     lengths = {len(values) for values in columns.values()}
     times = {name: values for name, values in columns.items() if _TIME.fullmatch(name) and _increases(values)}
     if len(lengths) < 2 or not times:

@@ -1,4 +1,4 @@
-"""Reads Parquet files by pyarrow."""
+"""Reads Parquet files with pyarrow."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from eha_core.tables.table import Column, Table, as_column, refuse_large
 
 
 def read_parquet_table(path: Path) -> Table:
-    """Read the columns of a Parquet file that hold numbers or times; a missing value is NaN.
+    """Read the columns of numbers or times of a Parquet file; a missing value is NaN.
 
     Raises:
-        RecordingError: the file is damaged, none, or larger than a table that is read at once.
+        RecordingError: the file is damaged, of another kind, or too large.
     """
     parquet = required("pyarrow.parquet", path, "Parquet files")
     arrow = required("pyarrow", path, "Parquet files")
@@ -29,7 +29,7 @@ def read_parquet_table(path: Path) -> Table:
                 raise RecordingError(f"{path}: has more groups of rows than rows; write it anew")
             refuse_large(path, rows * len(wanted), len(wanted), rows)
             names = [schema.names[k] for k in wanted]
-            # One column after the other: Arrow's form of the whole would be a second table in memory.
+            # One column after the other: all in Arrow's form would be a second table in memory.
             columns = {
                 name: _column(arrow, file.read(columns=[name], use_threads=False).column(name)) for name in names
             }
@@ -58,7 +58,7 @@ def _column(arrow: Any, values: Any) -> Column:
 
 
 def _unit(arrow: Any, field: Any) -> str:
-    """The unit of a column: ns for times, else what its metadata calls `unit` or `units`."""
+    """The unit of a column: ns for times, else `unit` or `units` of its metadata."""
     if arrow.types.is_timestamp(field.type) or arrow.types.is_duration(field.type):
         return "ns"
     stated = field.metadata or {}

@@ -1,4 +1,4 @@
-"""Reads workbooks (.xlsx) by openpyxl: the sheet with most numbers, as a text table of the same cells would be read."""
+"""Reads workbooks (.xlsx) with openpyxl: the sheet with most rows, like a text table of the same cells."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eha_core.tables.table import LARGEST, MOST_CELLS, Table
 from eha_core.tables.text_table import table_of_lines
 
 LARGEST_RATIO = 200
-"""Bytes for each byte of a workbook that it may unpack to: sheets of numbers pack to 1/10, of equal cells to 1/100."""
+"""Most decompressed bytes per byte of a workbook: sheets of numbers compress to 1/10, of equal cells to 1/100."""
 MOST_SHEETS = 50
 
 
@@ -22,7 +22,7 @@ def read_spreadsheet(path: Path) -> Table:
     """Read the sheet of a workbook that has most rows.
 
     Raises:
-        RecordingError: the file is damaged, none, or larger than a table that is read at once.
+        RecordingError: the file is damaged, of another kind, or too large.
     """
     openpyxl = required("openpyxl", path, "Workbooks (.xlsx)")
     try:
@@ -37,7 +37,7 @@ def read_spreadsheet(path: Path) -> Table:
         raise
     except (OSError, BadZipFile) as error:
         raise RecordingError(f"{path}: cannot be read as a workbook ({error})") from error
-    except Exception as error:  # damaged XML leads to whatever its parser raises
+    except Exception as error:  # the parser may raise anything for damaged XML
         raise RecordingError(f"{path}: cannot be read as a workbook ({error})") from error
     if not sheets:
         raise RecordingError(f"{path}: has no sheet")

@@ -1,4 +1,4 @@
-"""What the words of a file state: the unit in a name, the rate in the lines above the numbers."""
+"""Statements in a file's text: the unit in a name, the rate in the lines above the numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from math import isfinite
 from eha_core.unit_names import unit_named
 
 MOST_RATE = 1e6
-"""Hz; what states more than this has a damaged header, or means another rate."""
+"""Hz; a higher stated rate is a damaged header, or another rate."""
 _BRACKETS = re.compile(r"[\[(<{]([^\[\]()<>{}]*(?:\([^()]*\))?)[\])>}]")
 _NUMBER = r"(?P<number>\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)"
 _BETWEEN = r"\s*(?:[\[(](?P<stated>[^\])]{1,12})[\])])?\s*[\"']?\s*[:=,;\t ]\s*[\"']?\s*"
@@ -40,10 +40,10 @@ _HERTZ = {
 
 
 def unit_in(name: str) -> str:
-    """The unit that a name states in brackets, as in `p_A [bar]` or `Command (V) - Plot 0`; empty where it states none.
+    """The unit that a name states in brackets, as in `p_A [bar]` or `Command (V) - Plot 0`; empty without one.
 
-    Only what is a unit is one: `In1 (1)` and `X[0]` are numbered. In square brackets at the end of a name stands a unit
-    even where it is not known.
+    Only known units count: `In1 (1)` and `X[0]` are numbered. In square brackets at the end of a name, an unknown unit
+    counts, too.
     """
     found = list(_BRACKETS.finditer(name))
     for match in reversed(found):
@@ -80,7 +80,7 @@ def _hertz(match: re.Match[str]) -> float | None:
 
 
 def _seconds(match: re.Match[str]) -> float | None:
-    """The interval; one of no stated unit is in s, where that makes a rate of more than one in a second."""
+    """The interval [s]; without a stated unit it is in s, if that gives a rate above 1 Hz."""
     stated = (match["stated"] or match["unit"] or "").strip()
     unit = unit_named(stated) if stated else None
     value = _number(match)

@@ -1,4 +1,4 @@
-"""What every kind of file with columns is read into."""
+"""The table that every kind of file with columns is read into."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from numpy.typing import NDArray
 from eha_core.errors import RecordingError
 
 Column = NDArray[Any]
-"""One dimension, of float64; or of int64 where every value is a whole number that float64 may not hold."""
+"""One-dimensional, of float64; or of int64 where every value is an integer that float64 may not represent."""
 
 MOST_COLUMNS = 1000
-"""No logger of a rig writes more; a table grows with columns times rows, whatever the file's size."""
+"""Most columns: no logger of a rig writes more, and a table's size is columns times rows, whatever the file's."""
 MOST_CELLS = 2**27
-"""Numbers of a table, which take 1 GB: three hours of ten channels at 1 kHz."""
+"""Most numbers of a table, which take 1 GB: three hours of ten channels at 1 kHz."""
 MOST_MEMORY = 3 * 2**29
-"""Bytes that reading a table, and listing what is in it, may take at its peak: half of what a small laptop has free
-(assumed). The longest table that fits is still one of three hours of ten channels at 1 kHz."""
+"""Most bytes for reading a table and listing its contents: half of a small laptop's free memory (assumed). The longest
+table that fits is still one of three hours of ten channels at 1 kHz."""
 COPIES = 5
 """Copies of one column that are in memory at once while it is converted and outlined."""
 LONGEST_QUOTE = 40
-"""Characters of a cell that are quoted."""
+"""Most characters of a cell that are quoted."""
 LARGEST = 2**30
-"""Bytes of a file; what is larger is converted to MCAP or cut."""
+"""Most bytes of a file; a larger one has to be converted to MCAP or cut."""
 
 
 @dataclass(frozen=True)
 class Loss:
-    """What of a column could not be had.
+    """The losses of a column.
 
     Attributes:
-        empty: cells without anything in them.
-        unreadable: cells that hold something else than what the column holds.
-        first: the first of those, as it stands in the file.
-        row: where it stands, counted from 1 among the rows of values.
-        by_value: whether cells are lost where the column is at its largest or smallest, so that the rest is no
-            fair sample of what was measured.
+        empty: number of empty cells.
+        unreadable: number of cells with something else than the column's content.
+        first: the first of those, as in the file.
+        row: its row, counted from 1 among the rows of values.
+        by_value: whether cells are lost where the column is at its largest or smallest, so that the rest is not
+            a fair sample of the measurement.
     """
 
     empty: int = 0
@@ -58,7 +58,7 @@ class Loss:
 
 @dataclass(frozen=True)
 class OtherOrder:
-    """Dates of which nothing says whether the day or the month stands first.
+    """Dates whose order of day and month is ambiguous.
 
     Attributes:
         day_first: the order in which they were read, the one that makes the shorter record.
@@ -74,13 +74,13 @@ class Table:
     """Columns by name.
 
     Attributes:
-        kind: what the file is, as "csv", "lvm", "mat" or "parquet".
-        columns: the columns in the order of the file; of one length, except in files that hold variables.
+        kind: the kind of file, such as "csv", "lvm", "mat" or "parquet".
+        columns: the columns in the order of the file; of one length, except in files of variables.
         units: units that the file itself states, by column; "ns" for dates and times of day.
-        remarks: what was left out or renamed.
-        times: the column that holds a column's own times, by column; the others share the table's one time.
-        rate: rows in a second that the file states [Hz]; None where it states none.
-        losses: what of a column could not be had, by column; columns without loss are not in it.
+        remarks: what was excluded or renamed.
+        times: the column of a column's own times, by column; the others share the table's time.
+        rate: rows per second that the file states [Hz]; None where it states none.
+        losses: the losses by column; columns without loss are not in it.
         other_orders: by column, its dates in the other order of day and month, where both fit and samples move.
     """
 
@@ -99,9 +99,9 @@ def refuse_large(where: object, cells: int, columns: int, longest: int) -> None:
 
     Args:
         where: the file.
-        cells: numbers of all columns together.
-        columns: how many columns.
-        longest: numbers of the longest column.
+        cells: number of all columns' cells.
+        columns: number of columns.
+        longest: length of the longest column.
     """
     needed = 8 * (cells + COPIES * longest)
     if cells > MOST_CELLS or columns > MOST_COLUMNS:
@@ -114,7 +114,7 @@ def refuse_large(where: object, cells: int, columns: int, longest: int) -> None:
 
 
 def as_column(values: Any) -> Column | None:
-    """Values as a column: int64 for whole numbers, else float64; None for what are no numbers."""
+    """Values as a column: int64 for integers, else float64; None if they are not numbers."""
     array = np.asarray(values)
     if array.dtype.kind in "mM":
         return array.astype("datetime64[ns]" if array.dtype.kind == "M" else "timedelta64[ns]").astype(np.int64)
@@ -124,7 +124,7 @@ def as_column(values: Any) -> Column | None:
 
 
 def distinct(names: list[str]) -> tuple[list[str], tuple[str, ...]]:
-    """The names with those that occur twice numbered, so that none is taken for another; and a remark on them."""
+    """The names, repeated ones numbered so that each is unique, and a remark on these."""
     doubled = sorted({name for name in names if names.count(name) > 1}) if len(set(names)) < len(names) else []
     counts: dict[str, int] = {}
     made = []

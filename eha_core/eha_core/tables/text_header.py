@@ -1,4 +1,4 @@
-"""Says how a text table is written: what comes before the numbers, and what divides and points them."""
+"""Finds the format of a text table: the lines before the numbers, the delimiter and the decimal point."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from eha_core.tables.time_cells import is_instant
 from eha_core.unit_names import unit_named
 
 SPACES = " "
-"""Stands for any number of blanks between cells."""
+"""Delimiter of any number of blanks between cells."""
 DELIMITERS = ("\t", ";", ",", "|", SPACES)
 _LOOKED_AT = 400
-"""Rows that decide how a table is written."""
+"""Rows that decide a table's format."""
 _ALIKE = 5
-"""Rows that are written alike where the numbers begin: a line of a header may hold numbers too."""
+"""Rows in the same format where the numbers begin: a header's line may have numbers, too."""
 NAME_LABELS = (
     "name",
     "names",
@@ -35,7 +35,7 @@ NAME_LABELS = (
     "tag",
 )
 UNIT_LABELS = ("unit", "units", "trace_units", "einheit", "einheiten", "channel units", "unit name")
-"""First cells, in small letters, of rows that hold the columns' names and units."""
+"""First cells, in small letters, of rows with the columns' names and units."""
 _TYPE_NAMES = (
     "real lreal double float float32 float64 single int int16 int32 int64 uint uint16 uint32 dint udint bool number"
     " numeric string long word dword analog digital"
@@ -43,25 +43,25 @@ _TYPE_NAMES = (
 
 
 _Score = tuple[float, bool, int]
-"""How well lines read as a table: the share of values in a row, whether a mark divides the cells, their number."""
+"""How well a format fits: the share of values in a row, whether a delimiter divides the cells, their number."""
 
 
 @dataclass(frozen=True)
 class Header:
-    """How a text table is written.
+    """The format of a text table.
 
     Attributes:
         kind: "csv" or "lvm".
         names: the columns' names; made up where the file has none.
         units: units by name, where the file states them.
-        delimiter: what divides the cells; SPACES for any blanks.
+        delimiter: between the cells; SPACES for any blanks.
         decimal: the decimal point, "." or ",".
         first: line of the file at which the numbers begin, from 0.
         skip: cells at the beginning of each row that belong to no column.
         step: first value and spacing of the first column, where its cells are empty.
         times: the column of a column's own times, by name.
-        rate: rows in a second that the lines above the numbers state [Hz].
-        long: which columns hold names and values, where a row holds one value of one signal.
+        rate: rows per second that the lines above the numbers state [Hz].
+        long: the columns of names and values, where a row has one value of one signal.
     """
 
     kind: str
@@ -88,10 +88,10 @@ def cells_of(line: str, delimiter: str) -> list[str]:
 
 
 def plain_header(where: str, lines: Sequence[str]) -> Header:
-    """The header of a table that follows no vendor's layout.
+    """The header of a table without a vendor's layout.
 
     Raises:
-        RecordingError: no row of numbers is among the lines, or it is open how the numbers are written.
+        RecordingError: no row of numbers is among the lines, or the numbers' format is ambiguous.
     """
     found: dict[tuple[str, str], tuple[_Score, Header]] = {}
     for delimiter in DELIMITERS:
@@ -119,7 +119,7 @@ def _why_none(where: str, lines: Sequence[str]) -> str:
 
 
 def _require_one_writing(where: str, lines: Sequence[str], header: Header) -> None:
-    """Raise RecordingError where every number may have a decimal point, or thousands set apart, of the same mark."""
+    """Raise RecordingError where a mark in every number may be the decimal point or the separator of thousands."""
     for line in lines[header.first :]:
         for cell in cells_of(line, header.delimiter):
             for mark in (COMMA, POINT):
@@ -132,7 +132,7 @@ def _require_one_writing(where: str, lines: Sequence[str], header: Header) -> No
 
 
 def _require_names_for_all(where: str, lines: Sequence[str], header: Header) -> None:
-    """Raise RecordingError where decimal commas have made two cells of each number."""
+    """Raise RecordingError where decimal commas have split each number into two cells."""
     made_up = sum(name.startswith("column ") for name in header.names)
     named = len(header.names) - made_up
     if header.delimiter == "," and named == 0 and header.first > 0:
@@ -151,12 +151,12 @@ def _require_names_for_all(where: str, lines: Sequence[str], header: Header) -> 
 
 
 def is_value_cell(cell: str, decimal: str = POINT) -> bool:
-    """Whether a cell holds a number or an instant."""
+    """Whether a cell has a number or a time."""
     return number_of(cell, decimal, scaled=True) is not None or is_instant(cell)
 
 
 def _written(lines: Sequence[str], delimiter: str, decimal: str) -> tuple[_Score, Header] | None:
-    """How well the lines read as a table that is written so, and its header; None where they do not."""
+    """How well a delimiter and a decimal point fit the lines, and the header with them; None where they do not fit."""
     rows = {k: cells_of(line, delimiter) for k, line in enumerate(lines) if line.strip() and line[:1] != "#"}
     first = _first_row(rows, decimal)
     if first is None:
@@ -171,7 +171,7 @@ def _written(lines: Sequence[str], delimiter: str, decimal: str) -> tuple[_Score
         return None
     rate = rate_in(line for line in lines[:first])
     long = long_form_of(names, looked, lambda cell: is_value_cell(cell, decimal))
-    # Blanks divide a date from its clock too, so that a mark comes first.
+    # Blanks also separate a date from its clock, so that another delimiter is preferred.
     score = (round(share, 2), delimiter != SPACES, width)
     return score, Header("csv", names, delimiter, decimal, first, units, rate=rate, long=long)
 
@@ -188,12 +188,12 @@ def _first_row(rows: Mapping[int, list[str]], decimal: str) -> int | None:
             return k
     if starts:
         return starts[0]
-    # A table of one number a row beside text, or of cells that are mostly empty, still has its time.
+    # A table with one number and text in each row, or with mostly empty cells, still has its time.
     return next((k for k, row in rows.items() if len(row) > 1 and values_in(row, decimal)[1]), None)
 
 
 def values_in(row: Sequence[str], decimal: str) -> tuple[float, int]:
-    """Which share of a row's filled cells are numbers or instants, and how many."""
+    """The share of a row's filled cells that are numbers or times, and their number."""
     filled = [cell for cell in row if not is_missing(cell)]
     count = sum(is_value_cell(cell, decimal) for cell in filled)
     return (count / len(filled) if filled else 0.0), count
@@ -212,7 +212,7 @@ def _names(
     if not wide:
         return [f"column {k + 1}" for k in range(width)], {}
     names, units = _named(wide), _units_of(wide)
-    # A delimiter at the end of each row makes an empty cell, and none in the header.
+    # A delimiter at the end of each row gives an empty cell, but none in the header.
     names = names[: max(width, len(names) - (not names[-1]))]
     made = [*names, *(f"column {k + 1}" for k in range(len(names), width))]
     stated = {name: unit.strip("[]()<> ") for name, unit in zip(names, units, strict=False) if unit.strip("[]()<>- ")}
@@ -220,7 +220,7 @@ def _names(
 
 
 def _named(wide: Sequence[list[str]]) -> list[str]:
-    """The row of names among the rows above the numbers, the nearest first: labelled so, or the nearest that tells."""
+    """The row of names among the rows above the numbers, the nearest first: the labelled or the first suitable one."""
     labelled = next((row for row in wide if row[0].lower() in NAME_LABELS and len(set(row)) > 2), None)
     if labelled is not None and len(wide) > 1:
         return ["time", *labelled[1:]]
@@ -229,7 +229,7 @@ def _named(wide: Sequence[list[str]]) -> list[str]:
 
 
 def _units_of(wide: Sequence[list[str]]) -> list[str]:
-    """The row of units among those above the numbers; empty where there is none beside the names."""
+    """The row of units among those above the numbers; empty without one in addition to the names."""
     for row in wide if len(wide) > 1 else ():
         if row[0].lower().strip("[]()") in UNIT_LABELS:
             return ["", *row[1:]]
@@ -239,7 +239,7 @@ def _units_of(wide: Sequence[list[str]]) -> list[str]:
 
 
 def are_units(row: Sequence[str]) -> bool:
-    """Whether most cells of a row that are filled are units."""
+    """Whether most filled cells of a row are units."""
     filled = [cell.strip("[]()<> ") for cell in row if cell.strip("[]()<>- ")]
     return bool(filled) and sum(unit_named(cell) is not None for cell in filled) > 0.5 * len(filled)
 
@@ -250,6 +250,6 @@ def _are_types(row: Sequence[str]) -> bool:
 
 
 def _is_repeated(row: Sequence[str]) -> bool:
-    """Whether a row says the same of most columns, as of their device or raster."""
+    """Whether a row has the same text in most columns, such as their device or raster."""
     filled = [cell for cell in row if cell]
     return len(filled) > 3 and len(set(filled)) <= len(filled) // 2

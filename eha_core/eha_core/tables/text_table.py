@@ -1,4 +1,4 @@
-"""Reads text tables: CSV of any delimiter and decimal point, with or without a header, and of measurement systems."""
+"""Reads text tables: CSV with any delimiter and decimal point, with or without a header, and similar files."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from eha_core.tables.text_header import SPACES, Header, cells_of
 from eha_core.tables.vendor_headers import read_header
 
 HEAD = 2**18
-"""Bytes from which the header is read; that of a measurement system has a few thousand."""
+"""Bytes in which the header is sought; that of a measurement system has a few thousand."""
 LONGEST_LINE = 2**20
-"""Characters of a line; a thousand columns take 20,000."""
+"""Most characters of a line; a thousand columns take 20,000."""
 ROWS = 2**16
-"""Rows that are turned into numbers at once."""
+"""Rows that are converted at once."""
 
 
 def read_text_table(path: Path) -> Table:
-    """Read a text table; cells that hold no number are NaN, and counted.
+    """Read a text table; cells without a number are NaN, and counted.
 
     Raises:
-        RecordingError: the file is no text, no table, or larger than a table that is read at once.
+        RecordingError: the file is not text, not a table, or too large.
     """
     try:
         if path.stat().st_size > LARGEST:
@@ -50,10 +50,10 @@ def read_text_table(path: Path) -> Table:
 
 
 def encoding_of(path: Path) -> str:
-    """UTF-8, UTF-16 where it says so, or the Windows code page that measurement systems write degrees and micro in.
+    """UTF-8, UTF-16 if it is marked, or the Windows code page in which measurement systems write degrees and micro.
 
     Raises:
-        RecordingError: the file holds no text.
+        RecordingError: the file is not text.
     """
     with path.open("rb") as file:
         head = file.read(HEAD)
@@ -62,7 +62,7 @@ def encoding_of(path: Path) -> str:
     try:
         text = head.decode(encoding, errors="strict")
     except UnicodeDecodeError as problem:
-        # A character that the head's end cuts in two is no fault.
+        # A character that is cut by the head's end is no error.
         cut = len(head) == HEAD and problem.start >= len(head) - 4
         text = head[: problem.start].decode(encoding) if cut else head.decode("cp1252", errors="replace")
         encoding = encoding if cut else "cp1252"
@@ -84,10 +84,10 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
 
 
 def table_of_lines(where: str, kind: str, lines: Sequence[str], remarks: Sequence[str] = ()) -> Table:
-    """The table of lines that come from another kind of file.
+    """The table of lines from another kind of file.
 
     Raises:
-        RecordingError: they hold no rows of numbers.
+        RecordingError: they have no rows of numbers.
     """
     header = replace(read_header(where, lines[:2000]), kind=kind)
     return _table(where, header, lines[:2000], iter(lines[header.first :]), remarks)
@@ -138,7 +138,7 @@ class _Body:
         return not ended
 
     def _valueless(self, cells: Sequence[NDArray[Any]], values: Sequence[NDArray[Any]]) -> NDArray[np.bool_]:
-        """Which rows have no value in any column."""
+        """Flags of the rows without a value in any column."""
         found = np.ones(len(values[0]), dtype=bool)
         for column, one in zip(self.columns, values, strict=True):
             if not column.is_text:
@@ -173,7 +173,7 @@ def _table(path: str, header: Header, head: Sequence[str], lines: Iterator[str],
 
 
 def _section(block: list[str], delimiter: str) -> tuple[list[str], str]:
-    """The rows of a recorder's first group of traces without their labels, and a remark where another follows."""
+    """The rows of a recorder's first group of traces without their labels, and a remark if another follows."""
     kept: list[str] = []
     for line in block:
         label, _, values = line.partition(delimiter)
@@ -186,7 +186,7 @@ def _section(block: list[str], delimiter: str) -> tuple[list[str], str]:
 
 
 def _segment(block: list[str]) -> tuple[list[str], str]:
-    """The rows of a LabVIEW file's first segment, and a remark where another segment follows."""
+    """The rows of a LabVIEW file's first segment, and a remark if another segment follows."""
     for k, line in enumerate(block):
         if line.startswith(("Channels", "***")):
             return block[:k], "further segments, each with a header of its own, were left out"
@@ -194,7 +194,7 @@ def _segment(block: list[str]) -> tuple[list[str], str]:
 
 
 def _cells(block: Sequence[str], header: Header) -> list[NDArray[Any]]:
-    """The block's columns: numbers where pandas reads all of a column as such, else texts."""
+    """The block's columns: numbers where pandas reads all of a column as numbers, else texts."""
     import pandas
 
     width = len(header.names)
@@ -216,7 +216,7 @@ def _cells(block: Sequence[str], header: Header) -> list[NDArray[Any]]:
 
 
 def _split(block: Sequence[str], header: Header) -> list[NDArray[Any]]:
-    """The block's columns cell by cell, for rows that differ in length and quotes that do not end."""
+    """The block's columns cell by cell, for rows of different length and quotes without an end."""
     width = len(header.names)
     rows = [cells_of(line, header.delimiter)[:width] for line in block]
     padded = [row + [""] * (width - len(row)) for row in rows]

@@ -1,4 +1,4 @@
-"""Cells of text as instants: dates of every order, clocks of 12 and 24 hours, by one pattern and pandas."""
+"""Cells of text as times: dates in every order, clocks of 12 and 24 hours, by one pattern and pandas."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _CLOCK = (
     r"(?:\s*(?P<half>[AaPp]\.?[Mm]\.?))?\s*(?P<zone>Z|z|UTC|GMT|[-+]\d{2}:?\d{2})?"
 )
 _SHORT_CLOCK = r"(?P<minute>\d{1,2}):(?P<seconds>\d{2}[.,]\d{1,9})"
-"""What a spreadsheet keeps of a clock: minutes and seconds, as 04:52.3."""
+"""A clock as spreadsheets shorten it: minutes and seconds, as 04:52.3."""
 _FORMS = tuple(re.compile(form) for date in _DATES for form in (rf"{date}(?:[T ,;_-]\s*|\s+){_CLOCK}", date)) + (
     re.compile(_CLOCK),
     re.compile(_SHORT_CLOCK),
@@ -37,14 +37,14 @@ _FORMS = tuple(re.compile(form) for date in _DATES for form in (rf"{date}(?:[T ,
 
 @dataclass(frozen=True)
 class Instants:
-    """Texts as instants.
+    """Texts as times.
 
     Attributes:
         stamps: ns since 1970 in the zone that they name; of clocks without a date, since midnight.
-        known: which texts hold an instant.
-        other: the stamps with day and month the other way round, where either order fits all dates; else None.
-        has_date, has_clock: what the texts consist of.
-        month_first: whether a date tells that the month stands before the day.
+        known: flags of the texts with a time.
+        other: the stamps with day and month swapped, where both orders fit all dates; else None.
+        has_date, has_clock: the parts of the texts.
+        month_first: whether a date shows that the month is before the day.
     """
 
     stamps: NDArray[np.int64]
@@ -56,7 +56,7 @@ class Instants:
 
 
 def is_instant(cell: str) -> bool:
-    """Whether a cell holds a date, a clock or both."""
+    """Whether a cell has a date, a clock or both."""
     return _match(cell) is not None
 
 
@@ -77,7 +77,7 @@ def _stands(found: dict[str, str | None]) -> bool:
     numbers = [int(str(found[name])) for name in ("first", "second") if found.get(name)]
     if numbers and (max(numbers) > 31 or min(numbers) > 12 or min(numbers) < 1):
         return False
-    # A number with one point, such as 12.05.26 without a clock, is no date; neither is a lone hh:mm.
+    # A number such as 12.05.26 without a clock is not a date; neither is hh:mm alone.
     return (
         "hour" not in found
         or found["seconds"] is not None
@@ -88,7 +88,7 @@ def _stands(found: dict[str, str | None]) -> bool:
 
 
 def instants_of(cells: NDArray[Any]) -> Instants:
-    """An array of texts as instants, all in the form of the first that is one; what is none is not known."""
+    """An array of texts as times, in the form of the first that is one; others are not known."""
     texts = np.array([cell.strip() if isinstance(cell, str) else "" for cell in cells], dtype=object)
     match = next((one for text in texts if (one := _match(text))), None)
     if match is None:
@@ -106,7 +106,7 @@ def instants_of(cells: NDArray[Any]) -> Instants:
 
 
 def _order(texts: NDArray[Any], match: re.Match[str]) -> bool | None:
-    """Whether the day stands before the month; None where the dates do not say."""
+    """Whether the day is before the month; None where the dates are ambiguous."""
     if match["mark"] == ".":
         return True
     pairs = {
@@ -123,7 +123,7 @@ def _order(texts: NDArray[Any], match: re.Match[str]) -> bool | None:
 
 
 def _parsed(texts: NDArray[Any], match: re.Match[str], day_first: bool) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """The texts by pandas, in the form of the one that was matched; those in another form one by one."""
+    """The texts read by pandas in the form of the matched one; those in another form one by one."""
     import pandas
 
     written = _form(match, day_first)
@@ -152,7 +152,7 @@ def _one_by_one(
 
 
 def _form(match: re.Match[str], day_first: bool) -> tuple[str, str, list[tuple[str, str]]] | None:
-    """The form of a text in pandas' signs, what is put before it, and what is replaced in it; None: it has none."""
+    """The form of a text in pandas' notation, its prefix, and the replacements in it; None without a form."""
     found, text = match.groupdict(), match.string
     usual = (
         not found.get("month") and not found.get("zone") and found.get("seconds") and ":" not in str(found["seconds"])
@@ -179,7 +179,7 @@ def _form(match: re.Match[str], day_first: bool) -> tuple[str, str, list[tuple[s
 
 
 def _one(match: re.Match[str], day_first: bool) -> int | None:
-    """The instant of one text [ns]; None for a day or a time that there is not."""
+    """The time of one text [ns]; None for a day or a clock that does not exist."""
     found = match.groupdict()
     year, month, day = _date(found, day_first)
     seconds, _, fraction = re.sub(r"[,:]", ".", str(found.get("seconds") or "0")).partition(".")

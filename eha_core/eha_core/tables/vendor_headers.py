@@ -1,4 +1,4 @@
-"""Headers of measurement systems with a layout of their own: LabVIEW, ControlDesk, TwinCAT Scope."""
+"""Headers of measurement systems with their own layout: LabVIEW, ControlDesk, TwinCAT Scope."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from eha_core.tables.table import MOST_COLUMNS
 from eha_core.tables.text_header import DELIMITERS, UNIT_LABELS, Header, cells_of, plain_header, values_in
 
 _LONGEST_SPACING = 3600.0
-"""s between samples; what states more has a damaged header."""
+"""s; longest sampling period: a header that states more is damaged."""
 _LABVIEW_END = "***End_of_Header***"
 _TRACE_NAMES = "trace_names"
 _FEWEST_PAIRS = 2
 _PAIR_LABELS = ("name", "signal", "channel")
-"""First cells of a row of labels and names in turn; below each label is a column of times."""
+"""First cells of a row with alternating labels and names; below each label is a column of times."""
 
 
 def read_header(where: str, lines: Sequence[str]) -> Header:
@@ -42,10 +42,10 @@ def _first_cell(line: str) -> str:
 
 
 def _labview(where: str, lines: Sequence[str]) -> Header:
-    """The header of a LabVIEW measurement file: tags with values, up to the last mark of a header's end."""
+    """The header of a LabVIEW measurement file: tags with values, up to the last end mark of a header."""
     tags: dict[str, str] = {}
     ends = [k for k, line in enumerate(lines) if line.startswith(_LABVIEW_END)][:2]
-    # The separator is stated by name in the file that it separates.
+    # The file states the name of its own separator.
     delimiter = "," if any(line.lower().startswith("separator,") for line in lines[: ends[0]]) else "\t"
     for line in lines[: ends[-1]]:
         tag, *values = cells_of(line, delimiter)[:MOST_COLUMNS] or [""]
@@ -69,9 +69,9 @@ def _labview(where: str, lines: Sequence[str]) -> Header:
 
 
 def _traces(where: str, lines: Sequence[str]) -> Header:
-    """The header of a ControlDesk recorder's file: labelled rows, the names among them, in a first column of labels.
+    """The header of a ControlDesk recorder's file: rows with labels in the first column, one of them the names.
 
-    Names that repeat, as blocks are called by default, give way to the signals' paths in the model.
+    Repeated names, such as the blocks' default ones, are replaced by the signals' paths in the model.
     """
     at = next(k for k, line in enumerate(lines) if _first_cell(line) == _TRACE_NAMES)
     delimiter = max(DELIMITERS[:3], key=lines[at].count)
@@ -97,7 +97,7 @@ def _traces(where: str, lines: Sequence[str]) -> Header:
 
 
 def _told_apart(names: list[str], paths: Sequence[str]) -> list[str]:
-    """The names, or where they repeat the paths, which tell the signals apart."""
+    """The names, or the unique paths where names repeat."""
     filled = [name for name in names if name]
     if len(set(filled)) == len(filled) or not any(paths):
         return names
@@ -107,7 +107,7 @@ def _told_apart(names: list[str], paths: Sequence[str]) -> list[str]:
 def _pairs(where: str, lines: Sequence[str], at: int) -> Header | None:
     """The header of a Scope's file in which each signal has a column of its own times, below a column of labels.
 
-    None where the row at `at` is no row of labels and names in turn.
+    None where the row at `at` does not have alternating labels and names.
     """
     delimiter = max(DELIMITERS[:3], key=lines[at].count)
     row = cells_of(lines[at], delimiter)
