@@ -191,6 +191,15 @@ def test_a_position_that_passes_the_end_of_its_counter_slowly_wraps_all_the_same
     assert len(values) > 0.5 * len(TIME)
 
 
+def test_a_position_that_wraps_while_samples_are_missing_is_on_the_other_turn_from_then_on() -> None:
+    wrapped = np.where(WAVE > 0.008, WAVE - 0.06, WAVE)
+    leaps = np.flatnonzero(np.abs(np.diff(wrapped)) > 0.03)
+    hole = np.abs(TIME - TIME[leaps[2]]) < 0.04
+    health = examine(eha.Recording.from_arrays(time=TIME[~hole], position=wrapped[~hole]))
+    assert {fault.fault for fault in health.faults} == {"wrapped"}
+    assert np.array_equal(health.lost["position"], wrapped[~hole] < WAVE[~hole])
+
+
 @pytest.mark.parametrize(("factor", "kinds"), [(1.0, []), (4.0, ["jump"])])
 def test_a_scale_that_leaps_takes_a_coarse_sensors_levels_along(factor: float, kinds: list[str]) -> None:
     """A pressure in steps of 75 kPa whose oil rings three times as much from 5 s on."""

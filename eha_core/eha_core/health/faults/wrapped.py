@@ -11,6 +11,7 @@ import numpy as np
 
 from eha_core.health.fault import Fault, Found
 from eha_core.health.faults.jump import ALONE, AT_AN_EDGE
+from eha_core.health.noise import Flags
 from eha_core.health.signal import TOGETHER, Signal, joined
 from eha_core.recording.recording import FloatArray
 
@@ -37,7 +38,9 @@ def find(signal: Signal) -> Found | None:
         return None
     if np.max(others, initial=0.0) > ALONE * modulus or modulus < signal.visible:
         return None
-    turns = np.concatenate([[0], np.cumsum(np.sign(sizes))])
+    changes = np.diff(signal.values)
+    leaps = np.flatnonzero(is_leap | _apart(signal) & (np.abs(changes) > 0.5 * modulus))  # it may wrap in a hole, too
+    turns = np.concatenate([[0], np.cumsum(np.sign(changes[leaps]))])
     parts = np.diff(np.concatenate([[0], leaps + 1, [len(signal.values)]]))
     most = max(set(turns.tolist()), key=lambda turn: int(parts[turns == turn].sum()))
     if np.max(parts[turns != most]) < STAYS:
@@ -56,7 +59,12 @@ def find(signal: Signal) -> Found | None:
 
 
 def _steps(signal: Signal) -> FloatArray:
-    """The change from each sample to the next, also where samples are missing between them."""
-    steps = np.where(np.diff(signal.time) < max(2.5 * signal.period, TOGETHER), np.diff(signal.values), 0.0)
+    """The change from each sample to the next, also where a few samples are missing between them."""
+    steps = np.where(_apart(signal), 0.0, np.diff(signal.values))
     steps[:AT_AN_EDGE] = steps[-AT_AN_EDGE:] = 0.0
     return steps
+
+
+def _apart(signal: Signal) -> Flags:
+    """Whether a hole lies between a sample and the next."""
+    return np.asarray(np.diff(signal.time) >= max(2.5 * signal.period, TOGETHER))
