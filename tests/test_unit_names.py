@@ -59,7 +59,7 @@ def test_a_topics_file_takes_units_and_gauge_from_them(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ("{topic: /x, unit: bar}", "bar is no unit of it, which is in m; choose m, mm, cm, um, in"),
+        ("{topic: /x, unit: bar}", "bar is not a unit of it, which is in m; choose m, mm, cm, um, in"),
         ("{topic: /x, unit: mmm}", "unit 'mmm' is not known; did you mean mm"),
         ("{topic: /x, unit: mm, scale: 1e-3}", "unit and scale say the same thing; keep one"),
     ],

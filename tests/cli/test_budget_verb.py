@@ -58,7 +58,7 @@ def test_the_paper_s_level_costs_what_the_paper_s_table_has(capsys: pytest.Captu
         (["--set", "coulomb_friction.force=1"], "give --reference SIGNAL"),
         (["--reference", SINE], "give a diagnosis.json or a recording"),
         (["missing.json", "--reference", SINE], "missing.json: there is no such file"),
-        (["--set", "coulomb_friction.force", "--reference", SINE], "is no NAME=VALUE"),
+        (["--set", "coulomb_friction.force", "--reference", SINE], "is not NAME=VALUE"),
         (["--set", "moving_mass=12", "--reference", SINE], "there is nothing to repair"),
         (["--set", "coulomb_friction.force=1", "--reference", "sin"], "there is no signal 'sin'; did you mean sine"),
         (["--set", "coulomb_friction.force=1", "--reference", SINE, "--controller", "lqt"], "did you mean lqr"),

@@ -54,7 +54,7 @@ def test_answers_make_the_same_file_as_options(
     assert by_answers.read_text() == by_options.read_text()
     printed = capsys.readouterr().err
     assert printed.count("diameter of the piston [40 mm]") == 3
-    assert "in which unit" in printed and "is no number with a unit" in printed
+    assert "in which unit" in printed and "is not a number with a unit" in printed
 
 
 def test_answers_that_end_leave_the_rest_unknown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -101,5 +101,5 @@ def test_a_pump_s_displacement_is_by_radian(tmp_path: Path) -> None:
 def test_a_line_that_tells_nothing_of_a_source_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "rig.yaml"
     assert main(["init-rig", "--out", str(path), "--source", "measured_flow", "--rated-flow", "40 l/min"]) == 2
-    assert "--rated-flow tells nothing of a rig on measured_flow; leave it out" in capsys.readouterr().err
+    assert "--rated-flow does not apply to a rig on measured_flow; leave it out" in capsys.readouterr().err
     assert not path.exists()

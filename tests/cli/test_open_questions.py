@@ -67,7 +67,7 @@ def test_a_wrong_answer_is_asked_again_and_the_end_of_answers_leaves_the_rest_op
     path, topics = log(tmp_path, "loop_currents"), tmp_path / "topics.yaml"
     assert asked(path, topics, ["9", "1", "many", "0 V", "0 bar", "250 bar"], monkeypatch) == 0
     said = capsys.readouterr()
-    assert "'9' is none of them" in said.err and "'many' is no number with a unit of it" in said.err
+    assert "'9' is not one of them" in said.err and "'many' is not a number with a unit of it" in said.err
     assert "2 questions" in said.out and "once they are answered" in said.out
     entries = yaml.safe_load(topics.read_text())["channels"]
     assert entries["pressure_a"]["points"] == [[4, 0], [20, 250]]
@@ -124,7 +124,7 @@ def test_columns_without_names_are_assumed_each_once(tmp_path: Path) -> None:
         ("{column: x, points: [[4, 0], [4, 1]]}", "`points` has two values for one number"),
         ("{column: x, points: [[4, 1], [20, 1]]}", "`points` has one value for all numbers"),
         ("{column: x, points: [[4, 0], [20, null]]}", "`points` has no value at 20"),
-        ("{column: x, points: [[4, 0], [20, many]]}", "points 'many' is no number"),
+        ("{column: x, points: [[4, 0], [20, many]]}", "points 'many' is not a number"),
         ("{minus: x}", "name that as `column` too"),
         ("{column: x, rate: 500}", "unknown key of position 'rate'"),
         ("{ask: maybe}", "`ask` needs a list of possible answers"),

@@ -89,7 +89,7 @@ def test_an_open_question_is_no_topics_file(tmp_path: Path, kind: str) -> None:
     [
         ({"points": [[4, 0], [20, None]]}, "position: say what 20 as recorded means in mm"),
         ({"points": [[4, 0], [4, 1]]}, "two values for one number"),
-        ({"unit": "bar"}, "bar is no unit of it"),
+        ({"unit": "bar"}, "bar is not a unit of it"),
         ({"column": 99}, "the file has no such column"),
         ({"column": -7}, "the file has no such column"),
         ({"channel": "pressure_a"}, "two columns are said to be it"),

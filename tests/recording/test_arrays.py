@@ -50,11 +50,11 @@ def test_voltage_is_held_where_a_frame_is_made_of_channels_of_other_rates() -> N
     ("given", "said"),
     [
         ({"time": TIME}, "no channel was given"),
-        ({"time": TIME, "positon": POSITION}, "'positon' is no channel; did you mean position?"),
+        ({"time": TIME, "positon": POSITION}, "'positon' is not a channel; did you mean position?"),
         ({"time": TIME, "position": POSITION[1:]}, "position has 399 values and time 400"),
         ({"time": TIME, "position": POSITION[:, None]}, "position has the shape"),
-        ({"time": TIME, "position": ["a"] * 400}, "position holds values that are no numbers"),
-        ({"time": TIME * np.nan, "position": POSITION}, "time holds values that are no numbers"),
+        ({"time": TIME, "position": ["a"] * 400}, "position has values that are not numbers"),
+        ({"time": TIME * np.nan, "position": POSITION}, "time has values that are not numbers"),
         ({"time": TIME, "pressure_a": PRESSURE / 1e6}, "give its `scale` to Pa"),
         ({"time": TIME, "pressure_a": PRESSURE, "pressures": "psi"}, "say 'absolute' or 'gauge'"),
     ],
@@ -69,5 +69,5 @@ def test_a_column_that_is_not_there_is_named() -> None:
     frame = pd.DataFrame({"time": TIME, "x": POSITION})
     with pytest.raises(RecordingError, match="no column 'y'; the columns are time, x"):
         Recording.from_dataframe(frame, {"position": "y"})
-    with pytest.raises(RecordingError, match="'positon' is no channel; did you mean position"):
+    with pytest.raises(RecordingError, match="'positon' is not a channel; did you mean position"):
         Recording.from_dataframe(frame, {"positon": "x"})

@@ -231,7 +231,7 @@ def test_what_was_left_out_in_several_pieces_is_said_once(tmp_path: Path, monkey
     kept = np.concatenate([one.channels["position"].values for one in recordings_of(source)])
     np.testing.assert_allclose(kept, [k * 1e-3 for k in range(100) if k % 25 != 5])
     (remark,) = source.remarks
-    assert remark.startswith("position (/joint_states): 1 samples that are no finite number were left out (and so in ")
+    assert remark.startswith("position (/joint_states): 1 samples that are not finite numbers were left out (and so ")
     assert remark.endswith("3 more places)")
 
 

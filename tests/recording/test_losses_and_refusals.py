@@ -45,7 +45,7 @@ def test_empty_and_unreadable_cells_are_counted_apart_and_the_first_is_quoted(tm
 def test_a_channel_that_loses_its_largest_values_is_refused(tmp_path: Path, mark: str) -> None:
     position = [mark if value > 0.035 else f"{value:.9g}" for value in RUN.position]
     path = of_positions(tmp_path, position)
-    with pytest.raises(RecordingError, match="all where it is largest or smallest; the rest is no fair sample"):
+    with pytest.raises(RecordingError, match="all where it is largest or smallest; the rest is not a fair sample"):
         read_recording(path)
     inspection = inspect_file(path)
     assert [field.path for field in inspection.fields if field.problem] == ["position"]

@@ -194,7 +194,7 @@ def test_disorder_is_left_out_and_counted(tmp_path: Path) -> None:
     recording = read_recording(path)
     assert recording.channels["position"].values.tolist() == [0.0, 1.0, 3.0, 4.0, 5.0]
     assert recording.remarks == (
-        "position (/joint_states): 1 samples that are no finite number were left out",
+        "position (/joint_states): 1 samples that are not finite numbers were left out",
         "position (/joint_states): 1 samples with the stamp of the one before were left out",
         "position (/joint_states): 1 samples were left out because time runs backwards there",
     )
@@ -236,11 +236,11 @@ def test_the_simulators_truth_is_not_read_as_a_measurement(tmp_path: Path) -> No
         ("channels: {pressure_a: {topic: /p}}", "no topic /p for channel pressure_a; recorded are /chamber_a/pressure"),
         ("channels: {presure_a: {topic: /p}}", "unknown channel 'presure_a'; known are voltage_command, current"),
         ("channels: {position: {topic: /joint_states, units: mm}}", "unknown key of position 'units'"),
-        ("channels: {position: {scale: big}}", "channel position: scale 'big' is no number"),
+        ("channels: {position: {scale: big}}", "channel position: scale 'big' is not a number"),
         ("channels: {pressure_a: {reference: sealed}}", "reference 'sealed'; say absolute or gauge"),
         ("channels: {position: {field: places}}", "no field 'places'; its fields are header, name, position"),
         ("channels: {position: {field: name}}", "field 'name' is not one number"),
-        ("channels: {position: {field: 'position['}}", r"field 'position\[' is no path"),
+        ("channels: {position: {field: 'position['}}", r"field 'position\[' is not a path"),
         ("channels: {current: {scale: 2.0}}", "names no topic for channel current; add `topic:`"),
         ("channels: [position]", "needs `channels:`"),
         ("channels: {position", r"this is not YAML \(line 1: "),
@@ -336,4 +336,4 @@ def test_a_stored_parameter_that_is_no_number_is_left_out_and_said(tmp_path: Pat
         write_piston(writer, count=2)
     recording = read_recording(path)
     assert (recording.parameters, recording.parts) == ({"piston_area": 1e-3}, {"load": "sprung_mass"})
-    assert recording.remarks == ("the stored parameter moving_mass is no number ('heavy') and was left out",)
+    assert recording.remarks == ("the stored parameter moving_mass is not a number ('heavy') and was left out",)

@@ -122,7 +122,7 @@ def test_values_go_with_their_stamps() -> None:
     samples, remarks = put_in_order(Samples(np.array([5, 6, 7, 1, 8, 9]), np.array(numbers)))
     assert (samples.stamps.tolist(), samples.values.tolist()) == ([5, 7, 8, 9], [9.0, 7.0, 5.0, 4.0])
     assert remarks == (
-        "1 samples that are no finite number were left out",
+        "1 samples that are not finite numbers were left out",
         "1 samples were left out because time runs backwards there",
     )
 

@@ -39,7 +39,7 @@ def test_steps_below_a_second_or_few_times_are_seconds(step: float, count: int) 
 @pytest.mark.parametrize("step", [1.0, 2.0, -2.0, 19_999.0, 2e4, 9e5])
 def test_longer_steps_are_no_seconds_and_open(step: float) -> None:
     with pytest.raises(
-        RecordingError, match=rf"goes by steps of {re.escape(f'{abs(step):.4g}')}, which are no seconds; say its unit"
+        RecordingError, match=rf"goes by steps of {re.escape(f'{abs(step):.4g}')}, which are not seconds; say its unit"
     ):
         stamped(by(step))
 
@@ -71,7 +71,7 @@ def test_counts_since_1970_are_told_by_their_size(first: float, unit: str, facto
 
 @pytest.mark.parametrize("first", [0.99e12, 4e12, 0.99e15, 4e15, 0.99e18])
 def test_counts_of_no_year_from_2001_to_2096_are_open(first: float) -> None:
-    with pytest.raises(RecordingError, match="which are no seconds"):
+    with pytest.raises(RecordingError, match="which are not seconds"):
         stamped(np.array([int(first) + 4096 * k for k in range(20)]))
 
 

@@ -85,7 +85,7 @@ def test_a_joint_that_some_messages_lack_is_missing_there() -> None:
         ("header", "is not one number"),
         ("name[0]", "is not one number"),
         ("header.stamp.sec[0]", "has an index where there is one value"),
-        ("position[0", "is no path such as"),
+        ("position[0", "is not a path such as"),
         ("position[0].x", "has no field"),
     ],
 )

@@ -42,7 +42,7 @@ def test_the_units_are_named_that_make_it_a_rigs(name: str, largest: float, unit
 @pytest.mark.parametrize(("reference", "least"), [(ABSOLUTE, 2e4), (GAUGE, 1e3)])
 def test_a_pressure_that_never_exceeds_a_little_is_in_another_unit(reference: str, least: float) -> None:
     assert len(scaled("pressure_a", [least, 0.0], reference=reference)[0].values) == 2
-    with pytest.raises(RecordingError, match="which is no rig's"):
+    with pytest.raises(RecordingError, match="which is not plausible for a rig"):
         scaled("pressure_a", [0.999 * least, 0.0], reference=reference)
     assert not scaled("pressure_a", [0.0, 0.0], reference=GAUGE)[0].values.any()  # a dead sensor is no unit
 

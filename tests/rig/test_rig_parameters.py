@@ -89,8 +89,8 @@ def test_lines_that_contradict_each_other_are_refused(changes: dict[str, str | N
     ("name", "text", "message"),
     [
         ("bore", "40", "--bore 40: in which unit"),
-        ("bore", "forty mm", "is no number with a unit; write for example '40 mm'"),
-        ("bore", "40 bar", "bar is no unit of it"),
+        ("bore", "forty mm", "is not a number with a unit; write for example '40 mm'"),
+        ("bore", "40 bar", "bar is not a unit of it"),
         ("bore", "40 mmm", "did you mean mm"),
         ("bore", "-40 mm", "is less than any rig's"),
         ("bore", "0 mm", "is less than any rig's"),

@@ -66,11 +66,11 @@ def main(words: Sequence[str] | None = None) -> int:
     completing = "_ARGCOMPLETE" in os.environ
     if not completing and (not words or not (words[0].startswith("-") or words[0] in known)):
         choice = f"choose {', '.join(known)}"
-        parser.error(f"{words[0]!r} is no verb; {remedy(words[0], known, choice)}" if words else choice)
+        parser.error(f"{words[0]!r} is not a verb; {remedy(words[0], known, choice)}" if words else choice)
     if words and words[0].startswith("-") and not completing:
         _list_verbs(parser, known)
         parser.parse_args(words)
-        parser.error(f"{words[0]!r} is no verb; choose {', '.join(known)}")
+        parser.error(f"{words[0]!r} is not a verb; choose {', '.join(known)}")
     # A verb that is named is the only one imported: others may load compilers and plotting.
     typed = os.environ.get("COMP_LINE", "").split()[1:2] if completing else words[:1]
     wanted = typed if typed and typed[0] in known else known

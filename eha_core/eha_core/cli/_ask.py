@@ -51,7 +51,7 @@ def _chosen(question: Question, readings: Sequence[Reading | None]) -> Reading |
         line = _answer(f"1 to {len(readings)}, Enter for 1: ")
         if line in ("", *(str(k + 1) for k in range(len(readings)))):
             return readings[int(line or "1") - 1]
-        print(f"  {line!r} is none of them", file=sys.stderr)
+        print(f"  {line!r} is not one of them", file=sys.stderr)
 
 
 def _completed(reading: Reading) -> Reading:
@@ -81,7 +81,7 @@ def _number(what: str, example: str, factors: dict[str, float]) -> float:
             unit = next((name.lower() for name, one in UNITS.items() if one == known), unit)
         if match is not None and unit in factors:
             return float(match[1]) * factors[unit]
-        print(f"  {line!r} is no number with a unit of it; write for example {example}", file=sys.stderr)
+        print(f"  {line!r} is not a number with a unit of it; write for example {example}", file=sys.stderr)
 
 
 def _answer(prompt: str) -> str:

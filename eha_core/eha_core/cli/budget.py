@@ -101,5 +101,5 @@ def _changes(words: list[str]) -> Mapping[str, float]:
         try:
             found[name] = float(value)
         except ValueError:
-            raise ParameterError(f"--set {word!r} is no NAME=VALUE; write coulomb_friction.force=250") from None
+            raise ParameterError(f"--set {word!r} is not NAME=VALUE; write coulomb_friction.force=250") from None
     return found

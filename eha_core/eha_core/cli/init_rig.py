@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     asked = asked_of(composition)
     idle = next((name for name in given if name not in [datum.name for datum in asked]), None)
     if idle is not None:
-        raise EhaError(f"--{idle.replace('_', '-')} tells nothing of a rig on {arguments.source}; leave it out")
+        raise EhaError(f"--{idle.replace('_', '-')} does not apply to a rig on {arguments.source}; leave it out")
     if arguments.ask or (sys.stdin.isatty() and not given):
         given |= _asked([datum for datum in asked if datum.name not in given])
     entries = parameters_of(given, composition)

@@ -137,7 +137,7 @@ def _swept(words: str) -> tuple[str, list[float]]:
         return name, spread(float(first), float(last), number).tolist()
     except ValueError:
         raise ParameterError(
-            f"--sweep {words!r} is no NAME=A:B:N or NAME=A:B:Nlog with N from 2 to {MOST_IN_A_SWEEP}; "
+            f"--sweep {words!r} is not NAME=A:B:N or NAME=A:B:Nlog with N from 2 to {MOST_IN_A_SWEEP}; "
             "equal factors (log) need A and B of one sign"
         ) from None
 
@@ -179,7 +179,7 @@ def _settings(words: list[str]) -> tuple[dict[str, float], list[tuple[float, str
             else:
                 start[name] = float(value)
         except ValueError:
-            raise ParameterError(f"--set {word!r} is no NAME=VALUE or NAME=VALUE@SECONDS") from None
+            raise ParameterError(f"--set {word!r} is not NAME=VALUE or NAME=VALUE@SECONDS") from None
     return start, changes
 
 

@@ -30,7 +30,7 @@ def read_limits(path: str | Path | None, model: NominalModel) -> Limits:
             raise ParameterError(f"{where}: there is no limit {name!r}; {remedy(str(name), REACHED)}")
         number = _positive(value)
         if number is None:
-            raise ParameterError(f"{where}: {name} = {value!r} is no positive number; give it in SI units")
+            raise ParameterError(f"{where}: {name} = {value!r} is not a positive number; give it in SI units")
         given[name] = number
     return replace(own, **given)
 

@@ -30,12 +30,12 @@ def from_arrays(
         raise RecordingError(f"{name}: no channel was given; channels are {', '.join(CHANNEL_KINDS)}")
     seconds = _vector(name, "time", time)
     if not np.all(np.isfinite(seconds)):
-        raise RecordingError(f"{name}: time holds values that are no numbers; give every sample its time in s")
+        raise RecordingError(f"{name}: time has values that are not numbers; give every sample its time in s")
     stamps = np.round(seconds * 1e9).astype(np.int64)
     rules, samples = {}, {}
     for channel, values in channels.items():
         if channel not in CHANNEL_KINDS:
-            raise RecordingError(f"{name}: {channel!r} is no channel; {remedy(channel, CHANNEL_KINDS)}")
+            raise RecordingError(f"{name}: {channel!r} is not a channel; {remedy(channel, CHANNEL_KINDS)}")
         column = _vector(name, channel, values)
         if len(column) != len(seconds):
             raise RecordingError(
@@ -74,7 +74,7 @@ def _vector(name: str, what: str, values: ArrayLike) -> FloatArray:
     try:
         vector = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
-        raise RecordingError(f"{name}: {what} holds values that are no numbers") from None
+        raise RecordingError(f"{name}: {what} has values that are not numbers") from None
     if vector.ndim != 1 or not len(vector):
         raise RecordingError(f"{name}: {what} has the shape {vector.shape}; give one number for each time")
     return vector

@@ -136,7 +136,7 @@ def _parameters(raw: RawRecording, remarks: list[str]) -> dict[str, float]:
         try:
             parameters[name] = float(text)
         except ValueError:
-            remarks.append(f"the stored parameter {name} is no number ({text!r}) and was left out")
+            remarks.append(f"the stored parameter {name} is not a number ({text!r}) and was left out")
     return parameters
 
 

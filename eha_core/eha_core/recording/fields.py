@@ -38,7 +38,7 @@ def parse_path(topic: str, path: str) -> Steps:
         steps.append((match[1], match[2]))
         position, ended = match.end(), match[3] == ""
     if not ended:
-        raise RecordingError(f"{topic}: field {path!r} is no path such as data, wrench.force.x or position[0]")
+        raise RecordingError(f"{topic}: field {path!r} is not a path such as data, wrench.force.x or position[0]")
     return tuple(steps)
 
 

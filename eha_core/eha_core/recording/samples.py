@@ -32,7 +32,7 @@ def put_in_order(samples: Samples) -> tuple[Samples, tuple[str, ...]]:
     stamps, values = samples.stamps, samples.values
     finite = np.isfinite(values)
     if not finite.all():
-        remarks.append(f"{np.count_nonzero(~finite)} samples that are no finite number were left out")
+        remarks.append(f"{np.count_nonzero(~finite)} samples that are not finite numbers were left out")
         stamps, values = stamps[finite], values[finite]
     repeated = np.zeros(len(stamps), dtype=bool)
     repeated[1:] = np.diff(stamps) == 0

@@ -158,7 +158,7 @@ def _lost(path: Path, table: Table, channel: str, rule: ChannelRule) -> list[str
             continue
         if loss.by_value:
             raise RecordingError(
-                f"{path}: {column!r} for channel {channel}: {loss}; the rest is no fair sample: export it anew, or"
+                f"{path}: {column!r} for channel {channel}: {loss}; the rest is not a fair sample: export it anew, or"
                 f" leave the channel out with `{channel}: null` in a topics file"
             )
         said.append(f"{channel} ({column}): {loss}")
@@ -233,7 +233,7 @@ def _scale(where: str, times: Column, stated: str, rate: float | None) -> tuple[
         if rate is not None and step > 0.0:
             return 1.0 / (rate * step), (f"{where} counts samples of the stated rate of {rate:g} Hz",)
         raise RecordingError(
-            f"{where} goes by steps of {step:.4g}, which are no seconds; say its unit in a topics file,"
+            f"{where} goes by steps of {step:.4g}, which are not seconds; say its unit in a topics file,"
             " for example `channels: {time: {scale: 1.0e-3}}` for ms, or its rate with `channels: {time: {rate: 500}}`"
         )
     return UNITS[found.units[0]].scale, (_said(where, step, stated, found),) if found.why else ()

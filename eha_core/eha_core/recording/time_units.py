@@ -149,4 +149,4 @@ def unwrapped(times: Column) -> tuple[Column, str]:
         return times, ""
     turns = np.concatenate([[0], np.cumsum(back)])
     made = times + turns * (int(period) if times.dtype.kind == "i" else period)
-    return made.astype(times.dtype), f"begins anew after {period:g} and was continued there, {int(back.sum())} times"
+    return made.astype(times.dtype), f"wraps after {period:g} and was continued there, {int(back.sum())} times"

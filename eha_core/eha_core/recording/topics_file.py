@@ -187,7 +187,7 @@ def _number(where: str, name: str, value: Any) -> float:
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise RecordingError(f"{where}: {name} {value!r} is no number") from None
+        raise RecordingError(f"{where}: {name} {value!r} is not a number") from None
     if not isfinite(number):
         raise RecordingError(f"{where}: {name} {number:g} makes no numbers of what was recorded")
     return number
@@ -226,7 +226,7 @@ def _rate(where: str, given: Any, may_be_open: bool) -> float:
         raise RecordingError(f"{where}: `rate` has no value; write how many rows there are in a second, as `rate: 500`")
     rate = _number(where, "rate", given)
     if rate <= 0.0:
-        raise RecordingError(f"{where}: rate {rate:g} is no number of rows in a second")
+        raise RecordingError(f"{where}: rate {rate:g} is not a number of rows per second")
     return rate
 
 
@@ -243,7 +243,7 @@ def _unit_of(where: str, channel: str, text: str) -> Unit:
         raise RecordingError(f"{where}: unit {text!r} is not known; {remedy(text, fitting)}")
     if unit.si != si:
         raise RecordingError(
-            f"{where}: {text} is no unit of it, which is in {si}; choose {', '.join(fitting)}, and where a sensor gave"
-            f" {text} say what its numbers mean with `points`"
+            f"{where}: {text} is not a unit of it, which is in {si}; choose {', '.join(fitting)}, and where a sensor"
+            f" gave {text} say what its numbers mean with `points`"
         )
     return unit

@@ -39,8 +39,8 @@ def in_model_units(
     too_small = kind.is_pressure and 0.0 < largest < _LEAST_PRESSURE[reference]
     if np.mean(impossible) > _MOST_OUTLIERS or too_small:
         raise RecordingError(
-            f"{where} reaches {largest:.4g} {kind.unit} at most, which is no rig's; give its `scale` to {kind.unit}"
-            f" in a topics file{_likely_units(name, largest)}"
+            f"{where} reaches {largest:.4g} {kind.unit} at most, which is not plausible for a rig; give its `scale`"
+            f" to {kind.unit} in a topics file{_likely_units(name, largest)}"
         )
     notes = []
     if impossible.any():

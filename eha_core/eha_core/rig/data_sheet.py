@@ -74,12 +74,12 @@ def quantity(datum: Datum, text: str) -> float:
     """The value of a line as a person writes it, such as `40 mm`, in SI units.
 
     Raises:
-        ParameterError: it is no number with a unit of that quantity, or no value that makes sense.
+        ParameterError: it is not a number with a unit of that quantity, or no value that makes sense.
     """
     option = f"--{datum.name.replace('_', '-')}"
     match = _NUMBER.fullmatch(text.strip())
     if match is None:
-        raise ParameterError(f"{option} {text!r} is no number with a unit; write for example {datum.example!r}")
+        raise ParameterError(f"{option} {text!r} is not a number with a unit; write for example {datum.example!r}")
     value, name = float(match[1]), match[2].strip()
     fitting = [unit for unit, row in UNITS.items() if row.si == datum.si]
     if datum.si == "":
@@ -90,7 +90,7 @@ def quantity(datum: Datum, text: str) -> float:
     elif name:
         unit = unit_named(name)
         if unit is None or unit.si != datum.si:
-            raise ParameterError(f"{option} {text!r}: {name} is no unit of it; {remedy(name, fitting)}")
+            raise ParameterError(f"{option} {text!r}: {name} is not a unit of it; {remedy(name, fitting)}")
         value *= unit.scale
     if not isfinite(value) or value < datum.least:
         raise ParameterError(f"{option} {text!r} is less than any rig's; write for example {datum.example!r}")

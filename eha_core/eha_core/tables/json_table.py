@@ -52,7 +52,7 @@ def read_json_table(path: Path) -> Table:
         values, unreadable, other = column.read(_numbers(cells))
         column.add(cells, values, unreadable, other)
         gathered.append(column)
-    remarks = (f"{unread} lines that are no record were left out",) if unread else ()
+    remarks = (f"{unread} lines that are not records were left out",) if unread else ()
     return assembled(str(path), "json", gathered, long=long, remarks=remarks)
 
 

@@ -45,7 +45,7 @@ def read_mdf(path: Path) -> Table:
         head = file.read(68)
     # A file that does not begin like one is not passed to the library, which would not close it.
     if not (head.startswith(b"MDF") and head[64:] in (b"##HD", b"HD\xa4\x00", b"HD\xd0\x00")):
-        raise RecordingError(f"{path}: is no MDF file (it starts with other bytes)")
+        raise RecordingError(f"{path}: is not an MDF file (it starts with other bytes)")
     return _table(path, "mdf", lambda: _of_mdf(asammdf, path))
 
 

@@ -77,7 +77,7 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
     while part := file.read(LONGEST_LINE):
         *whole, rest = (rest + part).split("\n")
         if len(rest) > LONGEST_LINE:
-            raise RecordingError(f"{path}: has a line of more than {LONGEST_LINE} characters, which is no table's")
+            raise RecordingError(f"{path}: has a line of more than {LONGEST_LINE} characters, more than in any table")
         yield from whole
     if rest:
         yield rest
