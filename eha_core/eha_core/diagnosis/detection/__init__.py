@@ -1,1 +1,1 @@
-"""The smallest size of each effect that shows beside a fitted model, from the search's own quadratic model."""
+"""The smallest detectable size of each effect, given a fitted model, from the search's own quadratic model."""

@@ -1,4 +1,4 @@
-"""Which effects cannot be distinguished: those whose responses another explains but for next to nothing."""
+"""Effects that cannot be distinguished: another one explains nearly all of their response."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from eha_core.diagnosis.search.columns import Column
 
 
 def confusions(columns: Sequence[Column], seen: Responses) -> list[tuple[Confusion, ...]]:
-    """Of each column, the other effects that leave less than TIE of its response, at any size within their bounds;
-    those that leave least first."""
+    """For each column, the other effects that explain its response up to TIE at a size within their bounds, the best
+    first."""
     groups: dict[str, list[int]] = {}
     for place, column in enumerate(columns):
         if seen.usable[place]:

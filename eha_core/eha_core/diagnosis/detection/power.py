@@ -1,4 +1,4 @@
-"""What the search asks of an effect before it names it, and what an effect has to show to pass with a probability."""
+"""The gain that the search requires of an effect, and the response that reaches it with a given probability."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ POWER = 0.95
 
 
 def required_gain(of_a_member: float, parameters: int, count: int, variance: float = 1.0) -> float:
-    """Chi^2 that one more effect of so many parameters must gain in `count` samples to be named.
+    """Chi^2 that one more effect with this number of parameters must gain in `count` samples to be named.
 
-    It must gain what is required of a member, and its score, in which each parameter is paid for, must suffice.
+    It must reach the gain required of a member, and a sufficient score, which includes the cost of its parameters.
     `variance`: of the residual, in units of the noise's.
     """
     return max(of_a_member, variance * (ENOUGH + parameters * parameter_cost(count, variance)))
@@ -21,9 +21,10 @@ def required_gain(of_a_member: float, parameters: int, count: int, variance: flo
 
 @lru_cache(maxsize=256)
 def energy_needed(gain: float, parameters: int, power: float = POWER) -> float:
-    """Chi^2 of an effect's own response without noise, with which it gains more than `gain` with that probability.
+    """Chi^2 of an effect's noise-free response for a gain above `gain` with probability `power`.
 
-    The gain of a fit of so many parameters is noncentral chi-squared, and the response's chi^2 its noncentrality.
+    The gain of a fit is noncentral chi-squared with `parameters` degrees of freedom; the response's chi^2 is its
+    noncentrality.
     """
     from scipy.optimize import brentq
     from scipy.special import chndtr
@@ -34,7 +35,7 @@ def energy_needed(gain: float, parameters: int, power: float = POWER) -> float:
 
 
 def probability_of(energy: float, gain: float, parameters: int) -> float:
-    """Probability that an effect whose response has this chi^2 gains more than `gain`."""
+    """Probability that an effect whose response has the chi^2 `energy` gains more than `gain`."""
     from scipy.special import chndtr
 
     return float(1.0 - chndtr(gain, parameters, energy))

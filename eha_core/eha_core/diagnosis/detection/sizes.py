@@ -1,6 +1,6 @@
-"""The smallest size of each effect that shows: a few secants, each nearer to the size that is asked for.
+"""The smallest detectable size of each effect, by a few secant steps.
 
-What an effect does is seldom in proportion to its size, so its response is simulated at the size itself.
+An effect's response is seldom proportional to its size, so it is simulated at the size itself.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from eha_core.effects import Effect
 Array = NDArray[np.float64]
 
 PASSES = 10
-"""Secants at most; most sizes need four."""
+"""Most secant steps; most sizes need four."""
 
 CLOSE = 0.04
-"""Share to which the energy of a response is met, two per cent of a size."""
+"""Relative tolerance of a response's energy: two per cent of a size."""
 
 STEEPEST, FLATTEST = 6.0, 0.5
-"""Bounds of the power with which energy is taken to grow with the size: 2 where the response is linear; a dead band or
-a stop, which only large motions meet, grows faster."""
+"""Bounds of the assumed power of the energy in the size: 2 where the response is linear; that of a dead band or a stop,
+which only large motions reach, grows faster."""
 
 FARTHEST = 7.0
-"""Logarithm of a factor by which a guess goes on from the last one at most: a thousand."""
+"""Largest step between two guesses, as the logarithm of a factor: a thousand."""
 
 LEAST = -2.0 * FARTHEST
 """Logarithm of the least factor that is tried: a response that is large enough at a millionth of the usual size is not
@@ -58,12 +58,12 @@ class Trial:
     most: float
 
     def at(self, factor: float) -> Column:
-        """The column with so many times its size."""
+        """The column with its size multiplied by `factor`."""
         return replace(self.column, values=self.column.sized(self.sign * factor))
 
     @property
     def shape(self) -> dict[str, float]:
-        """The values that are no sizes of the effect, by full name."""
+        """The values of the effect that are not its sizes, by full name."""
         rows = dict(zip(self.column.effect.parameter_names(), self.column.effect.parameters, strict=True))
         return {name: value for name, value in self.column.values.items() if name in rows and not rows[name].switches}
 
@@ -97,7 +97,7 @@ def trials(at: FittedModel, without: Collection[str] = ()) -> list[Trial]:
 def required_of_one_more(at: FittedModel) -> dict[Effect, float]:
     """Chi^2 that the search requires of each effect that could be added to the set.
 
-    What the form of other laws may leave counts in full: that it is no more than is left depends on the noise.
+    The allowance for the form of other laws counts in full: whether it is limited by the residual depends on the noise.
     """
     addable = [effect for effect in applicable_effects(at.observations) if at.hypothesis.admits(effect)]
     costs = predicted_costs(at.pool, at.hypothesis, at.fit) if at.hypothesis.members else {}
@@ -157,12 +157,12 @@ def _is_done(seen: Sequence[Point], trial: Trial) -> bool:
 
 
 def _is_at_the_end(seen: Sequence[Point], trial: Trial) -> bool:
-    """Whether not even the largest size that the catalogue allows shows enough."""
+    """Whether even the largest size in the catalogue's bounds is not detectable."""
     return seen[-1][0] >= log(trial.most) and seen[-1][1] < log(trial.energy)
 
 
 def _reached(seen: Sequence[Point], trial: Trial) -> float:
-    """The factor that came nearest from above: what is claimed has to be found."""
+    """The closest factor from above, because a stated size has to be detectable."""
     enough = [x for x, y in seen if y > log(trial.energy) - CLOSE]
     least = min(enough, default=inf)
     return 0.0 if least <= LEAST else exp(least)

@@ -1,1 +1,1 @@
-"""Stage 7, next experiment: how well a test signal would tell rival explanations apart, and which does it best."""
+"""Stage 7, next experiment: how well a test signal would distinguish rival explanations, and which does it best."""

@@ -1,4 +1,4 @@
-"""Stage 7, next experiment: the voltage test whose outcome would tell rival explanations apart."""
+"""Stage 7, next experiment: the voltage test whose outcome would distinguish rival explanations."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 
 DURATIONS = (10.0, 20.0, 40.0, 60.0)
-"""s; how long a test may last. All trials are compared at the first, and LASTING of them, where that is too short, at
-the one that it takes: what they tell grows with their length."""
+"""s; possible durations of a test. All trials are compared at the first; if that is too short, LASTING of them at the
+duration that suffices, because the separation grows with it."""
 
 LASTING = 3
 
@@ -27,28 +27,28 @@ DIGITS = 3
 """Significant digits of a proposed amplitude."""
 
 MOST_RIVALS = 5
-"""How many rivals of the winner a test is made for."""
+"""Most rivals of the winner that a test is designed for."""
 
 LEVELS = 5
 GENTLEST = 0.25
 """How many amplitudes are tried, from this share of the voltage used so far up to the valve's saturation."""
 
 TELLING = 100.0
-"""Chi^2 by which a test has to separate the rivals. What it will be is known to within some 2 sqrt(chi^2), and ten are
-needed to name one."""
+"""Chi^2 by which a test has to separate the rivals: it scatters by about 2 sqrt(chi^2), and ten are needed to name one.
+"""
 
 PERHAPS = 25.0
-"""Chi^2 below which it hardly does."""
+"""Chi^2 below which it hardly separates them."""
 
 PRESSURES = {"pressure_a": 1e4, "pressure_b": 1e4}
-"""Channels that tell more where a voltage alone does not, and the noise [Pa] that is assumed of their sensors."""
+"""Channels to add where a voltage alone does not suffice, and the assumed noise of their sensors [Pa]."""
 
 Rival = tuple[tuple[str, ...], Fit]
 
 
 @dataclass(frozen=True)
 class Discrimination:
-    """A trial of some duration [s], and the chi^2 by which it separates the two rivals that are hardest to tell."""
+    """A trial of some duration [s], and the chi^2 by which it separates the two rivals hardest to distinguish."""
 
     trial: CommandSignal
     duration: float
@@ -71,7 +71,7 @@ def trials(level: float, limit: float) -> Iterator[CommandSignal]:
 
 
 def _times(duration: float) -> Array:
-    """When the voltage of a test changes: one instant a STEP [s]."""
+    """The times at which a test's voltage changes: one per STEP [s]."""
     return np.asarray(np.arange(round(duration / STEP)) * STEP, dtype=np.float64)
 
 
@@ -79,12 +79,12 @@ def propose(
     rivals: Sequence[Rival], noises: Mapping[str, float], level: float, voltage_limit: float,
     limits: Limits | None = None,
 ) -> Experiment:  # fmt: skip
-    """The shortest trial that separates every two of the rivals, inside the rig's stroke, pressures and voltage; or the
-    one that comes nearest to it.
+    """The shortest trial that separates all pairs of rivals within the rig's stroke, pressures and voltage; or the one
+    that comes closest.
 
-    Where no voltage separates them in the channels there are, the pressures are asked for too. `noises` are the
-    channels' [their unit] at RATE samples a second, `level` is the voltage used so far and `voltage_limit` the largest
-    [V]. `limits` are what the rig bears, by default what a rig with a rival's values does.
+    Where no voltage separates them in the recorded channels, the pressures are to be recorded, too. `noises` are the
+    channels' [their unit] at RATE samples per second, `level` is the voltage used so far and `voltage_limit` the
+    largest [V]. `limits`: the rig's, by default those of a rig with a rival's values.
     """
     names = [ids for ids, _ in rivals[: MOST_RIVALS + 1]]
     fits = [result for _, result in rivals[: MOST_RIVALS + 1]]
@@ -105,7 +105,7 @@ def propose(
 
 
 def not_proposed(names: Sequence[tuple[str, ...]], driving: Sequence[str], source: str) -> Experiment:
-    """What is said of rivals where no voltage drives the rig: why no test is made, and what may tell them apart."""
+    """The result where no voltage drives the rig: why no test is proposed, and what may distinguish the rivals."""
     statement = (
         f"{' or '.join(' and '.join(ids) for ids in names)}: no signal is proposed, as {' and '.join(driving)} of"
         f" {source} come from the rig and not from the reference generator; record slower and faster reversals than"
@@ -125,7 +125,7 @@ def _best_discrimination(
             separated = separation(trial.voltage(_times(short)), rivals, noises, limits)
             if separated is not None:
                 discriminations.append(Discrimination(trial, short, separated))
-        voltage_limit = min(GENTLEST * level, voltage_limit)  # where the rig bears none of them, fainter ones
+        voltage_limit = min(GENTLEST * level, voltage_limit)  # smaller ones, where none stays within the limits
         level = GENTLEST * voltage_limit
     if not discriminations:
         return Discrimination(CommandSignal("sine", {"amplitude": 0.0, "frequency": 1.0}), short, 0.0)
@@ -140,7 +140,7 @@ def _best_discrimination(
 def _lasting(
     discrimination: Discrimination, rivals: Sequence[Fit], noises: Mapping[str, float], limits: Limits | None
 ) -> Discrimination:
-    """The same trial for as long as it takes, if the rig bears that."""
+    """The same trial with a sufficient duration, if it stays within the limits."""
     per_second = discrimination.separation / discrimination.duration
     duration = next((seconds for seconds in DURATIONS if seconds * per_second > TELLING), DURATIONS[-1])
     separated = separation(discrimination.trial.voltage(_times(duration)), rivals, noises, limits)

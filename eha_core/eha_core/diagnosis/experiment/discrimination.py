@@ -1,4 +1,4 @@
-"""What a test would tell: by how much the outcomes that rival explanations expect of it differ."""
+"""The discrimination of a test: by how much the outcomes predicted by rival explanations differ."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from eha_core.plant import COLUMNS, Plant
 STEP = STEPS[0]
 ROWS_EVERY = 5
 RATE = 1.0 / (STEP * ROWS_EVERY)
-"""1/s; of the samples that are compared."""
+"""Hz; rate of the samples that are compared."""
 
 MOVES = 6
-"""How often, at most, a rival's parameters are moved to imitate another's outcome; the residual is linear in them."""
+"""Most steps of a rival's parameters to compensate for another's outcome; the residual is nearly linear in them."""
 
 NUDGE = 1e-3
-"""Of a parameter's coordinate, to see what it changes."""
+"""Finite difference of a parameter's coordinate."""
 
 
 def separation(
     voltage: Array, rivals: Sequence[Fit], noises: Mapping[str, float], limits: Limits | None = None
 ) -> float | None:
-    """Least chi^2 between any two rivals' outcomes of a test, when their parameters have imitated what they can.
+    """Least chi^2 between any two rivals' outcomes of a test, after their parameters were fitted to each other.
 
-    The voltage [V] is one value a STEP, for whole seconds; `noises` are the channels' [their unit] at RATE samples a
-    second. None where the rig would not bear the test, whichever of the rivals it is: `limits`, or else what a rig
-    with the rival's values bears.
+    The voltage [V] has one value per STEP, for whole seconds; `noises` are the channels' [their unit] at RATE samples
+    per second. None where the test exceeds the limits under one of the rivals: `limits`, or else those of a rig with
+    the rival's values.
     """
     test = _Test(voltage, noises)
     responses = [test.respond(rival.values) for rival in rivals]
@@ -69,8 +69,8 @@ class _Test:
         return Plant(values, STEP).run(self.voltage, ROWS_EVERY).values
 
     def measured(self, rows: Array) -> Array:
-        """The measured channels over their noise, one after the other; of the position, without its mean in each
-        second: a fit starts again there, so that little is learnt from where a drift has led."""
+        """The measured channels in units of their noise, one after the other; the position without its mean in each
+        second, because a fit has an initial state there and learns little from a drift."""
         pieces = {name: rows[:, COLUMNS.index(f"measured_{name}")] / noise for name, noise in self.noises.items()}
         if "position" in pieces:
             seconds = pieces["position"].reshape(-1, round(RATE))
@@ -78,11 +78,11 @@ class _Test:
         return np.concatenate(list(pieces.values()))
 
     def outcome(self, values: Mapping[str, float]) -> Array:
-        """What is measured of the plant with these parameters."""
+        """The measured channels of the plant with these parameters."""
         return self.measured(self.respond(values))
 
     def slopes(self, rival: Fit, free: Sequence[FreeParameter], outcome: Array) -> Array:
-        """How a rival's outcome moves with the coordinate of each of these parameters: (samples, parameters)."""
+        """Derivatives of a rival's outcome with respect to these parameters' coordinates: (samples, parameters)."""
         slopes = np.zeros((len(outcome), len(free)))
         at = coordinates(free, rival.values)
         for column, nudge in enumerate(NUDGE * np.eye(len(free))):
@@ -94,7 +94,7 @@ class _Test:
 
 
 def _is_bearable(rows: Array, values: Mapping[str, float], limits: Limits | None) -> bool:
-    """Whether motion and pressures stay within what the rig bears; no trial has a voltage beyond that anyway."""
+    """Whether motion and pressures stay within the limits; no trial exceeds that of the voltage."""
     bears = limits_of(values) if limits is None else limits
     shares = bears.shares(rows, STEP * ROWS_EVERY, values["atmospheric_pressure"])
     return all(share < 1.0 for name, share in shares.items() if name != "voltage")
@@ -102,7 +102,7 @@ def _is_bearable(rows: Array, values: Mapping[str, float], limits: Limits | None
 
 @dataclass(frozen=True)
 class _Slopes:
-    """How an outcome moves with the coordinates of `free`: (samples, parameters)."""
+    """Derivatives of an outcome with respect to the coordinates of `free`: (samples, parameters)."""
 
     free: tuple[FreeParameter, ...]
     columns: Array
@@ -113,7 +113,7 @@ class _Slopes:
         return np.array([1.0 / parameter.prior_deviation for parameter in self.free])
 
     def towards(self, difference: Array, q: Array, damping: float = 0.0) -> Array:
-        """The damped move from q that takes an outcome to one that differs by so much, as far as the priors let it."""
+        """The damped step from q that reduces a difference of outcomes, limited by the priors."""
         normal = self.columns.T @ self.columns + np.diag(self.priors**2)
         scale = 1.0 / np.sqrt(np.diag(normal))
         right = self.columns.T @ difference - self.priors**2 * q
@@ -121,17 +121,17 @@ class _Slopes:
         return np.asarray(scale * np.linalg.solve(damped, scale * right))
 
     def misfit(self, difference: Array, q: Array) -> float:
-        """Chi^2 of a difference, and of coordinates that stand at q."""
+        """Chi^2 of a difference, and of the priors at q."""
         return float(difference @ difference + np.sum((self.priors * q) ** 2))
 
     def left_of(self, difference: Array) -> float:
-        """Chi^2 that is left of a small difference when these parameters have imitated what they can of it."""
+        """Chi^2 of a small difference after these parameters were fitted to it."""
         move = self.towards(difference, np.zeros(len(self.free)))
         return self.misfit(difference - self.columns @ move, move)
 
 
 def _imitating(target: Array, test: _Test, rival: Fit, slopes: _Slopes, outcome: Array) -> Array:
-    """A rival's outcome when its parameters have moved towards another's."""
+    """A rival's outcome after its parameters were fitted to another's outcome."""
     q = coordinates(slopes.free, rival.values)
     misfit, damping = slopes.misfit(target - outcome, q), 1e-4
     for _ in range(MOVES if slopes.free else 0):

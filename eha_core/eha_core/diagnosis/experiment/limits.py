@@ -1,4 +1,4 @@
-"""What a rig bears in a test: how far, how fast, under which pressures and with how much energy."""
+"""The limits of a rig in a test: position, speed, pressure, energy and voltage."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from eha_core.identification.numbers import Array
 from eha_core.plant import COLUMNS
 
 STROKE_SHARE = 0.85
-"""Of the stroke, that a test may use."""
+"""Share of the stroke that a test may use."""
 
 PRESSURE_SHARE = 1.2
-"""Of the supply pressure, that a chamber may reach in it; and none may fall to a vacuum."""
+"""Share of the supply pressure that a chamber may reach in a test; none may fall to a vacuum."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Limits:
     voltage: float = inf
 
     def shares(self, rows: Array, step: float, atmosphere: float) -> dict[str, float]:
-        """The share of each limit, and of the way to a vacuum, that a motion uses; above 1 it is passed.
+        """The share of each limit, and of the approach to a vacuum, that a motion reaches; above 1 it is exceeded.
 
         Args:
             rows: (samples, columns) of the plant, all COLUMNS.
@@ -49,12 +49,12 @@ class Limits:
 
 
 REACHED = tuple(field.name for field in fields(Limits))
-"""What a motion reaches, by the names of its limits."""
+"""The names of the limits."""
 
 
 def limits_of(values: Mapping[str, float]) -> Limits:
-    """What a rig with these values bears where nobody says less: a share of stroke and pressure, and the voltage at
-    which the coil saturates."""
+    """The default limits of a rig with these values: a share of stroke and pressure, and the voltage at which the coil
+    saturates."""
     return Limits(
         position=STROKE_SHARE * values["actuator_displacement"],
         pressure=PRESSURE_SHARE * values["supply_pressure"],
@@ -63,7 +63,7 @@ def limits_of(values: Mapping[str, float]) -> Limits:
 
 
 def extremes(rows: Array, step: float) -> dict[str, float]:
-    """What a motion reaches of each limited quantity, by the limits' names [SI]."""
+    """The extreme of each limited quantity in a motion, by the limits' names [SI]."""
     flow_a, flow_b, supply = _columns(rows, "flow_a", "flow_b", "supply_pressure").T
     # oil enters a chamber from the supply, and leaves it to the return
     power = supply * (np.maximum(flow_a, 0.0) + np.maximum(-flow_b, 0.0))

@@ -1,4 +1,4 @@
-"""What a diagnosis says: frozen facts that the terminal, diagnosis.json and the report present."""
+"""The result of a diagnosis: frozen facts that the terminal, diagnosis.json and the report present."""
 
 from eha_core.diagnosis.result.detection import Confusion, Detectable, Noticeable, Undetected
 from eha_core.diagnosis.result.findings import (

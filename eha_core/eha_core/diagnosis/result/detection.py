@@ -1,4 +1,4 @@
-"""What a recording, or a test that is planned, would have shown: smallest sizes, and what cannot be distinguished."""
+"""What a recording or a planned test can detect: smallest sizes, and effects that cannot be distinguished."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from dataclasses import dataclass
 class Confusion:
     """Another effect that explains a response.
 
-    `effect`: its id. `left`: chi^2 that it leaves of the response at its detectable size; below TIE the two cannot be
-    distinguished. `cosine`: of the angle between the two beside the fitted parameters, 1 where they are the same.
+    `effect`: its id. `left`: chi^2 of the response at its detectable size that it does not explain; below TIE the two
+    cannot be distinguished. `cosine`: of the angle between the two responses, orthogonalised against the fitted
+    parameters; 1 where they are the same.
     """
 
     effect: str
@@ -25,14 +26,14 @@ class Detectable:
 
     Attributes:
         effect: its id. parameter: the size's short name. unit: of the values, SI.
-        size: what is found with the stated probability, from where the effect is absent; None where no size up to the
-            catalogue's bound is.
-        share: of the response that fitted parameters cannot compensate. compensated_by: those that take most of it.
+        size: found with the stated probability, relative to the effect's neutral value; None where no size up to the
+            catalogue's bound is found.
+        share: of the response that fitted parameters cannot compensate. compensated_by: those that compensate most.
         shape: the effect's other values, by short name, at which this holds.
-        typical: a size that is usual on a bench actuator.
-        flow: of a leak, the flow that this size adds, root mean square [m^3/s]; None of anything else.
+        typical: a usual size on a bench actuator.
+        flow: of a leak, the flow that this size adds, root mean square [m^3/s]; else None.
         confusions: other effects that explain the response at this size about as well.
-        with_pressures: of a planned test without pressures, the size where both are recorded, too.
+        with_pressures: of a planned test without pressures, the size if both are recorded, too.
     """
 
     effect: str
@@ -50,8 +51,8 @@ class Detectable:
 
 @dataclass(frozen=True)
 class Noticeable:
-    """A nominal parameter, and by how much it must differ from its nominal value for the difference to be reported;
-    `flow`: of a leakage, the flow [m^3/s, root mean square] that this adds."""
+    """A nominal parameter, and the smallest change from its nominal value that is reported; `flow`: of a leakage, the
+    flow [m^3/s, root mean square] that this adds."""
 
     name: str
     unit: str
@@ -62,10 +63,10 @@ class Noticeable:
 
 @dataclass(frozen=True)
 class Undetected:
-    """What is not missing from the model that was found, or smaller than this.
+    """Upper limits of further effects and changes, beyond the fitted model.
 
     `power`: the probability with which each size would have been found. `effects`: those that were not named and are
-    no rivals of what was, in the catalogue's order. `parameters`: the nominal ones that have not changed.
+    not rivals, in the catalogue's order. `parameters`: the nominal ones that have not changed.
     """
 
     power: float

@@ -1,4 +1,4 @@
-"""What a diagnosis finds: where, which effects and laws, how probable, and the test that would decide."""
+"""The findings of a diagnosis: locations, effects and laws, their probabilities, and the test that would decide."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Location:
-    """Where the nominal equations fail: site, its share of the unexplained energy, where in state space, and when
-    [s].
+    """A failure of the nominal equations: site, its share of the unexplained energy, the part of state space, and the
+    intervals [s].
 
     `law_over`: the variable of a recovered law, where the share is that law's. `all_of_stretch`: `when` is a whole
     stretch of a longer record. `alone`: no other equation could be examined.
@@ -26,8 +26,8 @@ class Location:
 
 @dataclass(frozen=True)
 class FittedParameter:
-    """A nominal parameter after calibration, with its standard deviation; `changed` if it left its nominal value,
-    `at_bound` if the fit would have taken it further than it is believed to go."""
+    """A nominal parameter after calibration, with its standard deviation; `changed` if it differs from its nominal
+    value, `at_bound` if a prior bound limits it."""
 
     name: str
     nominal: float
@@ -41,8 +41,8 @@ class FittedParameter:
 
 @dataclass(frozen=True)
 class FittedValue:
-    """An effect's parameter with its standard deviation; `interval`: the ends of its 95 % interval where that is none
-    of two standard deviations to either side, None for an end that the recording does not tell."""
+    """An effect's parameter with its standard deviation; `interval`: the ends of its 95 % interval where the standard
+    deviation does not give them, None for an open end."""
 
     value: float
     std: float
@@ -52,9 +52,9 @@ class FittedValue:
 
 @dataclass(frozen=True)
 class CommonScale:
-    """One factor by which several values differ from the nominal ones, as if one thing were off that they share.
+    """A common factor that explains why several values differ from the nominal ones, such as a wrong clock.
 
-    `of` is what that may be; `parameters` are the names of those that changed by it.
+    `of`: its likely cause; `parameters`: the names of the values that changed by it.
     """
 
     of: str
@@ -67,9 +67,9 @@ class CommonScale:
 class NamedEffect:
     """A physical effect that the recording shows.
 
-    `evidence` is what it gains in chi^2, less what its parameters cost; of one of several effects, what the fit would
-    lose without it. `active` is the interval in which it acts [s], None where it always does; `kind` the kind of law
-    that it is a form of, if the catalogue has several; `probability` that of the name.
+    `evidence`: its gain in chi^2 minus the cost of its parameters; for one of several effects, the rise of chi^2
+    without it. `active`: the interval in which it acts [s], None where it always does. `kind`: the kind of law, if the
+    catalogue has several forms of it. `probability`: that of the name.
     """
 
     id: str
@@ -85,7 +85,7 @@ class NamedEffect:
 
 @dataclass(frozen=True)
 class ProbableSet:
-    """A set of effects that may be what is missing, by their ids, and its probability."""
+    """A set of effects that may be missing, by their ids, and its probability."""
 
     effects: tuple[str, ...]
     probability: float
@@ -93,7 +93,7 @@ class ProbableSet:
 
 @dataclass(frozen=True)
 class Alternative:
-    """Effects that explain the recording as well as the named ones, but for `evidence_gap`."""
+    """Effects that explain the recording about as well as the named ones; `evidence_gap`: how far they are behind."""
 
     effects: tuple[str, ...]
     evidence_gap: float
@@ -103,8 +103,8 @@ class Alternative:
 class UnknownLaw:
     """A law outside the catalogue, recovered as a curve over one variable, and as an expression where it is simple.
 
-    `function_of` names the variable, and after a comma what the curve is multiplied by, if it is. `r_squared` is the
-    share that it explains of what the model lacks beyond noise. `samples`: the curve, (variable, law) in SI.
+    `function_of` names the variable and, after a comma, the curve's factor, if it has one. `r_squared` is the share of
+    the model's excess error that it explains. `samples`: the curve, (variable, law) in SI.
     """
 
     site: str
@@ -116,12 +116,11 @@ class UnknownLaw:
 
 @dataclass(frozen=True)
 class Experiment:
-    """A test for the rig whose outcome would tell the rivals apart, as parameters of the reference generator.
+    """A test for the rig whose outcome would distinguish the rivals, as parameters of the reference generator.
 
-    `record`: channels that have to be recorded beside those of the recording, where no voltage alone would tell.
-    `duration` [s]: how long the test has to last. `reference` is empty where no such test was made: then `statement`
-    says why, and what to record. `expected`: chi^2 by which its outcome separates the two rivals that are hardest to
-    tell apart.
+    `record`: channels that have to be recorded in addition, where no voltage alone would suffice. `duration` [s]: how
+    long the test has to last. `reference` is empty where no test was found: `statement` then gives the reason and what
+    to record. `expected`: chi^2 by which the outcome separates the two rivals that are hardest to distinguish.
     """
 
     statement: str

@@ -1,4 +1,4 @@
-"""A long record of which stretches were fitted."""
+"""A long record, of which only stretches were fitted."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class JudgedBlock:
-    """A block of a long record, from `start` to `end` [s]: whether the fit saw it, and what the nominal model
-    (`before`) and the one that was found (`after`) err by in each channel with their parameters held [its unit]."""
+    """A block of a long record, from `start` to `end` [s]: whether it was fitted, and the RMSE of each channel [its
+    unit] under the nominal model (`before`) and the final one (`after`), with their parameters held."""
 
     start: float
     end: float
@@ -20,16 +20,16 @@ class JudgedBlock:
 
 @dataclass(frozen=True)
 class LongRecord:
-    """A record of which stretches were fitted, and what the whole of it says of the model that was found.
+    """A long record, of which only stretches were fitted, and the errors of the model over all of it.
 
     Attributes:
         path: where it was read from.
         duration: [s].
-        stretches: when those that were fitted begin and end [s].
-        window: s after which the piston's state is fitted anew where the models are judged; their parameters are not.
-        blocks: the blocks that could be compared, in their order.
-        passed_over: s that could not, as those of a rig at rest.
-        departs: spans [s] in which the model errs by far more than on any stretch that was fitted.
+        stretches: begin and end of the fitted stretches [s].
+        window: s after which the piston's state is fitted again for the comparison; the parameters are held.
+        blocks: the blocks that could be compared, in order.
+        passed_over: s that could not be compared, such as those of a rig at rest.
+        departs: intervals [s] in which the model's error is far larger than on any fitted stretch.
         statement: all this in words.
     """
 

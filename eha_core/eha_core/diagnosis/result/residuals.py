@@ -1,4 +1,4 @@
-"""How well models explain and predict: of each channel, each recording, each step from nominal to augmented."""
+"""How well models explain and predict each channel, in each recording and for each step from nominal to augmented."""
 
 from __future__ import annotations
 
@@ -12,11 +12,10 @@ from eha_core.diagnosis.result.findings import Location
 class Explained:
     """How much the fitted model explains, and the residual.
 
-    `share` is the part of the recalibrated nominal model's squared error beyond noise that it takes away, `times_noise`
-    the RMS of each channel's residual over that channel's noise, in the fit or on held-out windows, whichever is
-    more. `complete` says that the residual has the size of noise and is white, and that each named effect's strength is
-    identified; `vague` that only the second fails. Where the first does, `left_over` says where and when it
-    sits.
+    `share`: the part of the recalibrated model's excess chi^2 that it explains. `times_noise`: the RMS of each
+    channel's residual in units of its noise, of training or held-out windows, whichever is larger. `complete`: the
+    residual is as small as the noise and white, and each named effect's strength is identified; `vague`: only the
+    latter fails. Where the residual is not noise, `left_over` has its sites and intervals.
     """
 
     share: float
@@ -28,7 +27,7 @@ class Explained:
 
 @dataclass(frozen=True)
 class Residual:
-    """What a model leaves: the RMS of its residual over the noise, of each channel and of all samples together."""
+    """The RMS of a model's residual in units of the noise, of each channel and of all samples together."""
 
     times_noise: Mapping[str, float]
     overall: float
@@ -40,7 +39,7 @@ NOMINAL, RECALIBRATED, AUGMENTED = "nominal", "recalibrated", "augmented"
 
 @dataclass(frozen=True)
 class Step:
-    """A model and what it leaves; `added` is what it has beyond the one before: NOMINAL, RECALIBRATED, AUGMENTED."""
+    """A model and its residual; `added`: NOMINAL, RECALIBRATED or AUGMENTED."""
 
     added: str
     residual: Residual
@@ -48,8 +47,8 @@ class Step:
 
 @dataclass(frozen=True)
 class Correlation:
-    """How the errors of the final model's fitted parameters depend on each other: coefficients from -1 to 1, (n, n) for
-    n `names`. Near 1 or -1, the recording tells the two only together."""
+    """Correlation of the errors of the final model's fitted parameters: coefficients from -1 to 1, (n, n) for n
+    `names`. Near 1 or -1, the recording identifies only a combination of the two."""
 
     names: tuple[str, ...] = ()
     matrix: tuple[tuple[float, ...], ...] = ()
@@ -57,7 +56,7 @@ class Correlation:
 
 @dataclass(frozen=True)
 class ChannelFit:
-    """RMSE of one channel [its unit]: nominal as given, calibrated, and with the named physics; and its noise."""
+    """RMSE of one channel [its unit] under the nominal, recalibrated and augmented models; and its noise."""
 
     rmse_before: float
     rmse_calibrated: float
@@ -67,10 +66,9 @@ class ChannelFit:
 
 @dataclass(frozen=True)
 class Prediction:
-    """RMSE [the channel's unit] of the fitted model where no state was fitted.
+    """RMSE [the channel's unit] of the fitted model's predictions, without fitted states.
 
-    `ahead`: by the seconds that it runs on from states that were measured; `free_running`: over the whole record from
-    its first state.
+    `ahead`: by the horizon [s] from measured states; `free_running`: over the whole record from its first state.
     """
 
     ahead: Mapping[float, float]
@@ -79,8 +77,8 @@ class Prediction:
 
 @dataclass(frozen=True)
 class RecordingFit:
-    """One of several recordings that one model was fitted to: its path, the values that are its own, and its channels
-    on held-out windows."""
+    """One of several recordings that one model was fitted to: its path, its own values, and its channels on held-out
+    windows."""
 
     path: str
     own_values: Mapping[str, float]
@@ -89,8 +87,8 @@ class RecordingFit:
 
 @dataclass(frozen=True)
 class PredictedRecording:
-    """A recording that nothing was fitted to: how the nominal, the recalibrated and the augmented model (by these
-    names) predict each channel, and the channels' noise [their unit]."""
+    """A recording that nothing was fitted to: the predictions of each channel by the nominal, the recalibrated and the
+    augmented model (by these names), and the channels' noise [their unit]."""
 
     path: str
     prediction: Mapping[str, Mapping[str, Prediction]]
@@ -99,7 +97,7 @@ class PredictedRecording:
 
 @dataclass(frozen=True)
 class TraceStep:
-    """One fit of the search: what led to it, the set's effects, the chi^2 a sample that it ended at, and the CPU time
+    """One fit of the search: the step that led to it, the set's effects, the final chi^2 per sample, and the CPU time
     [s] since the search began."""
 
     step: str

@@ -1,4 +1,4 @@
-"""The whole result of a diagnosis, with the series that the report draws."""
+"""The complete result of a diagnosis, with the series that the report draws."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ VERDICTS = ("consistent", "parameters", "missing_physics", "ambiguous", "unknown
 class Pictures:
     """The series that the report draws, by name; channels in SI, each over its own `time` [s].
 
-    `measured` has every channel that was used, the driving ones too; the three models have those that are compared.
-    `variables` (states of the calibrated model, by column name) stand over their own `time`. `equations` has each
-    equation's residual in units of its noise, as (time, residual). `held_out`: the spans of time used for judging [s].
-    `span`: when the stretch of a long record that is drawn begins and ends [s].
+    `measured` has every channel that was used, including inputs; the three models have those that are compared.
+    `variables` (states of the recalibrated model, by column name) have their own `time`. `equations` has each
+    equation's residual in units of its noise, as (time, residual). `held_out`: the held-out intervals [s]. `span`:
+    begin and end of the stretch of a long record that is drawn [s].
     """
 
     time: Mapping[str, Array]
@@ -58,22 +58,21 @@ class Pictures:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The whole result of `eha diagnose`.
+    """The complete result of `eha diagnose`.
 
-    Of several recordings of one rig, `path` and all that is drawn are of the one that tells most; `together` has a row
-    for each, and `tests` one for each recording that nothing was fitted to.
+    With several recordings of one rig, `path` and all figures are of the one with the largest residual; `together` has
+    a row for each, and `tests` one for each recording that nothing was fitted to.
 
-    `rivals` has every hypothesis that was refitted, the best first, with its score: what it gains in chi^2 over the
-    calibrated model, less the cost of its parameters. `whiteness` is each channel's largest autocorrelation in units of
-    the deviation that white noise has. `start_stamp` is the instant [ns] of time zero. `provenance`: which version, on
-    what, when, as text. `steps` lead from the nominal model to that with all effects; `without` has the residual
-    when one of several effects is taken out and the rest fitted again, most first: the order of `effects`, too.
-    `sets` are those that together hold 95 % of the probability, the most probable first; `trace` has every fit of the
-    search. `health` has the faults of the channels, each with the number of its recording among several (1 of a single
-    one). `event`: when the nominal model fails while it is at the noise at all other times [s]. `scale`: the one factor
-    by which the changed parameters differ from the nominal ones, if they do. `long_records` has those of which
-    stretches were fitted; what is drawn of them is in the record's time. `undetected`: how large what was not named
-    may be; None where the model that was found leaves more than noise.
+    `rivals` has every hypothesis that was refitted, the best first, with its score: its gain in chi^2 over the
+    recalibrated model minus the cost of its parameters. `whiteness` is each channel's largest autocorrelation in
+    standard deviations of white noise's. `start_stamp` is the instant [ns] of time zero. `provenance`: version, input
+    and date, as text. `steps` lead from the nominal model to that with all effects; `without` has the residuals without
+    each of several effects, with the rest refitted, the largest first, which is also the order of `effects`. `sets`
+    are those that together have 95 % of the probability, the most probable first; `trace` has every fit of the search.
+    `health` has the faults of the channels, each with the number of its recording (1 for a single one). `event`: the
+    only interval in which the nominal model fails [s]. `scale`: the common factor of the changed parameters, if there
+    is one. `long_records` has those of which only stretches were fitted; figures of them use the record's time.
+    `undetected`: upper limits of further effects; None where the residual exceeds the noise.
     """
 
     path: str
@@ -116,11 +115,11 @@ class Diagnosis:
 
     @property
     def drawn(self) -> tuple[float, float]:
-        """When what is drawn begins and ends [s]."""
+        """Begin and end of the figures' time axis [s]."""
         return self.pictures.span or (0.0, self.duration)
 
     @property
     def biased(self) -> bool:
-        """Whether the parameters were fitted without a law that is known to be missing, and may imitate it."""
+        """Whether the parameters were fitted without a law that is known to be missing, and may compensate for it."""
         simulated = any(name.startswith("recovered_") for name in self.fitted_values)
         return self.verdict == "unknown_physics" and not simulated
