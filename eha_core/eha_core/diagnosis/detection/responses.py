@@ -1,4 +1,4 @@
-"""The search's own linearisation about a fitted model: what is left of responses when others explain what they can."""
+"""The search's own linearisation about a fitted model: the parts of responses that other parameters do not explain."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from eha_core.identification.numbers import Array
 from eha_core.identification.observation import Observation
 
 MENTIONED = 2
-"""Fitted parameters that are named as those that compensate an effect."""
+"""Most fitted parameters that are named as compensating for an effect."""
 
 COMPENSATED = 0.01
-"""Share of an effect's response that fitted parameters must leave for the effect not to be called compensated by
-them (assumed): of less, the size that is found is ten times what it would be with a rig that is exactly known."""
+"""Share of an effect's response, not explained by fitted parameters, below which the effect counts as compensated by
+them (assumed): the detectable size is then ten times that on an exactly known rig."""
 
 
 @dataclass(frozen=True)
 class FittedModel:
-    """A fitted set of effects, of which it is asked what else would have shown.
+    """A fitted set of effects, for which the detectability of others is computed.
 
     Attributes:
-        observations: the recordings, or the test that is planned.
-        pool: of the windows that it was fitted to, with the nominal equations where they were fitted.
-        hypothesis: the set. fit: of it.
+        observations: the recordings, or the planned test.
+        pool: of the windows that it was fitted to, with the fit of the nominal equations.
+        hypothesis: the set. fit: its fit.
         scales: of the motion.
     """
 
@@ -46,7 +46,7 @@ class FittedModel:
 
     @property
     def variance(self) -> float:
-        """Of the residual in units of the noise's variance, never below one."""
+        """Variance of the residual in units of the noise's, never below one."""
         return max(1.0, self.fit.data / self.fit.count)
 
 
@@ -54,8 +54,8 @@ class FittedModel:
 class Responses:
     """The responses of columns at their sizes, in the search's quadratic model about a fitted set.
 
-    Chi^2 is without noise: what a fit would be left with. What the set has free, its nominal parameters and those of
-    its effects, moves within priors and bounds.
+    Chi^2 is without noise: that of a fit's residual. The set's free parameters, nominal ones and those of its effects,
+    move within priors and bounds.
     """
 
     model: QuadraticModel
@@ -64,23 +64,23 @@ class Responses:
 
     @property
     def fitted(self) -> int:
-        """How many parameters the set has free; the columns come after them."""
+        """The number of the set's free parameters; the columns come after them."""
         return len(self.model.at.free)
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
-        """How far each may move from the fit, scaled."""
+        """The scaled bounds of each one's move from the fit."""
         there = self.model.to_neutral * self.model.scale
         return self.model.lower + there, self.model.upper + there
 
     def energy(self, column: int) -> float:
-        """Chi^2 of a column's response where all that was fitted is held."""
+        """Chi^2 of a column's response with all fitted parameters held."""
         place = self.fitted + column
         return float(self.model.matrix[place, place] * self.model.scale[place] ** 2)
 
     def left(self, column: int, others: Sequence[int] = (), without: int | None = None) -> float:
-        """Chi^2 of a column's response that the fitted parameters (but for one, by its place) and other columns do not
-        explain, each within its bounds."""
+        """Chi^2 of a column's response that the fitted parameters (except the one at index `without`) and other columns
+        do not explain, each within its bounds."""
         model, count = self.model, self.fitted
         places = np.array([*(k for k in range(count) if k != without), *(count + k for k in others)], dtype=np.int64)
         gradient = model.matrix[:, count + column] * model.scale[count + column]
@@ -92,13 +92,13 @@ class Responses:
         return self.left(column) / (self.energy(column) or 1.0)
 
     def compensating(self, column: int) -> tuple[str, ...]:
-        """The fitted parameters without which most of a column's response would be left."""
+        """The fitted parameters that compensate most for a column's response."""
         found = [self.left(column, without=place) for place in range(self.fitted)]
         names = [parameter.name for parameter in self.model.at.free]
         return tuple(names[place] for place in np.argsort(found)[::-1][:MENTIONED])
 
     def deviations(self) -> dict[str, float]:
-        """Standard deviation of the coordinate of each fitted parameter, no more effects fitted, by name."""
+        """Standard deviation of each fitted parameter's coordinate, without further effects, by name."""
         count = self.fitted
         spread = np.sqrt(np.diag(np.linalg.inv(self.model.matrix[:count, :count]))) / self.model.scale[:count]
         return {one.name: float(at) for one, at in zip(self.model.at.free, spread, strict=True)}

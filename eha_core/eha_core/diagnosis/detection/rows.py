@@ -1,5 +1,4 @@
-"""The rows of a table of smallest sizes: each effect with what confuses it, each nominal parameter, and leaks as
-flows."""
+"""The rows of a table of smallest sizes: effects with their confusions, nominal parameters, and leaks as flows."""
 
 from __future__ import annotations
 
@@ -27,9 +26,9 @@ LEAKS = ("internal_leakage_flow", "external_leakage_flow_a", "external_leakage_f
 
 
 def middle_shapes(tried: Sequence[Trial], factors: Sequence[float]) -> tuple[list[Trial], list[float]]:
-    """Of each size of each effect the trial that is stated, and its factor: of the two signs the one that needs more,
-    and of the shapes that the search tries the one that needs the middle factor (the lower of two). A trial whose
-    response is not of its size says nothing of it."""
+    """For each size of each effect, the trial that is stated, and its factor: of the two signs the one with the larger
+    factor, and of the search's shapes the one with the middle factor (the lower of two). Trials whose response does not
+    depend on the size are ignored."""
     groups: dict[tuple[str, ...], dict[tuple[tuple[str, float], ...], int]] = {}
     for place, trial in enumerate(tried):
         if factors[place] == 0.0:
@@ -44,8 +43,8 @@ def middle_shapes(tried: Sequence[Trial], factors: Sequence[float]) -> tuple[lis
 
 
 def effect_rows(at: FittedModel, tried: Sequence[Trial], factors: Sequence[float]) -> tuple[Detectable, ...]:
-    """A row for each trial, whose size is found at this factor on it; none is at inf."""
-    # what is not found is shown at the size that the search begins with: at the largest its own limits hold the rest
+    """A row for each trial, whose size is found at its factor; inf: at no size."""
+    # an undetectable effect is shown at the search's initial size: at the largest, its own limits would hold the rest
     pairs = zip(tried, factors, strict=True)
     sized = [factor if np.isfinite(factor) else min(1.0, trial.most) for trial, factor in pairs]
     columns = [trial.at(factor) for trial, factor in zip(tried, sized, strict=True)]
@@ -68,14 +67,14 @@ def effect_rows(at: FittedModel, tried: Sequence[Trial], factors: Sequence[float
 
 
 def _size_of(trial: Trial) -> tuple[str, Parameter]:
-    """The size that stands for all that grow with it."""
+    """The parameter that represents all that grow with the size."""
     name = trial.column.sizes[0]
     return name, next(row for row in trial.column.effect.parameters if name == f"{trial.column.effect.id}.{row.name}")
 
 
 def leak_flows(at: FittedModel, changes: Sequence[Mapping[str, float]]) -> list[float | None]:
-    """By how much the largest of LEAKS changes, root mean square [m^3/s], for each of these changes of values; None of
-    those that are no leak's."""
+    """The root mean square [m^3/s] of the largest change of LEAKS for each of these changes of values; None of those
+    that are not a leak's."""
     shooting = at.pool.problem.shooting
     leaking = [k for k, values in enumerate(changes) if any(_is_leak(name) for name in values)]
     found: list[float | None] = [None] * len(changes)
@@ -91,14 +90,14 @@ def leak_flows(at: FittedModel, changes: Sequence[Mapping[str, float]]) -> list[
 
 
 def _is_leak(name: str) -> bool:
-    """Whether a value is a leak's past the piston or out of a chamber; LEAKS have none past the valve's lands."""
+    """Whether a value belongs to a leak past the piston or out of a chamber; LEAKS has none past the valve's lands."""
     row = catalogue().get(name)
     past_the_lands = any(one.id == name.partition(".")[0] and one.site == "orifice" for one in effects())
     return row is not None and row.unit.startswith("m^3/(s Pa") and not past_the_lands
 
 
 def parameter_rows(at: FittedModel) -> tuple[Noticeable, ...]:
-    """By how much each nominal parameter must differ to be reported as changed: `calibrate.has_changed` is the rule."""
+    """The smallest reported change of each nominal parameter, by the rule of `calibrate.has_changed`."""
     deviations = responses(at, ()).deviations()
     rows = at.observations[0].composition.place_rows
     noticed = {one.name: _noticed(one, deviations[one.name], at) for one in at.pool.plant}
