@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from datetime import datetime
 from importlib import import_module
 from pathlib import Path
 from shutil import disk_usage
@@ -16,7 +15,7 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
 from eha_core.errors import RecordingError
-from eha_core.recording import OfferedQuality, RecordingWriter, definition_of
+from eha_core.recording import OfferedQuality, RecordingWriter, definition_of, free_path
 from eha_sim_node.coverage import RECORD, Coverage
 from eha_sim_node.log_time import SimulatedTime, leading_stamp
 
@@ -84,7 +83,7 @@ class Recorder:
         if self._writer:
             raise RecordingError(f"{self._writer.path} is being recorded already; stop or split it first")
         try:
-            self._writer = RecordingWriter(self._free_path(name or self._name), self._parameters)
+            self._writer = RecordingWriter(free_path(self._directory, "eha", name or self._name), self._parameters)
         except RecordingError as error:
             self.failure = str(error)
             raise
@@ -246,12 +245,3 @@ class Recorder:
         if self._writer is None:
             raise RecordingError(f"nothing is being recorded{f': {self.failure}' if self.failure else ''}")
         return self._writer
-
-    def _free_path(self, name: str) -> Path:
-        stem = name or f"eha_{datetime.now():%Y_%m_%d-%H_%M_%S}"
-        path = self._directory / f"{stem}.mcap"
-        count = 0
-        while path.exists():
-            count += 1
-            path = self._directory / f"{stem}-{count}.mcap"
-        return path

@@ -6,7 +6,7 @@ from eha_core.recording.message_types import definition_of, encode
 from eha_core.recording.reader import read_recording
 from eha_core.recording.recording import CHANNEL_KINDS, Channel, ChannelKind, Recording
 from eha_core.recording.topics_file import TopicsFile, load_topics_file, topics_of
-from eha_core.recording.writer import PARAMETERS_RECORD, OfferedQuality, RecordingWriter
+from eha_core.recording.writer import PARAMETERS_RECORD, OfferedQuality, RecordingWriter, free_path
 
 __all__ = [
     "CHANNEL_KINDS",
@@ -20,6 +20,7 @@ __all__ = [
     "TopicsFile",
     "definition_of",
     "encode",
+    "free_path",
     "is_finished",
     "load_topics_file",
     "read_recording",

@@ -254,7 +254,7 @@ def write_simulated(path: str | Path, record: Simulated, instruments_only: bool 
         return writer.message_count
 
 
-def _rows(
+def topic_messages(
     order: int,
     topic: str,
     type_name: str,
@@ -276,17 +276,17 @@ def _sensor_messages(record: Simulated, instruments_only: bool) -> Iterator[Iter
     atmosphere = record.atmosphere
     for order, chamber in enumerate("ab", start=2):
         pressure = {"fluid_pressure": record.column(f"measured_pressure_{chamber}") + atmosphere}
-        yield _rows(order, f"/chamber_{chamber}/pressure", PRESSURE, record.stamps, pressure)
+        yield topic_messages(order, f"/chamber_{chamber}/pressure", PRESSURE, record.stamps, pressure)
     motion = {"position": record.column("measured_position"), "velocity": record.column("measured_velocity")}
     if not instruments_only:
         motion["effort"] = record.column("hydraulic_force")
-    yield _rows(5, "/joint_states", JOINTS, record.stamps, motion, name=["piston"])
+    yield topic_messages(5, "/joint_states", JOINTS, record.stamps, motion, name=["piston"])
     stamps, voltages = record.commands
-    yield _rows(6, "/voltage_command", FLOAT, stamps, {"data": voltages}, has_header=False)
+    yield topic_messages(6, "/voltage_command", FLOAT, stamps, {"data": voltages}, has_header=False)
 
 
 def _state_messages(record: Simulated) -> Iterator[Message]:
-    return _rows(4, "/state", STATE, record.stamps, {name: record.column(name) for name in COLUMNS})
+    return topic_messages(4, "/state", STATE, record.stamps, {name: record.column(name) for name in COLUMNS})
 
 
 def _leakage_messages(record: Simulated) -> Iterator[Message]:
@@ -297,7 +297,7 @@ def _leakage_messages(record: Simulated) -> Iterator[Message]:
     set_at = [stamp for stamp, name, _ in record.changes if name == "internal_leakage"]
     before = record.stamps[np.maximum(changed - 1, 0)]
     stamps = np.where(np.isin(before, set_at), before, stamps)
-    return _rows(1, "/internal_leakage", FLOAT, stamps, {"data": leakage[changed]}, has_header=False)
+    return topic_messages(1, "/internal_leakage", FLOAT, stamps, {"data": leakage[changed]}, has_header=False)
 
 
 def _parameter_events(record: Simulated) -> Iterator[Message]:

@@ -6,6 +6,7 @@ import time
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, NamedTuple, cast
@@ -19,6 +20,17 @@ from eha_core.recording.own_thread import OwnThread
 
 PARAMETERS_RECORD = "eha_parameters"
 _FOREVER = "{sec: 9223372036, nsec: 854775807}"
+
+
+def free_path(folder: Path, prefix: str, name: str = "") -> Path:
+    """Where a new recording of that name goes, numbered where there is one already; by default the name is `prefix`
+    with the date and time."""
+    stem = name or f"{prefix}_{datetime.now():%Y_%m_%d-%H_%M_%S}"
+    path, count = folder / f"{stem}.mcap", 0
+    while path.exists():
+        count += 1
+        path = folder / f"{stem}-{count}.mcap"
+    return path
 
 
 @dataclass(frozen=True)
