@@ -3,48 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
+from beside_rig import NANOSECONDS, PERIOD, beside, rig
 
 from eha_core.errors import ParameterError
 from eha_core.plant.state import COLUMNS
 from eha_core.recording.simulated import Experiment, Simulated, simulate
-from eha_core.signals import make_signal
-from eha_core.twin import Comparison, Settings, Twin
+from eha_core.twin import Settings, Twin
 
-NANOSECONDS = 1_000_000_000
-PERIOD = 0.002
-MULTISINE = {"amplitude": 0.12, "lowest": 0.3, "highest": 8.0, "count": 16, "period": 20.0, "seed": 5}
 CHAMBERS = {"chamber A", "chamber B"}
-
-
-def rig(seconds: float, noise: float = 1.0, **options: Any) -> Simulated:
-    times = np.arange(round(seconds / PERIOD)) * PERIOD
-    voltages = make_signal("multisine", MULTISINE).value(times)
-    return simulate(Experiment(times, voltages, seconds, noise=noise, **options))
-
-
-def beside(
-    record: Simulated, twin: Twin, published_from: int = 0, missing: tuple[float, float] = (0.0, 0.0)
-) -> list[tuple[float, Comparison]]:
-    """Feed a record as it comes from a rig; return each comparison with the stamp at which it was there [s]."""
-    commands = dict(zip(record.commands[0].tolist(), record.commands[1].tolist(), strict=True))
-    columns = [record.column(f"measured_{name}").tolist() for name in ("position", "pressure_a", "pressure_b")]
-    found = []
-    for stamp, position, pressure_a, pressure_b in zip(record.stamps.tolist(), *columns, strict=True):
-        if missing[0] * NANOSECONDS <= stamp < missing[1] * NANOSECONDS:
-            continue
-        twin.position(stamp, position, published_from + stamp)
-        twin.pressure("a", stamp, pressure_a)
-        twin.pressure("b", stamp, pressure_b)
-        if stamp in commands:
-            twin.command(published_from + stamp + 50_000, commands[stamp])
-        comparison = twin.compare()
-        if comparison is not None:
-            found.append((stamp / NANOSECONDS, comparison))
-    return found
 
 
 @pytest.mark.parametrize("noise", [0.0, 1.0, 5.0])
