@@ -1,10 +1,12 @@
-"""The twin node: a model beside a running rig, on the same command, that says which of its equations the rig leaves."""
+"""The twin node: a model beside a running rig, on the same command, that says which of its equations the rig leaves,
+what is the likely cause, and records the seconds about it."""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 import rclpy.node
@@ -13,10 +15,15 @@ from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
-from eha_core.errors import ParameterError
+from eha_core.errors import EhaError, ParameterError
 from eha_core.plant import voltage_driven
 from eha_core.realtime import NANOSECONDS
+from eha_core.report.departure import as_values, likely_cause
 from eha_core.twin import Comparison, Settings, Twin
+from eha_core.twin.departures import MOST
+from eha_core.twin.explanation import Explanation
+from eha_core.twin.follow_up import FollowUp, News
+from eha_core.twin.snapshot import Snapshots
 from eha_interfaces.msg import ActuatorState
 from eha_sim_node.diagnostics import Diagnostics, Report
 from eha_sim_node.joints import JOINT, value_of
@@ -42,6 +49,10 @@ OWN_ROWS = (
     Row("command_timeout", 0.5, "time without a command until the rig's drive falls to zero [s]; 0: never",
         0.0, 3600.0, fixed=True),
     Row("command_limit", 10.0, "largest voltage that the rig's drive takes, either sign [V]", 0.0, 1000.0, fixed=True),
+    Row("name_causes", True, "whether a second process names the likely cause of a departure", fixed=True),
+    Row("snapshot_folder", "", "folder for recordings of the seconds about each departure; empty: none", fixed=True),
+    Row("snapshot_before", 10.0, "how much of what came before the alarm a snapshot holds [s]", 1.0, 600.0, fixed=True),
+    Row("snapshot_after", 5.0, "how much of what comes after the alarm a snapshot holds [s]", 0.0, 600.0, fixed=True),
     Row("diagnostics_rate", 1.0, "rate of /diagnostics, in wall-clock time [Hz]", 0.1, 100.0, fixed=True),
 )  # fmt: skip
 _SETTINGS = (
@@ -56,7 +67,11 @@ class TwinNode(rclpy.node.Node):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         self._settings = ParameterSet(self, (*OWN_ROWS, *self._plant_rows()))
         own = self._settings.values
-        self._twin = Twin(plant_values(own), own["step_size"], Settings(**{name: own[name] for name in _SETTINGS}))
+        before, after = own["snapshot_before"], own["snapshot_after"]
+        settings = Settings(**{name: own[name] for name in _SETTINGS}, kept=max(before, MOST))
+        self._twin = Twin(plant_values(own), own["step_size"], settings)
+        self._follow_up = FollowUp(own["name_causes"], own["snapshot_folder"], Snapshots(before, after))
+        self._failure = ""
         self._settings.declare(self._apply)
         self._latest: Comparison | None = None
         self._windows = 0
@@ -110,10 +125,18 @@ class TwinNode(rclpy.node.Node):
 
         return receive
 
+    def close(self) -> None:
+        """Finish the snapshot under way."""
+        self._log(self._follow_up.close())
+
     def _on_timer(self) -> None:
+        if news := self._follow_up.collect():
+            self._log(news)
+            self._diagnostics.publish()
         comparison = self._twin.compare()
         if comparison is None:
             return
+        self._follow_up.take(comparison, self._twin.kept, self._twin.parameters)
         before = _news(self._latest) if self._latest else set()
         self._latest = comparison
         self._windows += 1
@@ -126,6 +149,16 @@ class TwinNode(rclpy.node.Node):
         else:
             self.get_logger().info("the rig follows the model again")
 
+    def _log(self, news: Iterable[News]) -> None:
+        for one in news:
+            self._failure = str(one) if isinstance(one, EhaError) else ""
+            if isinstance(one, Explanation):
+                self.get_logger().warning(likely_cause(one))
+            elif isinstance(one, Path):
+                self.get_logger().info(f"the seconds about the departure are in {one}")
+            else:
+                self.get_logger().error(self._failure)
+
     def _report(self) -> Report:
         troubles = []
         silent = time.monotonic() - self._compared_at
@@ -133,6 +166,7 @@ class TwinNode(rclpy.node.Node):
             troubles.append(
                 f"nothing to compare for {silent:.0f} s; joint_states must come without gaps, with a joint {JOINT}"
             )
+        troubles += [self._failure] if self._failure else []
         values: dict[str, object] = {"windows": self._windows}
         if self._latest:
             latest = self._latest
@@ -142,6 +176,11 @@ class TwinNode(rclpy.node.Node):
             values |= {f"times the noise: {name}": ratio for name, ratio in latest.ratios.items()}
             values |= {f"{what} since: {name}": _stamp(since) for name, (what, since) in latest.unsound.items()}
             values |= {f"departs since: {name}": _stamp(since) for name, since in latest.departs.items()}
+        if explanation := self._follow_up.explanation:
+            troubles.append(likely_cause(explanation))
+            values |= as_values(explanation)
+        if self._follow_up.snapshot:
+            values["snapshot"] = self._follow_up.snapshot
         return Report(values, troubles)
 
 

@@ -23,6 +23,7 @@ class Settings:
         position_noise, pressure_noise: least noise reckoned with [m], [Pa]; more is read off the data.
         command_timeout: time without a command after which the drive's voltage is zero [s]; 0: never.
         command_limit: largest voltage the drive takes [V].
+        kept: time over which what was compared is kept, to name a departure and to record it [s].
     """
 
     window: float = 1.0
@@ -32,6 +33,7 @@ class Settings:
     pressure_noise: float = 1e4
     command_timeout: float = 0.5
     command_limit: float = 10.0
+    kept: float = 10.0
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,7 @@ class Comparison:
     Attributes:
         start, end: the window's stamps [ns].
         errors: RMS of measured minus simulated of each channel there was [SI].
+        noises: standard deviation of the noise of each of these channels [SI].
         ratios: for each equation that could be examined, and for DRIFT, the RMS of its residual over its noise.
         departs: what departs beyond the threshold, the most first, and from which stamp on, through all windows
             since [ns]. DRIFT is among them only where no equation is.
@@ -50,6 +53,7 @@ class Comparison:
     start: int
     end: int
     errors: Mapping[str, float]
+    noises: Mapping[str, float]
     ratios: Mapping[str, float]
     departs: Mapping[str, int]
     unsound: Mapping[str, tuple[str, int]] = field(default_factory=dict)

@@ -51,3 +51,8 @@ class Samples:
         """Times relative to `stamp` [s] and values within `reach` of it [ns]."""
         part = slice(bisect_left(self.stamps, stamp - reach), bisect_left(self.stamps, stamp + reach + 1))
         return (np.array(self.stamps[part]) - stamp) / NANOSECONDS, np.array(self.values[part])
+
+    def between(self, start: int, end: int) -> tuple[NDArray[np.int64], Array]:
+        """Stamps [ns] and values from `start` on, before `end`."""
+        part = slice(bisect_left(self.stamps, start), bisect_left(self.stamps, end))
+        return np.array(self.stamps[part], dtype=np.int64), np.array(self.values[part], dtype=np.float64)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Mapping
+from collections import deque
+from collections.abc import Mapping, Sequence
 from math import inf
 
 import numpy as np
@@ -14,6 +15,7 @@ from eha_core.plant import Plant, Trajectory
 from eha_core.realtime import NANOSECONDS
 from eha_core.twin.comparison import DRIFT, Comparison, Settings
 from eha_core.twin.evidence import Detector, log_e_value
+from eha_core.twin.excerpt import Excerpt, held_changes
 from eha_core.twin.samples import Array, Samples, nanoseconds
 from eha_core.twin.soundness import Soundness
 from eha_core.weak_form.model_errors import CHANNELS, EQUATIONS, equation_residuals
@@ -51,8 +53,14 @@ class Twin:
         self._detectors = {name: Detector(len(names) * windows) for name in names}
         self._since: dict[str, int] = {}
         self._soundness = Soundness()
+        self._kept: deque[Excerpt] = deque()
         self._start: int | None = None  # of the window to come [ns]; None before there are samples enough
         self._is_warm = False  # whether coil and spool have seen the command
+
+    @property
+    def kept(self) -> Sequence[Excerpt]:
+        """The windows compared last, each beginning where the one before ended, the newest at the end."""
+        return self._kept
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -98,10 +106,22 @@ class Twin:
             self._plant.run(self._voltages(start - nanoseconds(_LEAD), start))
             self._is_warm = True
         self._plant.place(*self._measured_state(start))
-        result = self._compared(start, end, self._plant.run(self._voltages(start, end), self._every))
+        voltages = self._voltages(start, end)
+        result = self._compared(start, end, self._plant.run(voltages, self._every))
+        self._keep(start, end, voltages)
         self._start = end
         self._forget_before(end - nanoseconds(_LEAD))
         return result
+
+    def _keep(self, start: int, end: int, voltages: Array) -> None:
+        """Keep a window that was compared, and forget what is older than is asked for or lies before a gap."""
+        kept = self._kept
+        if kept and kept[-1].end != start:
+            kept.clear()
+        channels = {name: samples.between(start, end) for name, samples in self._channels.items() if samples.stamps}
+        kept.append(Excerpt(start, end, held_changes(np.arange(start, end, self._step_ns), voltages), channels))
+        while kept[0].end <= end - nanoseconds(self._settings.kept):
+            kept.popleft()
 
     def _restart(self) -> None:
         """Begin anew with the samples to come."""
@@ -211,6 +231,7 @@ class Twin:
             start,
             end,
             {name: _rms(error) for name, error in errors.items()},
+            noises,
             ratios,
             {name: self._since[name] for name in departing},
             unsound,

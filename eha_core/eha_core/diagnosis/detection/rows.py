@@ -72,9 +72,11 @@ def _size_of(trial: Trial) -> tuple[str, Parameter]:
     return name, next(row for row in trial.column.effect.parameters if name == f"{trial.column.effect.id}.{row.name}")
 
 
-def leak_flows(at: FittedModel, changes: Sequence[Mapping[str, float]]) -> list[float | None]:
-    """The root mean square [m^3/s] of the largest change of LEAKS for each of these changes of values; None of those
-    that are not a leak's."""
+def leak_flows(
+    at: FittedModel, changes: Sequence[Mapping[str, float]], begin: float = 0.0
+) -> list[float | None]:
+    """The root mean square [m^3/s], from `begin` [s] on, of the largest change of LEAKS for each of these changes of
+    values; None of those that are not a leak's."""
     shooting = at.pool.problem.shooting
     leaking = [k for k, values in enumerate(changes) if any(_is_leak(name) for name in values)]
     found: list[float | None] = [None] * len(changes)
@@ -82,7 +84,8 @@ def leak_flows(at: FittedModel, changes: Sequence[Mapping[str, float]]) -> list[
         return found
     sets = [at.fit.values, *({**at.fit.values, **changes[k]} for k in leaking)]
     rows = [shooting.simulate(values, at.fit.states, full=True)[0] for values in sets]
-    flows = np.stack([each[:, [COLUMNS.index(name) for name in LEAKS]] for each in rows])
+    first = round(begin / (shooting.every * shooting.step_size))
+    flows = np.stack([each[first:, [COLUMNS.index(name) for name in LEAKS]] for each in rows])
     added = np.sqrt(np.mean(np.square(flows[1:] - flows[0]), axis=1)).max(axis=1)
     for k, flow in zip(leaking, added.tolist(), strict=True):
         found[k] = flow or None
