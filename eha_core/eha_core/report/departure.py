@@ -14,11 +14,11 @@ def likely_cause(explanation: Explanation) -> str:
     """The explanation as one line: the cause with its size, and what cannot be distinguished from it."""
     if explanation.cause is None:
         return f"no single effect or parameter explains {explanation.seconds:.1f} s of it"
-    line = f"likely cause: {effect_title(explanation.cause.name)}, {_sizes(explanation.cause)} (95 %)"
+    line = f"likely cause: {_title(explanation.cause)}, {_sizes(explanation.cause)} (95 %)"
     if explanation.residual > LEFT_IN_A_CHANNEL:
         line += f", which leaves {explanation.residual:.2g} times the noise"
     if explanation.rivals:
-        rivals = (effect_title(rival.name) for rival in explanation.rivals)
+        rivals = (_title(rival) for rival in explanation.rivals)
         line += f", cannot be distinguished from {' or '.join(rivals)}"
     return line
 
@@ -35,6 +35,11 @@ def as_values(explanation: Explanation) -> Mapping[str, object]:
     values |= {f"size: {size.name}": within(size.value, size.deviation, size.unit) for size in cause.sizes}
     values["residual times the noise"] = explanation.residual
     return values | {"cannot be distinguished from": ", ".join(rival.name for rival in explanation.rivals)}
+
+
+def _title(cause: Cause) -> str:
+    """An effect's title, or a parameter's; of one of an effect's parameters both."""
+    return effect_title(cause.name).replace(".", ", ")
 
 
 def _sizes(cause: Cause) -> str:
