@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from eha_core.background import Background, Done
-from eha_core.errors import EhaError
+from eha_core.errors import EhaError, RecordingError
 from eha_core.twin.comparison import Comparison
 from eha_core.twin.departures import Departures
 from eha_core.twin.excerpt import Excerpt
@@ -42,7 +43,8 @@ class FollowUp:
         self._folder, self._snapshots = folder, snapshots
         self._parameters: Mapping[str, float] = {}
         self._departs = False
-        self._background = Background(prepare) if is_naming or folder else None
+        self._unwritten: deque[tuple[str, Excerpt, Mapping[str, float]]] = deque()
+        self._background: Background | None = None
         self.explanation: Explanation | None = None
         """Of what departs now; None where nothing does, or it is not known yet."""
         self.snapshot: Path | None = None
@@ -53,33 +55,37 @@ class FollowUp:
         self._departs, self._parameters = bool(comparison.departs), dict(parameters)
         if not self._departs:
             self.explanation = None
-        if self._background is None:
+        if self._departures is None and not self._folder:
             return
+        if self._background is None:  # with the first window: while nodes start, each needs the machine
+            self._background = Background(prepare)
         if self._departures is not None:
             departure = self._departures.take(comparison, kept, self._parameters)
             if departure is not None:
                 self._background.submit(explain, departure)
-        if self._folder:
-            self._record(self._snapshots.take(comparison, kept))
-
-    def _record(self, excerpt: Excerpt | None) -> None:
-        if excerpt is not None and self._background is not None:
-            self._background.submit(write_snapshot, self._folder, excerpt, self._parameters)
+        if self._folder and (excerpt := self._snapshots.take(comparison, kept)):
+            self._unwritten.append((self._folder, excerpt, self._parameters))
+            self._background.submit(write_snapshot, *self._unwritten[-1])
 
     def collect(self) -> list[News]:
         """What was found, written or failed since the last call; it returns at once. Call it regularly."""
         return self._news(self._background.results()) if self._background else []
 
     def close(self) -> list[News]:
-        """Write the snapshot under way, as it is, and end; as `collect`."""
+        """End, and write here what was not written yet, the snapshot under way as it is; as `collect`."""
         if self._background is None:
             return []
-        self._record(self._snapshots.finish())
-        return self._news(self._background.close(PATIENCE))
+        news = self._news(self._background.close(PATIENCE))
+        self._background = None
+        if excerpt := self._snapshots.finish():
+            self._unwritten.append((self._folder, excerpt, self._parameters))
+        return news + self._news([(write_snapshot, _written(*one)) for one in tuple(self._unwritten)])
 
     def _news(self, done: Sequence[Done]) -> list[News]:
         news: list[News] = []
         for function, outcome in done:
+            if function is write_snapshot:
+                self._unwritten.popleft()
             if isinstance(outcome, Exception):
                 news.append(EhaError(f"{FAILED[function]}: {outcome}"))
             elif function is explain:
@@ -89,6 +95,13 @@ class FollowUp:
                 self.snapshot = outcome
                 news.append(outcome)
         return news
+
+
+def _written(folder: str, excerpt: Excerpt, parameters: Mapping[str, float]) -> Path | RecordingError:
+    try:
+        return write_snapshot(folder, excerpt, parameters)
+    except RecordingError as error:
+        return error
 
 
 def _require_folder(folder: Path) -> None:
