@@ -15,6 +15,7 @@ from eha_core.recording import read_recording
 from eha_core.recording.simulated import Simulated
 from eha_core.twin import Settings, Twin
 from eha_core.twin.excerpt import Excerpt
+from eha_core.twin.samples import nanoseconds
 from eha_core.twin.snapshot import Snapshots, write_snapshot
 
 LEAK = [(2.5, "internal_leakage", 6.5e-11)]
@@ -62,6 +63,15 @@ def test_a_snapshot_ends_at_a_gap_and_the_next_alarm_has_its_own() -> None:
     assert first.end < second.start
     gap = snapshots(rig(8.0, changes=LEAK), 2.0, 60.0, missing=(5.3, 5.9))
     assert seconds(gap[0])[1] == pytest.approx(5.1, abs=0.01)
+
+
+def test_a_held_voltage_is_there_with_every_position(tmp_path: Path) -> None:
+    samples = np.arange(0, nanoseconds(2.0), nanoseconds(0.002))
+    voltage = np.array([0, nanoseconds(0.9995)]), np.array([0.1, -0.2])
+    excerpt = Excerpt(0, nanoseconds(2.0), voltage, {"position": (samples, np.sin(3e-9 * samples))})
+    written = read_recording(write_snapshot(tmp_path, excerpt, Twin().parameters)).channels["voltage_command"]
+    assert len(written.time) == len(samples) + 1  # the change lies between two positions
+    assert np.array_equal(written.values, np.where(written.time < 0.9995 - 1e-9, 0.1, -0.2))
 
 
 def test_two_in_one_second_have_two_names_and_a_file_in_the_way_is_reported(tmp_path: Path) -> None:

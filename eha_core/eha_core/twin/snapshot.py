@@ -8,6 +8,8 @@ from heapq import merge
 from math import inf
 from pathlib import Path
 
+import numpy as np
+
 from eha_core.recording import RecordingWriter, free_path
 from eha_core.recording.simulated import FLOAT, JOINTS, PRESSURE, Message, topic_messages
 from eha_core.twin.comparison import Comparison
@@ -79,5 +81,7 @@ def _topics(excerpt: Excerpt, atmosphere: float) -> Iterable[Iterable[Message]]:
             yield topic_messages(order, f"/chamber_{chamber}/pressure", PRESSURE, stamps, pressure)
     stamps, values = excerpt.channels["position"]
     yield topic_messages(2, "/joint_states", JOINTS, stamps, {"position": values}, name=["piston"])
-    stamps, voltages = excerpt.voltage
+    # with every position, for a command that is not repeated may be one that was not recorded
+    stamps = np.union1d(stamps, excerpt.voltage[0])
+    voltages = excerpt.voltage[1][np.searchsorted(excerpt.voltage[0], stamps, side="right") - 1]
     yield topic_messages(3, "/voltage_command", FLOAT, stamps, {"data": voltages}, has_header=False)
