@@ -96,9 +96,34 @@ def test_what_seconds_cannot_distinguish_is_a_rival() -> None:
     assert names == {"pressure_sensor_bias", "pressure_sensor_scale"}
 
 
-def test_two_causes_at_once_are_no_single_one() -> None:
-    both = [(2.0, "internal_leakage", 5e-11), (2.0, "coulomb_friction.force", 100.0)]
-    explanation = named(4.0, changes=both)
+def test_friction_that_sticks_is_told_from_friction_that_only_slides() -> None:
+    friction = {"stribeck_friction.force": 150.0, "stribeck_friction.static_force": 250.0}
+    explanation = named(3.0, parameters=friction)
+    assert explanation.cause is not None and explanation.cause.name == "stribeck_friction"
+    for size in explanation.cause.sizes:
+        assert abs(size.value - friction[size.name]) < 4.0 * size.deviation < 5.0
+
+
+def test_a_value_far_off_is_found_as_exactly_as_its_interval_says() -> None:
+    explanation = named(5.0, parameters={"supply_pressure": 15e6})
+    assert explanation.cause is not None
+    (size,) = explanation.cause.sizes
+    assert abs(size.value - 15e6) < 4.0 * size.deviation < 1e4
+
+
+UNKNOWN = {"08": 200.0, "11": -200.0, "14": -200.0, "18": 200.0}
+"""N; knots of a force over the position that is no effect of the catalogue."""
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"internal_leakage": 5e-11, "coulomb_friction.force": 100.0},
+        {f"recovered_force.knot_{knot}": force for knot, force in UNKNOWN.items()},
+    ],
+)
+def test_two_causes_at_once_and_a_law_in_no_catalogue_are_no_single_one(changes: dict[str, float]) -> None:
+    explanation = named(5.0, changes=[(2.0, name, value) for name, value in changes.items()])
     assert explanation.cause is None and explanation.rivals == ()
 
 

@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.calibrate import STEPS
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
-from eha_core.diagnosis.criteria import TIE, chance_gain, parameter_cost
+from eha_core.diagnosis.criteria import PARTLY, TIE, chance_gain, parameter_cost
 from eha_core.diagnosis.detection.power import required_gain
 from eha_core.diagnosis.detection.responses import FittedModel
 from eha_core.diagnosis.detection.rows import leak_flows
@@ -33,6 +33,7 @@ from eha_core.identification.observation import FITTED, Measured, Observation
 from eha_core.identification.problem import whole
 from eha_core.identification.segments import cut
 from eha_core.identification.shooting import SETTLING
+from eha_core.identification.short_windows import SHORT, with_finer_slopes
 from eha_core.parameters import catalogue
 from eha_core.plant import Plant
 from eha_core.realtime import NANOSECONDS
@@ -48,9 +49,16 @@ size, so the best in the quadratic model need not be the best (assumed)."""
 ITERATIONS = 12
 """Of such a fit at most; most end after six."""
 
-TOLERATED, MAY_LEAVE = 1.5, 0.001
-"""RMS of the residual over the noise, as a twin tolerates by default, and share of the chi^2 beyond noise: a cause
-leaves no more than one of them, or something else is off as well (assumed)."""
+TOLERATED = 1.5
+"""RMS of the residual over the noise up to which a cause need not explain all: as much as a twin tolerates by
+default."""
+
+MAY_LEAVE = 0.001
+"""Share of the chi^2 beyond noise that a cause may leave where that is more: the model of a rig that is far off is
+hardly better than to 3 % (assumed)."""
+
+CHANCE_DEVIATIONS = 2.0
+"""Standard deviations of chi^2 by which noise alone may seem to leave something."""
 
 KNOWN_INSTANT = "schedule"
 """The site of effects that begin at an instant, or drift: when a departure began is known, and seconds show no
@@ -66,7 +74,6 @@ class _Guess:
     hypothesis: Hypothesis
     free: tuple[FreeParameter, ...]
     values: Mapping[str, float]
-    states: Array
     predicted: float
 
 
@@ -74,7 +81,7 @@ def explain(departure: Departure) -> Explanation:
     """Name the single cause of a departure and what cannot be distinguished from it.
 
     Every other value is held at the twin's. Nothing is named that gains no more than chance explains, or that leaves
-    more than it may.
+    much of the departure.
     """
     with threadpool_limits(1):
         at = _as_modelled(departure)
@@ -91,11 +98,17 @@ def explain(departure: Departure) -> Explanation:
         )
         score, best, found = ranked[0]
         needed = required_gain(chance_gain(count, least), len(best.free), count, least)
-        may_leave = max((TOLERATED**2 - 1.0) * count, MAY_LEAVE * (before.data - count))
-        if before.objective - found.objective < needed or found.data - count > may_leave:
+        if before.objective - found.objective < needed or found.data - count > _may_leave(before):
             return Explanation(seconds, None)
         rivals = (_cause(at, guess, result) for other, guess, result in ranked[1:] if other - score < TIE * least)
         return Explanation(seconds, _cause(at, best, found), tuple(rivals), (found.data / count) ** 0.5)
+
+
+def _may_leave(before: Fit) -> float:
+    """Chi^2 beyond noise that a cause may leave of what the twin's model leaves: PARTLY, while that is tolerable."""
+    count, excess = before.count, max(before.data - before.count, 0.0)
+    tolerable = min((TOLERATED**2 - 1.0) * count, PARTLY * excess)
+    return float(max(tolerable, MAY_LEAVE * excess) + CHANCE_DEVIATIONS * np.sqrt(2.0 * count))
 
 
 def _as_modelled(departure: Departure) -> FittedModel:
@@ -142,7 +155,7 @@ def _guesses(at: FittedModel) -> Iterator[_Guess]:
     for place, parameter in enumerate(modelled):
         gain, move = _alone(model, place)
         moved = values_at(values, [parameter], model.at.q[[place]] + move)
-        yield _Guess(parameter.name, (parameter.name,), present, (parameter,), moved, at.fit.states, model.empty - gain)
+        yield _Guess(parameter.name, (parameter.name,), present, (parameter,), moved, model.empty - gain)
     alone = replace(model, nominal=0)  # nothing but the effect moves
     named = set()
     for proposal in sorted(one_more(alone), key=lambda proposal: proposal.predicted):
@@ -150,11 +163,11 @@ def _guesses(at: FittedModel) -> Iterator[_Guess]:
         if option.member.id in named:
             continue
         named.add(option.member.id)
-        moved, states = alone.start(proposal.options)
+        moved, _ = alone.start(proposal.options)
         sizes = tuple(dict.fromkeys(name for column in option.columns for name in column.sizes))
         free = free_effect_parameters(option.member.effect, moved)
         hypothesis = present.with_effects([option.member.effect])
-        yield _Guess(option.member.id, sizes, hypothesis, free, moved, states, proposal.predicted)
+        yield _Guess(option.member.id, sizes, hypothesis, free, moved, proposal.predicted)
 
 
 def _acts(effect: Effect, values: Mapping[str, float]) -> bool:
@@ -171,8 +184,18 @@ def _alone(model: QuadraticModel, place: int) -> tuple[float, Array]:
 
 
 def _fitted(at: FittedModel, guess: _Guess) -> Fit:
+    """A guess at its best, the windows begun as measured, for the twin's own model bends their starts. Where friction
+    may stick it is begun over short windows, too, in which no break-away comes late."""
     problem = at.pool.posed(guess.hypothesis)
-    return fit(problem, guess.values, guess.free, guess.states, iterations=ITERATIONS)
+    found = fit(problem, guess.values, guess.free, iterations=ITERATIONS)
+    if not guess.hypothesis.kinds:
+        return found
+    values = guess.values
+    for length in SHORT:
+        shorter = cut(at.observations[0], values, problem.shooting.step_size, length)
+        values = fit(with_finer_slopes(whole(shorter)), values, guess.free, iterations=ITERATIONS).values
+    other = fit(problem, values, guess.free, iterations=ITERATIONS)
+    return min(found, other, key=lambda fitted: fitted.objective)
 
 
 def _cause(at: FittedModel, guess: _Guess, found: Fit) -> Cause:
