@@ -34,7 +34,8 @@ def test_the_twin_names_the_equation_the_stamp_and_the_cause_and_records_it(rig:
     assert rig.call(Step, "eha_sim/step", steps=40_000).success
     rig.wait(lambda: heard and heard[-1].header.stamp.sec == 4, "four seconds", 60)
     rig.wait(lambda: reports[-1]["windows"] == "3", "three windows")
-    assert {(report["level"], report["message"]) for report in reports} == {(str(b"\x00"), "running")}
+    compared = [report for report in reports if report["windows"] != "0"]  # before, nodes start, which may take long
+    assert {(report["level"], report["message"]) for report in compared} == {(str(b"\x00"), "running")}
     assert float(reports[-1]["times the noise: force balance"]) < 2.0
     leakage = Parameter("internal_leakage", value=5e-11).to_parameter_msg()
     assert rig.call(SetParameters, "eha_sim/set_parameters", parameters=[leakage]).results[0].successful
