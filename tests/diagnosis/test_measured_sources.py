@@ -103,4 +103,4 @@ def test_friction_on_a_vane_is_found_within_its_interval() -> None:
     units = {one.name: one.unit for one in found.parameters}
     assert units["moving_mass"] == "kg m^2"
     assert "moment_of_inertia" in dump_plant(found.fitted_values, rig)
-    assert any("the actuator turns" in remark for remark in found.diagnosis.remarks)
+    assert any("the actuator is rotary" in remark for remark in found.diagnosis.remarks)
