@@ -260,7 +260,7 @@ def test_without_the_extra_the_command_says_how_to_install_it(
     ("words", "message"),
     [
         (["nowhere.csv"], "nowhere.csv: there is no such file or folder"),
-        (["--port", "70000"], "--port 70000 is none"),
+        (["--port", "70000"], "--port 70000 is not possible"),
         (["--out", "/proc/version/x"], "cannot be written"),
     ],
 )
