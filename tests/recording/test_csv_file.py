@@ -67,7 +67,7 @@ def test_gaps_and_words_are_left_out_and_counted(tmp_path: Path) -> None:
         ("time,place\n0,1\n", "no usable channel"),
         ("time,position\nnoon,1\nlate,2\n", "holds no numbers; it must be the time in s"),
         ("time,position\n0,nan\n1,nan\n", "no usable channel"),
-        ("time,position\n0,1e9\n", "no rig's"),
+        ("time,position\n0,1e9\n", "not plausible for a rig"),
     ],
 )
 def test_what_cannot_be_used_is_refused_in_one_line(tmp_path: Path, text: str, message: str) -> None:
