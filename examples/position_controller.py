@@ -17,13 +17,11 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 
-class PositionController(Node):
-    """voltage = gain (reference - position) + feedforward reference velocity."""
+class AnsweringController(Node):
+    """Answers each reference and measured position of one instant with the voltage of its law."""
 
-    def __init__(self) -> None:
-        super().__init__("position_controller")
-        self.declare_parameter("gain", 5.0)  # V/m
-        self.declare_parameter("feedforward", 0.0)  # V/(m/s)
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
         self.reference = JointState()
         self.measured = JointState()
         self.voltage = self.create_publisher(Float64, "voltage_command", 10)
@@ -45,18 +43,33 @@ class PositionController(Node):
         reference, measured = self.reference, self.measured
         if not reference.position or not measured.position or reference.header.stamp != measured.header.stamp:
             return
-        gain, feedforward = self.get_parameter("gain").value, self.get_parameter("feedforward").value
         wanted, found = reference.name.index("piston"), measured.name.index("piston")
-        error = reference.position[wanted] - measured.position[found]
-        voltage = gain * error + feedforward * reference.velocity[wanted]
+        position = reference.position[wanted]
+        voltage = self.law(position, reference.velocity[wanted], position - measured.position[found])
         self.voltage.publish(Float64(data=voltage))
 
+    def law(self, position: float, velocity: float, error: float) -> float:
+        """The voltage [V] for a reference [m, m/s] and the error of the position [m]."""
+        raise NotImplementedError
 
-def main() -> None:
-    """Run the controller until a signal ends it."""
+
+class PositionController(AnsweringController):
+    """voltage = gain (reference - position) + feedforward reference velocity."""
+
+    def __init__(self) -> None:
+        super().__init__("position_controller")
+        self.declare_parameter("gain", 5.0)  # V/m
+        self.declare_parameter("feedforward", 0.0)  # V/(m/s)
+
+    def law(self, position: float, velocity: float, error: float) -> float:
+        return self.get_parameter("gain").value * error + self.get_parameter("feedforward").value * velocity
+
+
+def run(controller: type[Node]) -> None:
+    """Run a controller until a signal ends it."""
     rclpy.init()
     try:
-        rclpy.spin(PositionController())
+        rclpy.spin(controller())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
@@ -64,4 +77,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run(PositionController)
