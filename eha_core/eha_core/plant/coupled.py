@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
 from math import nan
 from typing import NamedTuple
 
 from eha_core.effects import effects
-from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.plant_file import require_voltage
 from eha_core.plant.simulator import Array, Plant
 from eha_core.plant.state import AT, COLUMNS
@@ -43,17 +41,8 @@ class CoupledPlant(Plant):
     Raises ParameterError as `Plant` does, and for a source that no voltage drives or a piston that does not slide.
     """
 
-    def __init__(
-        self,
-        parameters: Mapping[str, float] | None = None,
-        step_size: float = 1e-4,
-        initial_position: float = 0.0,
-        composition: Composition = PAPER,
-    ) -> None:
-        require_voltage(composition)
-        super().__init__(parameters, step_size, initial_position, composition)
-
     def _take(self, values: dict[str, float]) -> None:
+        require_voltage(self.composition)
         super()._take(values)
         self._acting_on_load = self._vector
         heavy = list(self._vector)
