@@ -11,8 +11,8 @@ from tested_rig import SIGNAL, at, measuring, planned
 from eha_core.detectability import Certificate, PlannedTest, certify
 from eha_core.detectability.planned import linearised
 from eha_core.detectability.refit import confirmed, left_by_nominal
-from eha_core.diagnosis.criteria import chance_gain
-from eha_core.diagnosis.detection.power import POWER, required_gain
+from eha_core.diagnosis.criteria import CERTAINTY, chance_gain
+from eha_core.diagnosis.detection.power import required_gain
 from eha_core.diagnosis.detection.sizes import smallest, trials
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effect
@@ -59,7 +59,7 @@ def test_an_effect_of_the_stated_size_is_named_that_often(certificate: Certifica
             required = required_gain(chance_gain(with_it.count, 1.0), 1, with_it.count)
             named[share] += without.objective - with_it.objective > required
     assert named[1.0] >= 9 and named[0.5] <= 3, named
-    assert certificate.power == POWER
+    assert certificate.power == CERTAINTY
 
 
 def test_a_bias_and_a_scale_of_one_pressure_cannot_be_distinguished(certificate: Certificate) -> None:

@@ -2,7 +2,8 @@
 
 from made import recorded
 
-from eha_core.diagnosis.calibrate import UNNOTICED, at_step, calibrate, step_error, step_needed
+from eha_core.diagnosis.calibrate import at_step, calibrate, step_error, step_needed
+from eha_core.diagnosis.criteria import ENOUGH
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
@@ -29,4 +30,4 @@ def test_a_violent_recording_needs_a_shorter_one():
     assert errors[0] > 10.0 * errors[1]
     # the shorter step leaves noise alone; the longer one leaves its own error, whatever the parameters do
     assert finer.fitted.data < 1.03 * finer.fitted.count
-    assert coarse.fitted.data - finer.fitted.data > UNNOTICED
+    assert coarse.fitted.data - finer.fitted.data > ENOUGH

@@ -36,7 +36,6 @@ THRESHOLDS = {
     "ADEQUATE": 1.05,
     "DEAR": 0.03,
     "HELD_OUT": 5.0,
-    "COLLECTION": 0.95,
     "ODDS_OF_GAIN": 1.7,
     "CONTENDING": 20.0,
     "PARTLY": 0.2,

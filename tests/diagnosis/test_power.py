@@ -7,8 +7,8 @@ from math import log
 import numpy as np
 import pytest
 
-from eha_core.diagnosis.criteria import ENOUGH
-from eha_core.diagnosis.detection.power import POWER, energy_needed, probability_of, required_gain
+from eha_core.diagnosis.criteria import CERTAINTY, ENOUGH
+from eha_core.diagnosis.detection.power import energy_needed, probability_of, required_gain
 
 
 @pytest.mark.parametrize("parameters", [1, 2, 5])
@@ -19,8 +19,8 @@ def test_the_energy_is_found_as_often_as_it_says(parameters: int) -> None:
     noise = np.random.default_rng(parameters).normal(size=(100_000, parameters))
     noise[:, 0] += np.sqrt(energy)
     found = np.mean(np.sum(noise**2, axis=1) > gain)
-    assert found == pytest.approx(POWER, abs=0.003)
-    assert probability_of(energy, gain, parameters) == pytest.approx(POWER, abs=1e-9)
+    assert found == pytest.approx(CERTAINTY, abs=0.003)
+    assert probability_of(energy, gain, parameters) == pytest.approx(CERTAINTY, abs=1e-9)
 
 
 def test_half_the_size_is_found_seldom() -> None:

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from eha_core.diagnosis.experiment.design import PERHAPS
+from eha_core.diagnosis.criteria import CHANCE
 from eha_core.diagnosis.result import Alternative, Experiment, ProbableSet
 from eha_core.investigation.ending import sets_of, settled
 
 SINE = {"mode": "voltage", "signal": "sine", "sine.amplitude": 0.1, "sine.frequency": 3.0}
-TELLS = Experiment("a sine should tell them apart", ("a", "b"), SINE, expected=4.0 * PERHAPS)
+TELLS = Experiment("a sine should tell them apart", ("a", "b"), SINE, expected=4.0 * CHANCE)
 
 
 def diagnosis(verdict: str = "ambiguous", rivals: tuple[str, ...] = ("b",), test: Experiment | None = TELLS):
@@ -50,7 +50,7 @@ def test_a_member_that_is_not_certain_leaves_two_sets_without_a_test() -> None:
         (diagnosis(test=Experiment("no signal is proposed", ("a", "b"), {})), "no signal is proposed"),
         (diagnosis(test=Experiment("a sine", ("a", "b"), SINE, ("pressure_a", "pressure_b"), expected=900.0)),
          "pressure_a and pressure_b would have to be recorded too"),
-        (diagnosis(test=Experiment("it hardly tells them apart", ("a", "b"), SINE, expected=PERHAPS - 1.0)),
+        (diagnosis(test=Experiment("it hardly tells them apart", ("a", "b"), SINE, expected=CHANCE - 1.0)),
          "it hardly tells them apart"),
     ],
 )  # fmt: skip

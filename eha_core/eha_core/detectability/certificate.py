@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from eha_core.detectability.planned import NOISE, PlannedTest, RigAsModelled, linearised
 from eha_core.detectability.refit import confirmed
-from eha_core.diagnosis.detection.power import POWER
+from eha_core.diagnosis.criteria import CERTAINTY
 from eha_core.diagnosis.detection.responses import FittedModel
 from eha_core.diagnosis.detection.rows import effect_rows, middle_shapes, parameter_rows
 from eha_core.diagnosis.detection.sizes import Trial, smallest, trials
@@ -57,7 +57,8 @@ def certify(model: NominalModel, test: PlannedTest) -> Certificate:
         area, drop = values["piston_area"], values["supply_pressure"] - values["return_pressure"]
         scales = {"m": values["actuator_displacement"], "A": values["saturation_current"], "N": area * drop, "Pa": drop}
         stroke = float(np.max(np.abs(at.motion.position))) / values["actuator_displacement"]
-        return Certificate(test, POWER, at.fit.count, rows, parameter_rows(at), stroke, scales, _remarks(at, stroke))
+        remarks = _remarks(at, stroke)
+        return Certificate(test, CERTAINTY, at.fit.count, rows, parameter_rows(at), stroke, scales, remarks)
 
 
 def _measured(at: FittedModel) -> tuple[list[Trial], list[float]]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
+from eha_core.diagnosis.criteria import ENOUGH, NOTICEABLE, RELEVANT
 from eha_core.health.noise import residual_noise
 from eha_core.identification.colour import colour_of
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
@@ -23,10 +23,6 @@ from eha_core.nominal import NominalModel
 STEPS = (2e-4, 1e-4, 5e-5)
 """s; the step sizes at which hypotheses may be compared. At the first the oil's natural frequency is right to fourth
 order; large flows or a fast valve can need the others."""
-
-UNNOTICED = 20.0
-"""Chi^2 by which the response may change when the step size is halved: less than any effect must gain to be named. For
-a model far from the noise, the share WORTH of its excess chi^2 where that is more."""
 
 SAMPLES_A_WINDOW = 45.0
 """Samples of all channels in the shortest window: eleven for each free initial state. With fewer, the initial states
@@ -88,8 +84,10 @@ def calibrate(
 
 
 def step_needed(observations: Sequence[Observation], shooting: Shooting, model: Fit) -> float:
-    """The longest of STEPS [s] with a negligible error of the response, with the windows and noise of `shooting`."""
-    noticed = max(UNNOTICED, WORTH * (model.objective - model.count))
+    """The longest of STEPS [s] at which halving it changes the response by less than any effect must gain to be named
+    (for a model far from the noise, by less than the share WORTH of its excess chi^2), with the windows and noise of
+    `shooting`."""
+    noticed = max(ENOUGH, WORTH * (model.objective - model.count))
     for step_size in STEPS[:-1]:
         if step_error(observations, shooting, model, step_size) < noticed:
             return step_size

@@ -88,9 +88,6 @@ small gains mean little: a parameter must then pay for itself by up to this shar
 HELD_OUT = 5.0
 """A named effect must lower chi^2 on held-out windows by this."""
 
-COLLECTION = 0.95
-"""Probability that the stated collection of sets holds."""
-
 ODDS_OF_GAIN = 1.7
 """Power with which the odds of a name rise with its gain over what is required of it: even at once that, 50 to 1 at ten
 times (assumed)."""
@@ -119,7 +116,8 @@ LEFT_OVER = 0.05
 """A curve is looked for when the best of the catalogue leaves this much chi^2 a sample beside noise."""
 
 CERTAINTY = 0.95
-"""Probability that what an interval holds is true, and that what is named gains more than by chance."""
+"""Probability that an interval holds the true value, and the stated collection of sets the true one; that what is named
+gains more than by chance; and that an effect of the smallest stated size is found."""
 
 IDENTIFIED = 2.0
 """Standard deviations by which a value of a named effect must differ from what leaves the effect out, for the result to

@@ -9,16 +9,16 @@ from __future__ import annotations
 
 from math import exp, log
 
-from eha_core.diagnosis.criteria import COLLECTION, ODDS_OF_GAIN, TIE
+from eha_core.diagnosis.criteria import CERTAINTY, ODDS_OF_GAIN, TIE
 from eha_core.diagnosis.result import ProbableSet
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison, bounded
 
-TEMPERATURE = TIE / (2.0 * log(COLLECTION / (1.0 - COLLECTION)))
-"""Temperature of the scores' Boltzmann factors: of two sets whose scores differ by TIE, the better has COLLECTION."""
+TEMPERATURE = TIE / (2.0 * log(CERTAINTY / (1.0 - CERTAINTY)))
+"""Temperature of the scores' Boltzmann factors: of two sets whose scores differ by TIE, the better has CERTAINTY."""
 
 
 def probable_sets(comparison: ModelComparison, winner: Entry) -> tuple[ProbableSet, ...]:
-    """The fewest sets that together have COLLECTION of the probability, the most probable first.
+    """The fewest sets that together have CERTAINTY of the probability, the most probable first.
 
     Candidates are the compared sets that do not merely add to the winner, and the winner without each of its members.
     """
@@ -40,7 +40,7 @@ def probable_sets(comparison: ModelComparison, winner: Entry) -> tuple[ProbableS
     for ids, weight in ranked:
         found.append(ProbableSet(ids, weight / total))
         held += weight / total
-        if held >= COLLECTION:
+        if held >= CERTAINTY:
             break
     return tuple(found)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eha_core.diagnosis.calibrate import filtered_channels
-from eha_core.diagnosis.detection.power import POWER
+from eha_core.diagnosis.criteria import CERTAINTY
 from eha_core.diagnosis.detection.responses import FittedModel
 from eha_core.diagnosis.detection.rows import effect_rows, middle_shapes, parameter_rows
 from eha_core.diagnosis.detection.sizes import smallest, trials
@@ -22,7 +22,7 @@ def undetected(evidence: Evidence, left: Explained, parameters: tuple[FittedPara
     tried = trials(at, [name for entry, _ in evidence.decision.rivals for name in entry.ids])
     rows = effect_rows(at, *middle_shapes(tried, smallest(at, tried).tolist()))
     changed = {parameter.name for parameter in parameters if parameter.changed}
-    return Undetected(POWER, rows, tuple(row for row in parameter_rows(at) if row.name not in changed))
+    return Undetected(CERTAINTY, rows, tuple(row for row in parameter_rows(at) if row.name not in changed))
 
 
 def fitted_model(evidence: Evidence) -> FittedModel:

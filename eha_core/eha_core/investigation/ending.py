@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from eha_core.diagnosis.experiment.design import PERHAPS
+from eha_core.diagnosis.criteria import CHANCE
 from eha_core.diagnosis.result import Diagnosis
 
 ENDINGS = {
@@ -50,7 +50,7 @@ def settled(diagnoses: Sequence[Diagnosis]) -> Ending | None:
     if test.record:
         channels = " and ".join(test.record)
         return Ending("nothing_more", f"{channels} would have to be recorded too. {test.statement}")
-    if test.expected < PERHAPS:
+    if test.expected < CHANCE:
         return Ending("nothing_more", test.statement)
     if any(_same(last, earlier) for earlier in diagnoses[:-1]):
         return Ending("nothing_more", f"the proposed test was made already and left the same rivals: {test.statement}")

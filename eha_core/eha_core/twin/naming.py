@@ -38,6 +38,7 @@ from eha_core.parameters import catalogue
 from eha_core.plant import Plant
 from eha_core.realtime import NANOSECONDS
 from eha_core.recording.simulated import POSITION_NOISE, PRESSURE_NOISE, Experiment, simulate
+from eha_core.twin.comparison import Settings
 from eha_core.twin.excerpt import Excerpt, Stamps
 from eha_core.twin.explanation import Cause, Departure, Explanation, Size
 from eha_core.weak_form.model_errors import CHANNELS
@@ -48,10 +49,6 @@ size, so the best in the quadratic model need not be the best (assumed)."""
 
 ITERATIONS = 12
 """Of such a fit at most; most end after six."""
-
-TOLERATED = 1.5
-"""RMS of the residual over the noise up to which a cause need not explain all: as much as a twin tolerates by
-default."""
 
 MAY_LEAVE = 0.001
 """Share of the chi^2 beyond noise that a cause may leave where that is more: the model of a rig that is far off is
@@ -105,9 +102,10 @@ def explain(departure: Departure) -> Explanation:
 
 
 def _may_leave(before: Fit) -> float:
-    """Chi^2 beyond noise that a cause may leave of what the twin's model leaves: PARTLY, while that is tolerable."""
+    """Chi^2 beyond noise that a cause may leave of what the twin's model leaves: PARTLY, while a twin tolerates that by
+    default."""
     count, excess = before.count, max(before.data - before.count, 0.0)
-    tolerable = min((TOLERATED**2 - 1.0) * count, PARTLY * excess)
+    tolerable = min((Settings.threshold**2 - 1.0) * count, PARTLY * excess)
     return float(max(tolerable, MAY_LEAVE * excess) + CHANCE_DEVIATIONS * np.sqrt(2.0 * count))
 
 

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from eha_core.diagnosis.criteria import ENOUGH, parameter_cost
-
-POWER = 0.95
-"""Probability with which an effect of the stated size is found."""
+from eha_core.diagnosis.criteria import CERTAINTY, ENOUGH, parameter_cost
 
 
 def required_gain(of_a_member: float, parameters: int, count: int, variance: float = 1.0) -> float:
@@ -20,7 +17,7 @@ def required_gain(of_a_member: float, parameters: int, count: int, variance: flo
 
 
 @lru_cache(maxsize=256)
-def energy_needed(gain: float, parameters: int, power: float = POWER) -> float:
+def energy_needed(gain: float, parameters: int, power: float = CERTAINTY) -> float:
     """Chi^2 of an effect's noise-free response for a gain above `gain` with probability `power`.
 
     The gain of a fit is noncentral chi-squared with `parameters` degrees of freedom; the response's chi^2 is its

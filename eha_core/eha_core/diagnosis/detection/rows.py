@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from statistics import NormalDist
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
+from eha_core.diagnosis.criteria import CERTAINTY, NOTICEABLE, RELEVANT
 from eha_core.diagnosis.detection.confusion import confusions
 from eha_core.diagnosis.detection.responses import COMPENSATED, FittedModel, responses
 from eha_core.diagnosis.detection.sizes import Trial
@@ -18,8 +19,8 @@ from eha_core.parameter import Parameter
 from eha_core.parameters import catalogue
 from eha_core.plant import COLUMNS
 
-ONE_SIDED = 1.645
-"""Standard deviations below the mean that a normal variable exceeds with POWER."""
+ONE_SIDED = NormalDist().inv_cdf(CERTAINTY)
+"""Standard deviations below the mean that a normal variable exceeds with CERTAINTY."""
 
 LEAKS = ("internal_leakage_flow", "external_leakage_flow_a", "external_leakage_flow_b")
 """The columns of the plant's rows that are leaks."""

@@ -46,7 +46,7 @@ class Trial:
     """A column in one direction, at some factor of its size, and what the search asks of its effect.
 
     `sign`: of the size, where either may be. `parameters`: how many a fit of the effect moves. `gain`: chi^2 required.
-    `energy`: what its response needs for that to be found with POWER. `most`: the largest factor that the catalogue
+    `energy`: what its response needs for that to be found with CERTAINTY. `most`: the largest factor that the catalogue
     allows.
     """
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eha_core.diagnosis.criteria import CHANCE
 from eha_core.diagnosis.experiment.command_signal import CommandSignal
 from eha_core.diagnosis.experiment.discrimination import STEP, separation
 from eha_core.diagnosis.experiment.limits import Limits
@@ -35,10 +36,7 @@ GENTLEST = 0.25
 
 TELLING = 100.0
 """Chi^2 by which a test has to separate the rivals: it scatters by about 2 sqrt(chi^2), and ten are needed to name one.
-"""
-
-PERHAPS = 25.0
-"""Chi^2 below which it hardly separates them."""
+Below CHANCE it hardly separates them."""
 
 PRESSURES = {"pressure_a": 1e4, "pressure_b": 1e4}
 """Channels to add where a voltage alone does not suffice, and the assumed noise of their sensors [Pa]."""
@@ -94,7 +92,7 @@ def propose(
         record = tuple(name for name in PRESSURES if name not in noises)
         best = _best_discrimination(fits, {**PRESSURES, **noises}, level, voltage_limit, limits)
     beside = ", with the chambers' pressures recorded too," if record else ""
-    verb = "should tell" if best.separation > TELLING else "may tell" if best.separation > PERHAPS else "hardly tells"
+    verb = "should tell" if best.separation > TELLING else "may tell" if best.separation > CHANCE else "hardly tells"
     statement = (
         f"{' or '.join(' and '.join(ids) for ids in names)}: a {best.trial.signal} of voltage ({best.trial.settings()})"
         f" for {best.duration:g} s{beside} {verb} them apart"
