@@ -16,7 +16,7 @@ THRESHOLDS = {
     "FAR_FROM_NOISE": 5.0,
     "NEAR_NOISE": 1.03,
     "BLOCK": 20,
-    "LASTS": 5.0,
+    "WHITE": 5.0,
     "OF_EXCESS": 0.01,
     "OF_FRICTION": 0.25,
     "CHANCE": 25.0,

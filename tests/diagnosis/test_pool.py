@@ -8,7 +8,7 @@ from made import LAWS, bench
 
 from eha_core.diagnosis.criteria import BLOCK, FAR_FROM_NOISE, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.pool import REACH, Pool, Trace, lasting
+from eha_core.diagnosis.search.pool import REACH, Pool, Trace, excess_of_block_means
 from eha_core.identification.fit import fit
 from eha_core.parameters import nominal_values
 
@@ -149,7 +149,7 @@ def test_where_a_member_sticks_derivatives_are_taken_more_finely(rig, pool):
     assert pool.posed(rig.set_of("coulomb_friction")).slope_step < pool.problem.slope_step
 
 
-def test_what_lasts_in_a_residual_is_not_noise(rig, pool):
+def test_a_slow_residual_is_not_white(rig, pool):
     """Block averages of white noise are as large as chance makes them; those of a slow sine are its own, by the
     closed form."""
     both, rng = rig.set_of("constant_load", "valve_deadband"), np.random.default_rng(7)
@@ -160,11 +160,11 @@ def test_what_lasts_in_a_residual_is_not_noise(rig, pool):
     counts = [int(used[sampling.window].sum()) for sampling in pool.problem.shooting.samplings]
     slow = tuple(row + np.sqrt(2.0 * power) * np.sin(0.05 * np.arange(len(row))) for row in white)
     blocks = sum(count // BLOCK for count in counts)
-    of_noise, of_sine = (lasting(pool.problem, replace(at, residuals=rows)) for rows in (white, slow))
+    of_noise, of_sine = (excess_of_block_means(pool.problem, replace(at, residuals=rows)) for rows in (white, slow))
     assert abs(of_noise) < 3.0
     averaged = power * (np.sin(0.025 * BLOCK) / (0.025 * BLOCK)) ** 2
     assert of_sine == pytest.approx(((1.0 + averaged * BLOCK) / (1.0 + power) - 1.0) * np.sqrt(blocks / 2.0), rel=0.2)
-    assert lasting(pool.problem, replace(at, residuals=slow), pool.problem.shooting.names) == 0.0
+    assert excess_of_block_means(pool.problem, replace(at, residuals=slow), pool.problem.shooting.names) == 0.0
     pool.found[both] = replace(at, residuals=slow, data=1.01 * at.count)
     assert not pool.leaves_noise(both)
     pool.found[both] = replace(at, residuals=white, data=at.count)

@@ -14,15 +14,15 @@ FAR_FROM_NOISE = 5.0
 a residual of twice the noise's size beside the noise."""
 
 NEAR_NOISE = 1.03
-"""Chi^2 a sample below which a set is at the noise: what is proposed must be significant, and a search ends where
-nothing lasts in the residual. Tuned on development cases (seed 9001)."""
+"""Chi^2 a sample below which a set is at the noise: what is proposed must be significant, and a search ends if the
+residual is white, too. Tuned on development cases (seed 9001)."""
 
 BLOCK = 20
-"""Samples over which a residual is averaged, to see what lasts: noise averages out, physics does not (assumed)."""
+"""Samples in a block over which a residual is averaged: white noise averages out, physics does not (assumed)."""
 
-LASTS = 5.0
-"""Standard deviations of white noise by which a residual's block averages are too large for a search to end with it. By
-chance one in three million are; a development rig with a wrong member at 1.008 times the noise had 7."""
+WHITE = 5.0
+"""Largest excess of a white residual's block means, in standard deviations: by chance one in three million has more. A
+development rig with a wrong member at 1.008 times the noise had 7."""
 
 MOST_TRIED = 12
 """Members of a set while the search goes on: what is wrongly in it keeps what is missing from being seen only until it

@@ -30,7 +30,7 @@ from eha_core.diagnosis.criteria import (
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison, bounded
 from eha_core.diagnosis.unknown import Recovery
 from eha_core.effects import Effect
-from eha_core.health.noise import NORMAL_MEDIAN
+from eha_core.health.noise import NORMAL_MEDIAN, block_means
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.validate import Judged, instants_of, judge
@@ -94,10 +94,9 @@ def _leaves_physics_over(best: Fit, nominal: Fit) -> bool:
 
 def coherence(residual: Array) -> float:
     """The size of a residual averaged over blocks (its median over the record), over what white noise would leave."""
-    blocks = len(residual) // BLOCK
-    if blocks < 3:
+    means = block_means(residual, BLOCK)
+    if len(means) < 3:
         return 0.0
-    means = residual[: blocks * BLOCK].reshape(blocks, BLOCK).mean(axis=1)
     return float(np.median(np.abs(means)) / NORMAL_MEDIAN * np.sqrt(BLOCK))
 
 

@@ -46,6 +46,12 @@ def residual_noise(residual: Array, order: int = 2) -> float:
     return usual_size(np.diff(residual, n=order)) / sqrt(comb(2 * order, order))
 
 
+def block_means(values: Array, size: int) -> Array:
+    """(n // size, ...) means over successive blocks of `size` rows of (n, ...) values; the rest at the end is left out."""
+    blocks = len(values) // size
+    return np.asarray(values[: blocks * size].reshape(blocks, size, *values.shape[1:]).mean(axis=1))
+
+
 def usual_size(values: Array) -> float:
     """Robust standard deviation of normal values about zero, of which up to half may be outliers.
 

@@ -110,7 +110,7 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
             continue  # what is larger is proposed from there, if it is needed
         result = pool.try_set(step, start.hypothesis, start.values, start.states, AT_FIRST)
         tried += 1
-        if is_at_noise(result):  # what a fit that stopped short leaves would last, too
+        if is_at_noise(result):  # a fit that has not converged would not be white
             pool.go_on(step, start.hypothesis, TO_THE_END, 2)
             if pool.leaves_noise(start.hypothesis):
                 near = start.hypothesis

@@ -14,14 +14,15 @@ from eha_core.diagnosis.criteria import (
     BLOCK,
     EXPANSIONS_IN_ALL,
     FAR_FROM_NOISE,
-    LASTS,
     NEAR_NOISE,
     TO_THE_END,
+    WHITE,
     chance_gain,
 )
 from eha_core.diagnosis.effect_parameters import free_instants, with_effects
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.result import TraceStep
+from eha_core.health.noise import block_means
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter, not_believed
 from eha_core.identification.numbers import Array
@@ -219,27 +220,26 @@ class Pool:
             self.found[other] = in_noise_of(self.problem, before, result)
 
     def leaves_noise(self, hypothesis: Hypothesis) -> bool:
-        """Whether a set leaves no more than noise, and nothing that lasts in it."""
+        """Whether a set's residual is as small as the noise, and white."""
         result = self.found[hypothesis]
-        return is_at_noise(result) and lasting(self.problem, result, self.filtered) < LASTS
+        return is_at_noise(result) and excess_of_block_means(self.problem, result, self.filtered) < WHITE
 
     def __iter__(self) -> Iterator[tuple[Hypothesis, Fit]]:
         return iter(self.found.items())
 
 
-def lasting(problem: Problem, result: Fit, filtered: Collection[str] = ()) -> float:
-    """By how many standard deviations the squared block averages of a residual exceed those of white noise of its size,
-    over the windows in use; not of channels that are `filtered`, whose noise lasts, too."""
+def excess_of_block_means(problem: Problem, result: Fit, filtered: Collection[str] = ()) -> float:
+    """By how many standard deviations the sum of a residual's squared block means exceeds that of white noise of its
+    size, over the windows in use, without the channels that are `filtered`: their noise is coloured."""
     used, excess, count = problem.used(), 0.0, 0
     shooting = problem.shooting
     for name, sampling, residual in zip(shooting.names, shooting.samplings, result.residuals, strict=True):
         left = residual[used[sampling.window]]
-        blocks = len(left) // BLOCK
-        if blocks == 0 or name in filtered:
+        means = block_means(left, BLOCK)
+        if len(means) == 0 or name in filtered:
             continue
-        means = left[: blocks * BLOCK].reshape(blocks, BLOCK).mean(axis=1)
-        excess += float(means @ means) * BLOCK / max(1.0, float(np.mean(left**2))) - blocks
-        count += blocks
+        excess += float(means @ means) * BLOCK / max(1.0, float(np.mean(left**2))) - len(means)
+        count += len(means)
     return excess / np.sqrt(2.0 * count) if count else 0.0
 
 

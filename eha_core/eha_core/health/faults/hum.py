@@ -11,6 +11,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from eha_core.health.fault import Fault, Found
+from eha_core.health.noise import block_means
 from eha_core.health.signal import Signal
 from eha_core.health.spectrum import lines
 from eha_core.recording.recording import FloatArray
@@ -53,11 +54,9 @@ def _without(signal: Signal, frequency: float) -> Found:
     They are taken of means over a quarter of a period: of single samples they are nearly all noise of high frequencies.
     """
     group = max(1, int(0.25 / (frequency * signal.period)))
-    kept = len(signal.values) // group * group
 
     def rough(values: FloatArray) -> FloatArray:
-        means = values[:kept].reshape(kept // group, group, *values.shape[1:]).mean(axis=1)
-        return np.asarray(np.diff(means, n=2, axis=0))
+        return np.asarray(np.diff(block_means(values, group), n=2, axis=0))
 
     def waves(at: float) -> FloatArray:
         phase = 2.0 * np.pi * at * signal.time
