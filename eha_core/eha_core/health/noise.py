@@ -47,7 +47,7 @@ def residual_noise(residual: Array, order: int = 2) -> float:
 
 
 def block_means(values: Array, size: int) -> Array:
-    """(n // size, ...) means over successive blocks of `size` rows of (n, ...) values; the rest at the end is left out."""
+    """(n // size, ...) means over successive blocks of `size` of (n, ...) values; an incomplete block is left out."""
     blocks = len(values) // size
     return np.asarray(values[: blocks * size].reshape(blocks, size, *values.shape[1:]).mean(axis=1))
 
