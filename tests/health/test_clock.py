@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eha_core.health.clock import drift
+from eha_core.health.clock import drift, steady
 from eha_core.recording import Recording
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -42,3 +42,20 @@ def test_a_drift_is_found_though_pieces_of_even_oscillation_fit_at_other_delays(
 
 def test_one_clock_has_no_drift() -> None:
     assert not drift(recording_with(0.0))
+
+
+@pytest.mark.parametrize(
+    ("changes", "rate"),
+    [
+        ([0.0, 20.0, 40.0, 60.0, 80.0, 100.0], 0.02),
+        ([0.0, -17.0, -41.0, 140.0, -79.0, -101.0], -0.02),
+        ([0.0, 10.0, 20.0, 30.0, 40.0, 50.0], None),  # as a rig's own does while its test grows faster
+        ([7.0, 6.0, 5.0, -155.0, -155.0, -154.0], None),
+        ([0.0, 60.0, 10.0, 80.0, 40.0, 100.0], None),
+        ([0.0, 25.0, 50.0, 75.0], None),
+    ],
+)
+def test_only_delays_that_change_much_and_at_a_steady_rate_are_a_clocks(changes: list[float], rate: float) -> None:
+    """Delays [ms] of pieces a second apart."""
+    found = steady(np.arange(len(changes)) + 1.0, 1e-3 * np.array(changes) + 0.02)
+    assert (found is None) if rate is None else found[0] == pytest.approx(rate, rel=0.05)
