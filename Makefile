@@ -6,6 +6,8 @@ PYTHON ?= $(shell test -x $(RUN)/python && echo $(RUN)/python || echo python3)
 WITH_PATH := PATH="$(CURDIR)/$(RUN):$$PATH"
 # A sourced ROS 2 brings pytest plugins that are not made for this pytest.
 PYTEST_OPTIONS := $(if $(ROS_DISTRO),-p no:launch_testing -p no:launch_ros)
+# Tests start hundreds of processes: without bytecode each would compile every package that it imports.
+unexport PYTHONDONTWRITEBYTECODE
 # The community's rclpy on PyPI is built for this one.
 PYTHON_OF_RCLPY ?= python3.12
 # How long each trial of `make hostile` goes on, and what it is drawn from.
@@ -29,7 +31,7 @@ env:  ## make .venv/, or bring it up to date; PYTHON=... makes it anew with anot
 	@$(PYTHON) tools/make_env.py $(VENV)
 
 test: lint  ## lint, types, architecture and every test
-	$(WITH_PATH) $(RUN)/python -m pytest $(PYTEST_OPTIONS) --numprocesses 2 --dist loadgroup
+	$(WITH_PATH) $(RUN)/python -m pytest $(PYTEST_OPTIONS) --numprocesses 2
 
 lint: env  ## style, types and the walls between the packages
 	$(RUN)/ruff check .

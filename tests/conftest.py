@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,16 +12,19 @@ import pytest
 for _library in ("OPENBLAS", "OMP"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-ROOT = Path(__file__).parents[1]
-NODES = (ROOT / "rclpy_dds" / "tests", ROOT / "tests" / "graph")
+NODES = ("rclpy_dds/tests/", "tests/graph/")
 """Where tests start nodes."""
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Say which tests stay in one process where there are several: those of a file, which share what they make, and
-    all that start nodes, which would meet on DDS and wait for each other's processor."""
-    if not config.pluginmanager.hasplugin("xdist"):
-        return
-    for item in items:
-        nodes = any(folder in item.path.parents for folder in NODES)
-        item.add_marker(pytest.mark.xdist_group("nodes" if nodes else str(item.path.relative_to(ROOT))))
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Of several processes, one runs all tests of a file, which share what they make, and one all that start nodes,
+    which would meet on DDS and wait for each other's processor."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class Together(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.partition("::")[0]
+            return "nodes" if file.startswith(NODES) else file
+
+    return Together(config, log)
