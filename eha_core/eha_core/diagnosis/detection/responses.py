@@ -14,7 +14,7 @@ from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.search.box import within_bounds
 from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.pool import Pool
-from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.quadratic import Derivatives, QuadraticModel, derivatives, with_columns
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.observation import Observation
@@ -43,6 +43,11 @@ class FittedModel:
     hypothesis: Hypothesis
     fit: Fit
     scales: Scales
+
+    @cached_property
+    def derivatives(self) -> Derivatives:
+        """The derivatives about the fit."""
+        return derivatives(self.pool.posed(self.hypothesis), self.fit, self.pool.plant)
 
     @property
     def variance(self) -> float:
@@ -105,9 +110,8 @@ class Responses:
 
 
 def responses(at: FittedModel, columns: Sequence[Column]) -> Responses:
-    """The responses of these columns together with the set, from one Jacobian and one secant each."""
-    pool = at.pool
-    model = quadratic_model(pool.posed(at.hypothesis), at.fit, at.hypothesis, pool.plant, columns)
+    """The responses of these columns together with the set, from one secant each."""
+    model = with_columns(at.derivatives, at.hypothesis, columns)
     usable = np.zeros(len(columns), dtype=np.bool_)
     first = len(model.at.free)
     usable[[place - first for option in model.options if not option.present for place in option.places]] = True

@@ -10,8 +10,7 @@ import numpy as np
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.pool import REACH, Pool
-from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
-from eha_core.identification.fit import Fit
+from eha_core.diagnosis.search.quadratic import Derivatives, QuadraticModel, derivatives, with_columns
 from eha_core.identification.per_recording import base_name
 from eha_core.plant.lane_rows import LANES
 
@@ -26,11 +25,14 @@ friction begins to act between two samples the objective has a valley at each br
 
 def shift_instants(pool: Pool, hypothesis: Hypothesis, iterations: int, times: int = COARSE) -> None:
     """Fit a set on from other instants where one of those leaves less once all else has adapted to it."""
-    instants = [parameter.name for parameter in pool.found[hypothesis].free if parameter.resolution]
+    at, about = pool.found[hypothesis], None
+    instants = [parameter.name for parameter in at.free if parameter.resolution]
     for reach, name in product([REACH * FINER**k for k in range(times)], instants):
-        at = pool.found[hypothesis]
+        if about is None or at is not pool.found[hypothesis]:
+            at = pool.found[hypothesis]
+            about = derivatives(pool.posed(hypothesis), at, pool.plant)
         member = next(one for one in hypothesis.members if base_name(name) in _names_of(one))
-        model = _elsewhere(pool, hypothesis, at, member, name, reach)
+        model = _elsewhere(about, hypothesis, member, name, reach)
         present = [option for option in model.options if option.present]
         places = [(*present, option) for option in model.options if not option.present]
         left = [model.empty - model.gain(place)[0] for place in places]
@@ -43,13 +45,13 @@ def _names_of(member: Member) -> tuple[str, ...]:
     return (*member.effect.parameter_names(), *member.effect.acting_names())
 
 
-def _elsewhere(pool: Pool, hypothesis: Hypothesis, at: Fit, member: Member, name: str, reach: float) -> QuadraticModel:
+def _elsewhere(about: Derivatives, hypothesis: Hypothesis, member: Member, name: str, reach: float) -> QuadraticModel:
     """The model about a fit with one instant at other places besides, each a column that is there as it is."""
     shifts = [float(shift) for shift in reach * np.linspace(-1.0, 1.0, LANES - 1) if shift]
     columns = [
-        Column(member.effect, {name: max(at.values[name] + shift, 0.0)}, (), number, True, 1.0)
+        Column(member.effect, {name: max(about.at.values[name] + shift, 0.0)}, (), number, True, 1.0)
         for number, shift in enumerate(shifts)
     ]
-    model = quadratic_model(pool.posed(hypothesis), at, hypothesis, pool.plant, columns)
+    model = with_columns(about, hypothesis, columns)
     first = len(model.lower) - len(columns)
     return replace(model, lower=np.concatenate([model.lower[:first], model.upper[first:]]))

@@ -141,6 +141,29 @@ def _drawn(option: Option, factors: Mapping[int, float]) -> dict[str, float]:
     return made | {name: sum(factors[place] * column.values[name] for place, column in pairs) for name in sizes}
 
 
+@dataclass(frozen=True)
+class Derivatives:
+    """The derivatives about a fit, by the `nominal` parameters that come first in its `free`, by the others and by the
+    states."""
+
+    problem: Problem
+    at: Fit
+    nominal: int
+    linear: Linearised
+
+
+def derivatives(problem: Problem, at: Fit, plant: Sequence[FreeParameter]) -> Derivatives:
+    """Linearise about a fit of a set, over the parameters of the `plant` and its members'."""
+    shooting = problem.shooting
+    nominal, _ = in_each(plant, at.values, shooting.per_recording, len(shooting.first_windows))
+    own, _ = in_each(at.free, at.values, shooting.per_recording, len(shooting.first_windows))
+    names = {parameter.name for parameter in nominal}
+    free = (*nominal, *(parameter for parameter in own if parameter.name not in names))
+    q = coordinates(free, at.values)
+    linear = linearise(problem, at.values, free, q, at.states)
+    return Derivatives(problem, replace(at, free=free, q=q), len(nominal), linear)
+
+
 def quadratic_model(
     problem: Problem,
     at: Fit,
@@ -153,15 +176,16 @@ def quadratic_model(
 
     `in_time`: effects that act over an interval only are options, too, where one stands out.
     """
-    shooting = problem.shooting
-    nominal, _ = in_each(plant, at.values, shooting.per_recording, len(shooting.first_windows))
-    own, _ = in_each(at.free, at.values, shooting.per_recording, len(shooting.first_windows))
-    names = {parameter.name for parameter in nominal}
-    free = (*nominal, *(parameter for parameter in own if parameter.name not in names))
-    q = coordinates(free, at.values)
-    at = replace(at, free=free, q=q)
+    return with_columns(derivatives(problem, at, plant), hypothesis, columns, in_time)
+
+
+def with_columns(
+    about: Derivatives, hypothesis: Hypothesis, columns: Sequence[Column], in_time: bool = False
+) -> QuadraticModel:
+    """The quadratic model about a fit of `hypothesis` whose derivatives are known, with a secant for each column."""
+    problem, at, count, linear = about.problem, about.at, about.nominal, about.linear
+    free, q = at.free, at.q
     columns = [column.beside(at.values) for column in columns]
-    linear = linearise(problem, at.values, free, q, at.states)
     moved, shifts = changes(
         problem, (at.values, at.states), [({**at.values, **column.values}, at.states) for column in columns]
     )
@@ -181,7 +205,7 @@ def quadratic_model(
     everything = np.concatenate([q, np.zeros(len(columns))])
     matrix, gradient = normal_equations(problem, extended, everything, at.states, linear)
     system = matrix.eliminate(1e-9)
-    size, count = len(extended), len(nominal)
+    size = len(extended)
     states = np.asarray(cho_solve_banded((system.factor, True), gradient[size:] / system.scale[size:]))
     scaled = gradient / system.scale
     slope = (scaled[:size] - system.carried.T @ scaled[size:]) * system.scale[:size]
