@@ -47,6 +47,7 @@ THRESHOLDS = {
     "NOTICEABLE": 4.0,
     "RELEVANT": 0.01,
     "UNLIKELY": 2.0,
+    "OUTRIGHT": 100.0,
     "EXPANSIONS": 8,
     "EXPANSIONS_LATER": 3,
     "IDLE": 2,
