@@ -1,7 +1,7 @@
 """Stage 5, support: the decision, limited to what the recording supports.
 
-A search may miss the best values of the model that it names; the interval of a named effect's strength may include
-zero; and a model may predict worse than the nominal one before anything was fitted.
+The interval of a named effect's strength may include zero, and a model may predict worse than the nominal one before
+anything was fitted.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import replace
 from scipy.stats import chi2
 
 from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
-from eha_core.diagnosis.criteria import CERTAINTY, COHERENT, CONVERGED, HELD_OUT, LEFT_IN_A_CHANNEL, TO_THE_END
+from eha_core.diagnosis.criteria import CERTAINTY, COHERENT, HELD_OUT, LEFT_IN_A_CHANNEL, TO_THE_END
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.explained import is_identified, root_mean_square
 from eha_core.diagnosis.hypothesis import NOTHING, Member, without_effect
@@ -21,45 +21,15 @@ from eha_core.diagnosis.verdict import Decision, coherence, without_physics
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
 from eha_core.identification.intervals import with_residual
-from eha_core.identification.per_recording import base_name
 from eha_core.identification.profile import Ends, profile_interval
 from eha_core.identification.validate import instants_of, judge
 
-MEMBERS_FIRST = 4
-"""Iterations of the effects' parameters alone, with the plant's parameters at their nominal values."""
-
-BETTER = 2.0
-"""Chi^2 by which another minimum of the same model must be lower; a fit ends when an iteration gains a quarter."""
-
 
 def supported(evidence: Evidence, decision: Decision) -> Decision:
-    """The decision with the best values of its model, without unidentified effects, and never worse than the nominal
-    model on held-out data."""
+    """The decision without unidentified effects, and never worse than the nominal model on held-out data."""
     if decision.verdict in ("missing_physics", "ambiguous"):
-        decision = _without_unidentified(evidence, _from_nominal_values(evidence, decision))
+        decision = _without_unidentified(evidence, decision)
     return _no_worse_than_nominal(evidence, decision)
-
-
-def _from_nominal_values(evidence: Evidence, decision: Decision) -> Decision:
-    """The decision, with its model refitted from nominal values where that reaches a lower chi^2.
-
-    A calibration without the effect compensates for it by the plant's parameters, and a fit from there may end in
-    another minimum: behind a filter of 6 ms, bulk modulus and stroke stayed wrong by a half.
-    """
-    winner, calibration = decision.winner, evidence.calibration
-    rows = evidence.observation.composition.place_rows
-    plants = {parameter.name: parameter for parameter in winner.fit.free if base_name(parameter.name) in rows}
-    own = [parameter for parameter in winner.fit.free if parameter.name not in plants]
-    start = {**winner.fit.values, **{name: parameter.reference for name, parameter in plants.items()}}
-    problem, best = calibration.problem, winner.fit
-    beside = fit(problem, start, own, calibration.nominal.states, iterations=MEMBERS_FIRST)
-    afresh = fit(
-        problem, beside.values, best.free, beside.states, iterations=CONVERGED, give_up_above=best.objective,
-    )  # fmt: skip
-    if not best.objective - afresh.objective > BETTER:
-        return decision
-    gain = (best.objective - afresh.objective) / evidence.comparison.residual_variance
-    return _with_winner(evidence, decision, replace(winner, fit=afresh, score=winner.score + gain))
 
 
 def _with_winner(evidence: Evidence, decision: Decision, winner: Entry) -> Decision:
