@@ -13,8 +13,7 @@ from eha_core.diagnosis.search.finish import (
     converge,
     finish,
     from_nominal_values,
-    in_another_form,
-    in_the_spans,
+    in_a_members_place,
     meet,
     of_simpler_form,
     predicted_costs,
@@ -235,24 +234,8 @@ def test_another_form_is_tried_from_the_best_unless_it_was_fitted_near_it(rig, c
     found = {best: explanation(dict(stribeck.values))}
     if coulomb_leaves:
         found[coulomb] = replace(explanation({}), objective=coulomb_leaves)
-    tried = [hypothesis for hypothesis, _ in in_another_form(Pool(None, (), Trace(), found), best, columns, 1000.0)]
+    tried = [hypothesis for hypothesis, _ in in_a_members_place(Pool(None, (), Trace(), found), best, columns, 1000.0)]
     assert tried == ([coulomb] if again else [])
-
-
-def test_in_the_interval_of_a_member_whatever_else_may_act_there_is_a_rival(rig):
-    columns = rig.columns_of("turbulent_leakage", "leakage_onset", "valve_deadband", "constant_load")
-    best = NOTHING.with_effects([LAWS["valve_deadband"]], limited=True).with_effects([LAWS["constant_load"]])
-    fitted = explanation({"valve_deadband.acts_from": 1.0, "valve_deadband.acts_until": 2.0})
-    found = in_the_spans(best, fitted, columns)
-    assert {column.effect.id for column in found} == {"turbulent_leakage", "leakage_onset"}
-    for column in found:
-        if column.effect.id == "turbulent_leakage":
-            span = {f"turbulent_leakage.{name}": at for name, at in (("acts_from", 1.0), ("acts_until", 2.0))}
-            assert column.limited and span.items() <= column.values.items()
-        else:
-            assert not column.limited and column.values["leakage_onset.time"] == 1.0
-    assert not {(c.effect.id, c.alternative) for c in columns} & {(c.effect.id, c.alternative) for c in found}
-    assert in_the_spans(rig.set_of("valve_deadband"), fitted, columns) == []
 
 
 def test_what_was_fitted_to_its_end_is_not_fitted_again(rig, pool):

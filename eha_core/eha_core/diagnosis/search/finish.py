@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from statistics import fmean
 
 import numpy as np
@@ -157,7 +156,7 @@ def rivals(
     """The best set, once what comes near it was fitted to its end too; all of those; and the model about the best."""
     at = pool.found[best]
     columns = [column for column in columns if not (is_at_noise(at) and column.variable)]
-    model = _about(pool, best, [*columns, *in_the_spans(best, at, columns)])
+    model = _about(pool, best, columns)
     within = COMPARED_WITHIN * max(1.0, at.data / at.count)
     near: dict[Hypothesis, Proposal] = {}
     for size, level in best_sets(model, best.size + 1).items():
@@ -169,11 +168,11 @@ def rivals(
     for hypothesis, proposal in sorted(near.items(), key=lambda item: item[1].predicted)[:FITTED]:
         values, states = model.start(proposal.options)
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
-    for hypothesis, values in in_another_form(pool, best, columns, at.objective + within):
+    for hypothesis, values in in_a_members_place(pool, best, columns, at.objective + within):
         if hypothesis not in pool.found and has_simpler_form(hypothesis, best):
-            pool.try_set("another form", hypothesis, values, at.states, FURTHER)  # what it lacks may be one more effect
+            pool.try_set("in its place", hypothesis, values, at.states, FURTHER)  # what it lacks may be one more effect
         else:
-            _compare(pool, "another form", hypothesis, values, at.states, at.objective + within, progress)
+            _compare(pool, "in its place", hypothesis, values, at.states, at.objective + within, progress)
     for base in of_simpler_form(pool, best):
         beside = _about(pool, base, columns)
         more: dict[Hypothesis, Proposal] = {}
@@ -258,36 +257,25 @@ def _compare(
         pool.hopeless.add(hypothesis)
 
 
-def in_the_spans(best: Hypothesis, at: Fit, columns: Sequence[Column]) -> list[Column]:
-    """What else may act in the interval of each member that acts in one only."""
-    spans = [span for member in best.limited if (span := member.span(at.values))]
-    apart = 1 + max((column.alternative for column in columns), default=0)
-    return [
-        replace(in_span(column, span), alternative=apart * number + column.alternative)
-        for number, span in enumerate(spans, 1)
-        for column in columns
-        if column.effect.acting_names() and best.admits(column.effect)
-    ]
-
-
-def in_another_form(
+def in_a_members_place(
     pool: Pool, best: Hypothesis, columns: Sequence[Column], within: float
 ) -> Iterator[tuple[Hypothesis, dict[str, float]]]:
-    """The set with another form of a member's law, as large as it is, unless it was fitted to within so much of the
-    best: the quadratic model does not see so far."""
+    """The set with another effect in a member's place: another form of its law, as large as it is; and of one that acts
+    in an interval only, whatever else may act there; unless it was fitted to within so much of the best."""
     at = pool.found[best]
     first = {column.effect.id: column for column in reversed(columns)}
     for member in best.members:
         rest, span = best.without(member), member.span(at.values)
         for column in first.values():
             effect = column.effect
-            if not effect.kind or effect.kind != member.effect.kind or effect.id == member.id:
+            is_form = effect.kind != "" and effect.kind == member.effect.kind
+            if effect.id == member.id or not rest.admits(effect) or not (is_form or span and effect.acting_names()):
                 continue
             there = in_span(column, span) if span else column
             hypothesis = rest.with_effects([effect], there.limited)
+            values = as_large(there, member, at) if is_form else there.values
             if hypothesis not in pool.found or pool.found[hypothesis].objective > within:
-                values = {**at.values, **neutral(member.effect), **as_large(there, member, at)}
-                yield hypothesis, values
+                yield hypothesis, {**at.values, **neutral(member.effect), **values}
 
 
 def as_large(column: Column, member: Member, result: Fit) -> dict[str, float]:
