@@ -8,7 +8,7 @@ import pytest
 from made import bench, bench_of
 
 from eha_core.api import known_model
-from eha_core.diagnosis.criteria import AT_FIRST, FITTED, NEAR_NOISE, RELATED
+from eha_core.diagnosis.criteria import FITTED, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search import expansion
 from eha_core.diagnosis.search.course import at_the_noise
@@ -91,21 +91,6 @@ def test_near_the_noise_a_set_may_leave_more_for_what_it_has_fewer(rig, size, ne
     near, other = rig.set_of(*names[:2]), rig.set_of(*names[:size])
     start = expansion._Start(at.objective, at.objective - nearer * required(at), other, {}, at.states)
     assert expansion._contends(start, near, at) == tried
-
-
-@pytest.mark.parametrize(("share", "fitted"), [(0.9, True), (1.1, False)])
-def test_what_is_predicted_far_behind_the_leader_is_not_fitted(rig, monkeypatch, share, fitted):
-    search, at = searched(rig), rig.pool.found[NOTHING]
-    load, leak = rig.set_of("constant_load"), rig.set_of("turbulent_leakage")
-    begun = {**at.values, "constant_load.force": 300.0, "turbulent_leakage.coefficient": 1e-10}
-    reached = search.pool.try_set("before", load, begun, at.states, AT_FIRST).objective
-    starts = [
-        expansion._Start(0.0, 0.0, load, begun, at.states),
-        expansion._Start(1.0, share * RELATED * reached, leak, begun, at.states),
-    ]
-    monkeypatch.setattr(expansion, "_starts", lambda *_: starts)
-    expand(search, NOTHING, "first")
-    assert (leak in search.pool.found) == fitted
 
 
 def test_sets_that_keep_a_large_member_are_tried_however_well_the_others_are_predicted():

@@ -108,8 +108,6 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     for start in _starts(pool, base, model):
         if near is not None and not _contends(start, near, pool.found[near]):
             continue  # what is larger is proposed from there, if it is needed
-        if start.predicted > RELATED * pool.found[leader(pool)].objective:
-            continue  # the search would not go on from it
         result = pool.try_set(step, start.hypothesis, start.values, start.states, AT_FIRST)
         tried += 1
         if is_at_noise(result):  # a fit that has not converged would not be white
