@@ -10,6 +10,8 @@ voltage. So the same three commands run in real time and, with `-p time_mode:=lo
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
@@ -17,7 +19,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 
-class AnsweringController(Node):
+class AnsweringController(Node, ABC):
     """Answers each reference and measured position of one instant with the voltage of its law."""
 
     def __init__(self, name: str) -> None:
@@ -48,9 +50,9 @@ class AnsweringController(Node):
         voltage = self.law(position, reference.velocity[wanted], position - measured.position[found])
         self.voltage.publish(Float64(data=voltage))
 
+    @abstractmethod
     def law(self, position: float, velocity: float, error: float) -> float:
         """The voltage [V] for a reference [m, m/s] and the error of the position [m]."""
-        raise NotImplementedError
 
 
 class PositionController(AnsweringController):
