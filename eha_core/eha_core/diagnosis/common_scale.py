@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.special import chdtri
+from scipy.stats import chi2
 
 from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
 from eha_core.diagnosis.result import CommonScale, FittedParameter
@@ -70,7 +70,7 @@ def common_scale(final: Fit, changed: Sequence[FittedParameter]) -> CommonScale 
             continue
         direction = np.array([powers.get(final.free[place].name, 0.0) for place in places])
         factor, deviation, left = _along(moved, direction, spread)
-        if left > float(chdtri(max(1, len(places) - 1), 1.0 - SURE)) or abs(factor) < NOTICEABLE * deviation:
+        if left > float(chi2.ppf(SURE, max(1, len(places) - 1))) or abs(factor) < NOTICEABLE * deviation:
             continue
         times = float(np.exp(factor))
         if best is None or left < best[0]:

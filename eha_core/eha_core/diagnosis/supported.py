@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from scipy.special import chdtri
+from scipy.stats import chi2
 
 from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
 from eha_core.diagnosis.criteria import CERTAINTY, COHERENT, HELD_OUT, LEFT_IN_A_CHANNEL, TO_THE_END
@@ -70,7 +70,7 @@ def chance(evidence: Evidence, result: Fit, effect: Effect) -> float:
         (wide.deviation(name) / result.deviation(name) for name in names if result.deviation(name) > 0.0), default=1.0
     )
     ordinary = max(1.0, result.data / max(result.count, 1)) * max(1.0, wider) ** 2
-    return float(chdtri(max(1, len(names)), 1.0 - CERTAINTY)) * ordinary
+    return float(chi2.ppf(CERTAINTY, max(1, len(names)))) * ordinary
 
 
 def one_sided(evidence: Evidence, final: Fit, winner: Entry) -> Mapping[str, Ends]:

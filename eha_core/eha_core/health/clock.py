@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import theilslopes
 
 from eha_core.health.fault import Fault
 from eha_core.health.noise import NORMAL_MEDIAN
@@ -73,9 +74,7 @@ def steady(when: FloatArray, late: FloatArray) -> tuple[float, float] | None:
     if len(when) < FEWEST:
         return None
     # a piece of even oscillation may seem late by a period more or less
-    first, second = np.triu_indices(len(when), 1)
-    slopes = (late[second] - late[first]) / (when[second] - when[first])
-    about = late - float(np.median(slopes)) * when
+    about = late - float(theilslopes(late, when)[0]) * when
     apart = np.abs(about - np.median(about))
     kept = apart <= max(OUTSIDE * float(np.median(apart)) / NORMAL_MEDIAN, TICK)
     if np.count_nonzero(kept) < FEWEST:
