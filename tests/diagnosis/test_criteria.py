@@ -47,7 +47,6 @@ THRESHOLDS = {
     "NOTICEABLE": 4.0,
     "RELEVANT": 0.01,
     "UNLIKELY": 2.0,
-    "OUTRIGHT": 100.0,
     "EXPANSIONS": 8,
     "EXPANSIONS_LATER": 3,
     "IDLE": 2,

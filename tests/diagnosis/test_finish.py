@@ -6,7 +6,7 @@ import pytest
 from made import LAWS, bench, explanation
 
 from eha_core.diagnosis import criteria
-from eha_core.diagnosis.criteria import OUTRIGHT, UNLIKELY
+from eha_core.diagnosis.criteria import UNLIKELY
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.finish import (
     as_large,
@@ -137,21 +137,6 @@ def test_every_member_is_tried_whatever_the_curvature_says(rig, pool, monkeypatc
     for member in best.members:
         lost = pool.found[best.without(member)].objective - at.objective
         assert gains[member] == pytest.approx(lost / required_of(pool, member, dict.fromkeys(best.members, 1e9), at))
-
-
-@pytest.mark.parametrize(("times_required", "fits"), [(0.9 * OUTRIGHT, 2), (1.1 * OUTRIGHT, 1)])
-def test_a_short_fit_is_enough_where_the_curvature_says_too_that_a_member_is_needed(
-    rig, pool, monkeypatch, times_required, fits
-):
-    replace(rig, pool=pool).fitted(PLANTED)
-    both = rig.set_of("constant_load", "valve_deadband")
-    end = "eha_core.diagnosis.search.finish"
-    monkeypatch.setattr(f"{end}.required_of", lambda *_: 50.0)
-    monkeypatch.setattr(f"{end}.predicted_costs", lambda _, one, __: dict.fromkeys(one.members, times_required * 50.0))
-    best, gains = finish(pool, both, lambda _: None)
-    assert best == both and min(gains.values()) > OUTRIGHT
-    steps = [step.effects for step in pool.trace.steps if step.step == "without a member"]
-    assert steps.count(("constant_load",)) == steps.count(("valve_deadband",)) == fits
 
 
 def test_the_costs_of_members_are_those_of_refits(rig, pool):

@@ -53,10 +53,6 @@ CONVINCING = 0.63
 members were worth 19 times that and more but for one of 0.74 (nine rigs of four to six effects), false ones 0.42 there,
 and 1.2 on a measured axis (EMPS: a stop of 10 N/m)."""
 
-OUTRIGHT = 100.0
-"""Times what is required of a member that its removal must cost, by the curvature and after a few iterations, for these
-to be enough: iterated to the end, 37 members of 13 development sets cost 0.08 to 110 times what the curvature said."""
-
 NEXT_TO_NOTHING = 0.15
 """Share of its typical size below which a shape, such as the rounding of an edge, is no parameter that a law makes use
 of: no recording tells it from none (assumed; weak effects of the exam have as much of their typical size)."""

@@ -21,7 +21,6 @@ from eha_core.diagnosis.criteria import (
     OF_ITS_FORM,
     OF_SAMPLES,
     OF_SAMPLES_BESIDE_A_FORM,
-    OUTRIGHT,
     UNLIKELY,
     chance_gain,
 )
@@ -66,7 +65,7 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
         # a law in no catalogue first: what names explain must not be left to its curve
         rest = costs.keys() - gains.keys()
         member = min(rest, key=lambda member: (not member.variable, costs[member] / needed[member], member))
-        simpler = _without(pool, hypothesis, member, at, costs[member], needed[member])
+        simpler = _without(pool, hypothesis, member, at, needed[member])
         lost = simpler.objective - at.objective
         progress(f"without {member.id}: chi^2 rises by {lost:.4g}, {needed[member]:.4g} is required")
         if lost > needed[member]:
@@ -101,16 +100,13 @@ def predicted_costs(pool: Pool, hypothesis: Hypothesis, at: Fit) -> dict[Member,
     }
 
 
-def _without(pool: Pool, hypothesis: Hypothesis, member: Member, at: Fit, cost: float, needed: float) -> Fit:
-    """The set without a member, fitted from where the whole set stands until it comes near enough or does not; a few
-    iterations are enough if both they and the curvature, by which chi^2 rises by `cost`, say that it is far off."""
+def _without(pool: Pool, hypothesis: Hypothesis, member: Member, at: Fit, needed: float) -> Fit:
+    """The set without a member, fitted from where the whole set stands until it comes near enough or does not."""
     rest = hypothesis.without(member)
     off = neutral(member.effect)
     values = {name: off.get(base_name(name), value) for name, value in at.values.items()}
     free = tuple(parameter for parameter in at.free if base_name(parameter.name) not in off)
     simpler = pool.try_set("without a member", rest, values, at.states, FURTHER, free, 1, at.objective + needed)
-    if min(cost, simpler.objective - at.objective) > OUTRIGHT * needed:
-        return simpler
     if simpler.objective - at.objective > needed:
         pool.go_on("without a member", rest, CONVERGED, 2, give_up_above=at.objective + needed)
     if pool.found[rest].objective - at.objective > needed:
