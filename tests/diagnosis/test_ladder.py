@@ -1,6 +1,7 @@
 """What each effect of a set is worth: what the nominal, the recalibrated and the augmented model leave, and without
 each."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,7 @@ from made import recorded
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.conclude import polish
 from eha_core.diagnosis.effect_parameters import with_effects
-from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.hypothesis import NOTHING, without_effect
 from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison
 from eha_core.effects import effects
@@ -60,6 +61,20 @@ def test_the_way_leads_from_the_nominal_model_to_the_noise_and_the_effect_that_m
     by_hand = fit(evidence.calibration.problem, begun, load, iterations=40)
     left = np.sqrt(by_hand.data / by_hand.count)
     assert without["valve_deadband"].overall == pytest.approx(left, rel=0.1)
+
+
+def test_a_fit_that_the_search_gave_up_is_not_what_is_shown(evidence):
+    winner, problem = evidence.decision.winner, evidence.calibration.problem
+    begun, load = without_effect(winner.fit, LAWS["valve_deadband"])
+    given_up = fit(problem, begun, load, winner.fit.states, iterations=1)
+    (deadband,) = (member for member in winner.hypothesis.members if member.id == "valve_deadband")
+    smaller = {winner.hypothesis.without(deadband): given_up}
+    searched = {**vars(evidence), "comparison": replace(evidence.comparison, smaller=smaller)}
+    final = polish(evidence, winner)
+    (_, expected), (_, shown) = ladder(evidence, final), ladder(SimpleNamespace(**searched), final)
+    left = np.sqrt(given_up.data / given_up.count)
+    assert left > 1.2 * expected["valve_deadband"].overall
+    assert shown["valve_deadband"].overall == pytest.approx(expected["valve_deadband"].overall, rel=0.02)
 
 
 def test_parameters_that_a_recording_tells_only_together_are_correlated(evidence):
