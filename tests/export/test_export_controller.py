@@ -22,7 +22,7 @@ from eha_core.cli import main
 from eha_core.control import Measurement, Target, make_controller
 from eha_core.control.inverse_model import NAMES, InverseModel
 from eha_core.parameters import changed, dump_parameters, nominal_values
-from eha_core.plant import PAPER
+from eha_core.plant import PAPER, dump_plant
 
 PERIOD = 0.002
 FOUND = {
@@ -144,3 +144,11 @@ def test_of_a_diagnosis_it_says_what_is_compensated(tmp_path: Path, capsys: pyte
     assert "not compensated: supply_pressure_droop, position_sensor_lag, thermal_drift\n" in said
     assert '"coulomb_friction.force": 250.0,' in (tmp_path / "out" / "eha_controller.py").read_text()
     assert "update_rate: 1000\n" in (tmp_path / "out" / "controllers.yaml").read_text()
+    # fitted.yaml, which a diagnosis writes beside it, is the same plant
+    (tmp_path / "fitted.yaml").write_text(dump_plant(FIVE, PAPER))
+    words[1], words[3] = str(tmp_path / "fitted.yaml"), str(tmp_path / "same")
+    assert main(["export", "controller", *words]) == 0
+    assert capsys.readouterr().out == said.replace("/out:", "/same:")
+    for path in (tmp_path / "out").iterdir():
+        text = (tmp_path / "same" / path.name).read_text()
+        assert text.replace("from fitted.yaml", "from diagnosis.json") == path.read_text()

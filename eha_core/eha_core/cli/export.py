@@ -39,7 +39,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("--out", required=True, type=Path, metavar="FILE.fmu|DIR", help="the FMU, or the folder of the other forms")
     given = parser.add_mutually_exclusive_group().add_argument
     given("--nominal", type=Path, metavar="FILE", help="the plant: a parameters file in ROS 2's YAML form")
-    given("--from", dest="diagnosis", type=Path, metavar="diagnosis.json", help="the plant as a diagnosis found it")
+    given("--from", dest="found", type=Path, metavar="diagnosis.json|fitted.yaml", help="the plant as a diagnosis found"
+        " it: either of the files that it wrote")
     add("--fmi", type=int, choices=(2, 3), help="of an FMU: FMI's version (default 2, which more tools read)")
     add("--target", metavar="TRIPLE", help=f"of c: processor, system and C library, such as aarch64-linux-gnu or"
         f" x86_64-windows-gnu (default {_TARGET})")  # fmt: skip
@@ -52,8 +53,11 @@ def run(arguments: argparse.Namespace) -> int:
     _check(arguments)
     from eha_core.export import exported_model, write_fmu, write_library
 
-    given = (arguments.nominal, arguments.diagnosis)
-    model = exported_model(*given, _STEP if arguments.step is None else arguments.step)
+    step_size = _STEP if arguments.step is None else arguments.step
+    if arguments.found is not None and arguments.found.suffix == ".json":
+        model = exported_model(diagnosis=arguments.found, step_size=step_size)
+    else:
+        model = exported_model(arguments.found or arguments.nominal, step_size=step_size)
     if arguments.form == "controller":
         return _export_controller(arguments, model)
     if arguments.form == "fmu":
@@ -71,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _export_controller(arguments: argparse.Namespace, model: ExportedModel) -> int:
     from eha_core.export.controller import compensation, write_controller
 
-    source = arguments.diagnosis or arguments.nominal
+    source = arguments.found or arguments.nominal
     origin = source.name if source else "the nominal plant"
     written = write_controller(model, arguments.out, arguments.rate or _RATE, origin)
     compensated, left = (", ".join(names) or "none" for names in compensation(model))
