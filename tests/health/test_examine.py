@@ -162,6 +162,33 @@ def test_a_blow_after_which_the_oil_rings_is_no_spike(rings: float, kinds: list[
     assert [fault.fault for fault in examine(pressure(values)).faults] == kinds
 
 
+@pytest.mark.parametrize("apart", [2, 3, 4, 6])
+@pytest.mark.parametrize("second", [1.0, -0.6])
+def test_spikes_close_together_are_all_excluded(apart: int, second: float) -> None:
+    """With a sample between two of one size it is not known which of the three are right: all may be excluded."""
+    time = np.arange(1600) / 200.0
+    values = 4.8e6 + 5e5 * np.sin(2.0 * np.pi * 0.5 * time)
+    values += 2e4 * np.random.default_rng(5).standard_normal(len(time))
+    places = [300, 800, 800 + apart, 1200]
+    values[places] += 1.4e6 * np.array([1.0, 1.0, second, -1.0])
+    health = examine(pressure(values))
+    assert [fault.fault for fault in health.faults] == ["spikes"]
+    lost = health.lost["pressure_a"]
+    assert np.all(lost[places]) and np.count_nonzero(lost) <= len(places) + 1
+
+
+@pytest.mark.parametrize("period", [2.0, 2.5, 3.0, 4.0, 6.0])
+@pytest.mark.parametrize("kept", [0.75, 0.9, 0.97])
+def test_oil_that_rings_at_any_frequency_has_no_spikes(period: float, kept: float) -> None:
+    """A pressure at 200 Hz that rings after a shock; a sample keeps so much of the amplitude of the one before."""
+    time = np.arange(1600) / 200.0
+    values = 4.8e6 + 5e5 * np.sin(2.0 * np.pi * 0.5 * time)
+    values += 2e4 * np.random.default_rng(5).standard_normal(len(time))
+    since = np.arange(800.0)
+    values[800:] += 2e6 * kept**since * np.cos(2.0 * np.pi * since / period)
+    assert "spikes" not in [fault.fault for fault in examine(pressure(values)).faults]
+
+
 @pytest.mark.parametrize("rate", [0.0, 0.01, -0.02])
 def test_sensors_of_another_clock_follow_ever_later_or_earlier(rate: float) -> None:
     """Twelve seconds of a speed that follows noise of 4 Hz by 20 ms, stamped by a clock that runs so much faster."""

@@ -7,7 +7,7 @@ from math import comb, e, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
+from scipy.ndimage import maximum_filter, median_filter
 
 from eha_core.recording.recording import FloatArray as Array
 
@@ -26,6 +26,8 @@ ON_GRID = 0.1
 """Distance from a level, in steps, up to which a value counts as on it; without a grid, one value in five does."""
 SHARE_ON_GRID = 0.95
 """Share of the values that must be on the grid; the others may be interpolated or outliers."""
+NEARBY = np.abs(np.arange(-6, 7)) > 1
+"""The samples about an outlier, from the second to the sixth on either side, that it must not affect."""
 
 
 def estimate_noise(values: Array, order: int = 4, blocks: int = 20) -> float:
@@ -112,13 +114,24 @@ def quantisation(values: Array) -> float:
 def find_outliers(values: Array, noise: float, limit: float = 8.0, width: int = 51) -> Flags:
     """Flags of single samples that differ from both neighbours by `limit` times the noise and the roughness nearby.
 
-    At a step of the signal the neighbours differ from each other, and where it rings, later samples are as rough.
+    At a step of the signal the neighbours differ from each other, and where it rings, other samples are as rough. That
+    is judged without the outliers themselves: two that are close together are not ringing.
     """
-    before = np.concatenate([values[1:2], values[:-1]])
-    after = np.concatenate([values[1:], values[-2:-1]])
+    before, after = _neighbours(values)
     surprise = np.abs(values - 0.5 * (before + after))
     usual = median_filter(surprise, size=width, mode="nearest")
-    alone = np.abs(after - before) < 0.25 * surprise
-    for shift in range(2, 7):
-        alone &= np.maximum(np.roll(surprise, shift), np.roll(surprise, -shift)) < 0.3 * surprise
-    return np.asarray((surprise > limit * noise) & (surprise > limit * usual) & alone)
+    found = (surprise > limit * noise) & (surprise > limit * usual) & (np.abs(after - before) < 0.25 * surprise)
+    while found.any():
+        rest = values.copy()
+        rest[found] = np.interp(np.flatnonzero(found), np.flatnonzero(~found), values[~found])
+        rough = maximum_filter(np.abs(rest - 0.5 * np.add(*_neighbours(rest))), footprint=NEARBY, mode="constant")
+        alone = rough[found] < 0.3 * surprise[found]
+        if alone.all():
+            break
+        found[found] = alone
+    return np.asarray(found)
+
+
+def _neighbours(values: Array) -> tuple[Array, Array]:
+    """The sample before each and the one after it; at an end, the only neighbour for both."""
+    return np.concatenate([values[1:2], values[:-1]]), np.concatenate([values[1:], values[-2:-1]])

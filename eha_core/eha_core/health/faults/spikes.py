@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from eha_core.health.fault import Fault, Found
-from eha_core.health.noise import find_outliers
+from eha_core.health.noise import Flags, find_outliers
 from eha_core.health.signal import Signal
 
 FAR = 25.0
@@ -34,7 +34,8 @@ def find(signal: Signal) -> Found | None:
         return None
     least = max(FAR * signal.noise, STEPS * signal.level, OF_EXTENT * signal.extent)
     here = find_outliers(signal.values, least / BESIDE, BESIDE)
-    here &= [not there or _is_undisturbed(signal, place) for place, there in enumerate(here)]
+    while not all(lone := [_is_undisturbed(signal, here, place) for place in np.flatnonzero(here)]):
+        here[here] = lone
     if not here.any():
         return None
     when, count = signal.time[here], int(here.sum())
@@ -43,10 +44,10 @@ def find(signal: Signal) -> Found | None:
     return Found([fault], signal.lost(here))
 
 
-def _is_undisturbed(signal: Signal, place: int) -> bool:
-    """Whether a spike does not affect the samples on either side of it."""
-    first = max(0, place - AFTERWARDS)
-    beside = np.delete(signal.values[first : place + AFTERWARDS + 1], place - first)
+def _is_undisturbed(signal: Signal, spikes: Flags, place: int) -> bool:
+    """Whether a spike does not affect the samples on either side of it that are no spikes themselves."""
+    about = slice(max(0, place - AFTERWARDS), place + AFTERWARDS + 1)
+    beside = signal.values[about][~spikes[about]]
     size = abs(signal.values[place] - 0.5 * (signal.values[place - 1] + signal.values[place + 1]))
     rough = np.abs(beside[1:-1] - 0.5 * (beside[:-2] + beside[2:]))
     return bool(np.max(rough) < max(RINGS * size, USUAL * signal.noise, LEVELS * signal.level))
