@@ -11,7 +11,7 @@ import pytest
 import eha_core as eha
 from eha_core.health import examine, unsuited
 from eha_core.parameters import nominal_values
-from eha_core.plant import PAPER
+from eha_core.plant import COLUMNS, PAPER, Plant
 from eha_core.recording import Recording, read_recording
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -122,6 +122,36 @@ def test_a_piston_stays_under_a_small_command_and_is_blocked_under_another(volts
     resting = 1e-5 * np.random.default_rng(4).standard_normal(len(TIME))
     command = 0.5 * volts * np.sin(2.0 * np.pi * TIME)
     recording = eha.Recording.from_arrays(time=TIME, voltage_command=command, position=resting)
+    assert [fault.fault for fault in unsuited(recording, nominal_values(), PAPER)] == kinds
+
+
+@pytest.mark.parametrize(
+    ("what", "kinds"),
+    [
+        ("stuck sensor", ["still"]),
+        ("stuck sensor, one pressure", ["still"]),
+        ("motion below the noise", []),
+        ("overlap", []),
+        ("friction", []),
+        ("no pressures", []),
+    ],
+)
+def test_under_a_small_command_the_pressures_show_whether_the_piston_moved(what: str, kinds: list[str]) -> None:
+    """3 % of the rated voltage moves the nominal piston, unless overlap absorbs it or friction holds the piston."""
+    generator = np.random.default_rng(6)
+    command = 0.03 * np.sin(2.0 * np.pi * 0.5 * TIME)
+    held = {"overlap": {"valve_deadband.half_width": 1e-3}, "friction": {"coulomb_friction.force": 2e4}}
+    moved = Plant({**nominal_values(), **held.get(what, {})}, 2e-4).run(np.repeat(command, 10), 10)
+    assert (np.ptp(moved.position) > 1e-3) != (what in held)
+    pressures = {
+        name: moved.values[:, COLUMNS.index(name)] + 1e4 * generator.standard_normal(len(TIME))
+        for name in {"no pressures": (), "stuck sensor, one pressure": ("pressure_b",)}.get(what, EVERY[2:])
+    }
+    noise = generator.standard_normal(len(TIME))
+    seen = moved.position - np.mean(moved.position) + 0.1 * noise
+    position = seen if what == "motion below the noise" else 1e-5 * noise
+    arrays = {"voltage_command": command, "position": position, **pressures}
+    recording = as_recording({name: (TIME, values) for name, values in arrays.items()})
     assert [fault.fault for fault in unsuited(recording, nominal_values(), PAPER)] == kinds
 
 
