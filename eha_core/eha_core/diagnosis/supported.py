@@ -20,7 +20,7 @@ from eha_core.diagnosis.search.comparison import Entry
 from eha_core.diagnosis.verdict import Decision, coherence, without_physics
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit
-from eha_core.identification.intervals import with_residual
+from eha_core.identification.intervals import at_its_end, with_residual
 from eha_core.identification.profile import Ends, profile_interval
 from eha_core.identification.validate import instants_of, judge
 
@@ -65,9 +65,9 @@ def chance(evidence: Evidence, result: Fit, effect: Effect) -> float:
     """The gain in chi^2 that chance exceeds in one recording of twenty; larger where the residual is correlated."""
     problem = evidence.calibration.problem
     names = [name for name in effect.parameter_names() if any(name == parameter.name for parameter in result.free)]
-    wide = with_residual(problem, result)
+    white, wide = at_its_end(problem, result), with_residual(problem, result)
     wider = max(
-        (wide.deviation(name) / result.deviation(name) for name in names if result.deviation(name) > 0.0), default=1.0
+        (wide.deviation(name) / white.deviation(name) for name in names if white.deviation(name) > 0.0), default=1.0
     )
     ordinary = max(1.0, result.data / max(result.count, 1)) * max(1.0, wider) ** 2
     return float(chi2.ppf(CERTAINTY, max(1, len(names)))) * ordinary

@@ -29,7 +29,7 @@ def with_residual(problem: Problem, result: Fit) -> Fit:
     if not count:
         return result
     linear = linearise(problem, result.values, result.free, result.q, result.states)
-    result = _where_it_ended(problem, result, linear)
+    result = _with_curvature(problem, result, linear)
     design = _pulls(problem, result, linear)
     pulls = design * linear.residual[:, None]
     blocks = (problem.flat_times() / BLOCK).astype(np.int64)
@@ -44,8 +44,12 @@ def with_residual(problem: Problem, result: Fit) -> Fit:
     return replace(result, covariance=result.covariance * np.outer(wider, wider[:count]))
 
 
-def _where_it_ended(problem: Problem, result: Fit, linear: Linearised) -> Fit:
+def at_its_end(problem: Problem, result: Fit) -> Fit:
     """The fit with the covariance from the curvature at its end; its own is that of the iteration before."""
+    return _with_curvature(problem, result, linearise(problem, result.values, result.free, result.q, result.states))
+
+
+def _with_curvature(problem: Problem, result: Fit, linear: Linearised) -> Fit:
     normal, _ = normal_equations(problem, result.free, result.q, result.states, linear)
     return replace(result, covariance=normal.covariance())
 

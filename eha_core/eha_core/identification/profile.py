@@ -32,11 +32,8 @@ def profile_interval(problem: Problem, result: Fit, name: str, nothing: float, c
     def is_inside(share: float) -> bool:
         value = min(max(nothing + share * (at - nothing), moved.lower), moved.upper)
         others = tuple(parameter for parameter in result.free if parameter.name != name)
-        limit = result.objective + cost
-        found = fit(
-            problem, {**result.values, name: value}, others, result.states, iterations=ADAPTS, give_up_above=limit
-        )
-        return found.objective <= limit
+        found = fit(problem, {**result.values, name: value}, others, result.states, iterations=ADAPTS)
+        return found.objective <= result.objective + cost
 
     inner, outer = _inner(is_inside), _outer(is_inside)
     ends = tuple(None if share is None else nothing + share * (at - nothing) for share in (inner, outer))
