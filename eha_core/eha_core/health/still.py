@@ -25,8 +25,9 @@ MOTION = 2.0
 TAKEN = 0.05
 """Range of the command, as a share of the rated one, that a sound valve may absorb (assumed: 1 % of overlap either way
 and 3 % of hysteresis, which servo valves' data sheets allow)."""
-STEP, EVERY = 2e-4, 5
-"""s, of the nominal plant's simulation, and steps from one of its rows to the next."""
+STEP, EVERY, SIMULATED = 2e-4, 5, 60.0
+"""s, of the nominal plant's simulation, steps from one of its rows to the next, and how much of a recording it is run
+over at most [s]: a piston that moves at all shows in a minute, and an hour would take gigabytes (assumed)."""
 
 
 def still(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> Sequence[Fault]:
@@ -68,7 +69,11 @@ def _is_small(recording: Recording, nominal: Mapping[str, float], composition: C
 
 def _oil_moved(recording: Recording, nominal: Mapping[str, float], composition: Composition) -> bool:
     """Whether the pressures change, and do so as in the nominal plant, down to their noise, while its piston moves."""
-    command, position = recording.channels["voltage_command"], recording.channels["position"]
+    channels = {name: _begun(channel) for name, channel in recording.channels.items()}
+    command, position = channels["voltage_command"], channels["position"]
+    pressures = [channels[name] for name in ("pressure_a", "pressure_b") if name in channels]
+    if not pressures or any(len(channel.time) < 2 * FEWEST for channel in (command, position, *pressures)):
+        return False
     steps = STEP * np.arange(round(command.time[-1] / STEP))
     held = command.values[np.maximum(np.searchsorted(command.time, steps, "right") - 1, 0)]
     stroke = nominal["actuator_displacement"]
@@ -79,7 +84,12 @@ def _oil_moved(recording: Recording, nominal: Mapping[str, float], composition: 
         modelled = np.interp(channel.time, moved.time, getattr(moved, channel.name))
         return _rests(Signal.of(replace(channel, values=channel.values - modelled)))
 
-    pressures = [recording.channels[name] for name in ("pressure_a", "pressure_b") if name in recording.channels]
-    if not pressures or rests_beside_it(position):
+    if rests_beside_it(position):
         return False
     return all(rests_beside_it(channel) and not _rests(Signal.of(channel)) for channel in pressures)
+
+
+def _begun(channel: Channel) -> Channel:
+    """The beginning of a channel, as much of it as is simulated."""
+    first = channel.time < SIMULATED
+    return replace(channel, time=channel.time[first], values=channel.values[first])
