@@ -57,7 +57,7 @@ THRESHOLDS = {
     "OF_SIZE": 4,
     "TRIED": 16,
     "TRIED_AT_THE_NOISE": 4,
-    "AT_FIRST": 3,
+    "AT_FIRST": 2,
     "FURTHER": 8,
     "FITTED": 6,
     "ADDED": 2,

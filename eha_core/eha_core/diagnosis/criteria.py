@@ -156,7 +156,7 @@ OF_SIZE, TRIED, TRIED_AT_THE_NOISE = 4, 16, 4
 """Proposals of one size (and effects in the intervals in which they act), and of all, of which the members are fitted.
 The true set of a development rig was fifth of its size by prediction, and at the noise after two iterations."""
 
-AT_FIRST, FURTHER, TO_THE_END, CONVERGED = 3, 8, 12, 20
+AT_FIRST, FURTHER, TO_THE_END, CONVERGED = 2, 8, 12, 20
 """Iterations of a fit that shows whether a set is worth more; of one that goes on from nearly the same set, or over
 other windows; of a leader's; and of what is compared at the end. A fit ends before where an iteration gains too
 little."""

@@ -27,7 +27,6 @@ from eha_core.diagnosis.criteria import (
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.search.best_sets import Proposal, best_sets
 from eha_core.diagnosis.search.columns import Column
-from eha_core.diagnosis.search.instants import shift_instants
 from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit
@@ -118,7 +117,6 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     if not is_at_noise(pool.found[now]) and (now != lead or base == lead):
         # what a fit that stopped short leaves would be taken for more effects
         pool.go_on(step, now, TO_THE_END, 2)
-        shift_instants(pool, now, TO_THE_END)
     left = pool.found[now].data / at.count
     search.say(f"{step}: {tried} sets tried, best {_shown(now)}, {left:.4g} times the noise")
     pool.measure_noise(now)
