@@ -16,7 +16,6 @@ from eha_core.workers import Workers
 
 if TYPE_CHECKING:
     from eha_core.exam.scoring import Mark
-    from eha_core.exam.shipped import Shown
     from eha_core.exam.summary import Summary
 
 OWN = "eha diagnose"
@@ -57,7 +56,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--real", type=Path, metavar="DIR", help="test the measured rigs below this folder, and nothing else"
     )
-    parser.add_argument("--bags", type=Path, metavar="DIR", help="include the project's own recordings in this folder")
+    parser.add_argument(
+        "--bags",
+        type=Path,
+        metavar="DIR",
+        help="diagnose the project's own recordings in this folder, and nothing else",
+    )
     parser.add_argument(
         "--lost", type=int, default=0, metavar="N", help="write reports of the first N wrong or failed cases"
     )
@@ -75,11 +79,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the verb; the exit status is BELOW_REQUIRED where --require was not met."""
     if arguments.real is not None:
         return _run_real(arguments)
+    if arguments.bags is not None:
+        return _run_bags(arguments)
     if arguments.pool is not None:
         return _run_pooled(arguments)
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
     from eha_core.exam.run_exam import Exam, report_lost, run_exam
-    from eha_core.exam.shipped import show_bags
     from eha_core.exam.summary import summarise
 
     if arguments.cases < 1 or arguments.jobs < 1:
@@ -90,10 +95,9 @@ def run(arguments: argparse.Namespace) -> int:
     tools = _tools(arguments)
     marks = run_exam(exam, tools, Workers(arguments.jobs, arguments.dask), _show)
     summaries = [summarise(tool, marks[tool]) for tool in tools]
-    shown = show_bags(arguments.bags, _show) if arguments.bags else []
     reports = report_lost(exam, summaries[0].lost[: arguments.lost])
     about = {"commit": _commit(), "cases": arguments.cases, "seed": arguments.seed}
-    return _tell(arguments, summaries, marks, about, reports, shown)
+    return _tell(arguments, summaries, marks, about, reports)
 
 
 def _run_pooled(arguments: argparse.Namespace) -> int:
@@ -114,7 +118,6 @@ def _tell(
     marks: Mapping[str, Sequence[Mark]],
     about: Mapping[str, object],
     reports: Mapping[str, str] | None = None,
-    shown: Sequence[Shown] = (),
 ) -> int:
     """Write the tables, print the shares, and compare them with --require."""
     from eha_core.exam.page import as_html
@@ -123,19 +126,15 @@ def _tell(
     command = " ".join(["eha", "exam", *sys.argv[2:]])
     about = {"command": command, **about, "plants and recordings": "simulated by the exam's own truth"}
     for name, text in (
-        ("table.md", as_markdown(summaries, about, shown)),
-        ("table.json", as_json(summaries, marks, about, shown)),
-        ("table.html", as_html(summaries, marks, about, reports or {}, shown)),
+        ("table.md", as_markdown(summaries, about)),
+        ("table.json", as_json(summaries, marks, about)),
+        ("table.html", as_html(summaries, marks, about, reports or {})),
     ):
         (arguments.out / name).write_text(text, encoding="utf-8")
     for summary in summaries:
         _print_summary(summary)
     print(f"tables: {arguments.out}/table.md, table.json, table.html")
-    share = summaries[0].rows[0].right.value or 0.0
-    if arguments.require is not None and share < arguments.require:
-        print(f"eha exam: {share:.3f} of the cases are right, below --require {arguments.require}", file=sys.stderr)
-        return BELOW_REQUIRED
-    return 0
+    return _compared(arguments, summaries[0].rows[0].right.value or 0.0, "cases are right")
 
 
 def _run_real(arguments: argparse.Namespace) -> int:
@@ -146,14 +145,31 @@ def _run_real(arguments: argparse.Namespace) -> int:
     questions = hold(arguments.real, folder, lambda line: print(line, file=sys.stderr, flush=True))
     if not questions:
         return 0
-    table = as_markdown(questions)
+    met = [question.met for question in questions]
+    return _tell_table(arguments, folder, as_markdown(questions), met, "questions are met")
+
+
+def _run_bags(arguments: argparse.Namespace) -> int:
+    """Diagnose the project's own recordings; --require is the required share of correct answers."""
+    from eha_core.exam.shipped import show_bags
+    from eha_core.exam.tables import shipped_as_markdown
+
+    shown = show_bags(arguments.bags, _show)
+    right = [one.right for one in shown]
+    return _tell_table(arguments, arguments.out / "bags", shipped_as_markdown(shown), right, "recordings are right")
+
+
+def _tell_table(arguments: argparse.Namespace, folder: Path, table: str, right: Sequence[bool], what: str) -> int:
+    """Write and print a table, and compare the share of what is right with --require."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "table.md").write_text(table, encoding="utf-8")
-    print(table)
-    print(f"table and sealed predictions: {folder}/")
-    share = sum(question.met for question in questions) / len(questions)
+    print(f"{table}\ntable: {folder}/table.md")
+    return _compared(arguments, sum(right) / len(right), what)
+
+
+def _compared(arguments: argparse.Namespace, share: float, what: str) -> int:
     if arguments.require is not None and share < arguments.require:
-        print(f"eha exam: {share:.3f} of the questions are met, below --require {arguments.require}", file=sys.stderr)
+        print(f"eha exam: {share:.3f} of the {what}, below --require {arguments.require}", file=sys.stderr)
         return BELOW_REQUIRED
     return 0
 

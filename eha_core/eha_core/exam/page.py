@@ -7,9 +7,8 @@ from html import escape
 from importlib.resources import files
 
 from eha_core.exam.scoring import OUTCOMES, Mark, Proportion
-from eha_core.exam.shipped import Shown
 from eha_core.exam.summary import Row, Summary, Target
-from eha_core.exam.tables import HEAD, SHOWN, shown_rows
+from eha_core.exam.tables import HEAD
 from eha_core.exam.tiers import MEANINGS
 
 RIGHT, WRONG, PALE = (29, 122, 140), (196, 85, 59), (233, 238, 241)
@@ -35,7 +34,6 @@ def as_html(
     marks: Mapping[str, Sequence[Mark]],
     about: Mapping[str, object],
     reports: Mapping[str, str],
-    shown: Sequence[Shown] = (),
 ) -> str:
     """The page.
 
@@ -44,7 +42,6 @@ def as_html(
         marks: the mark of each case, by tool.
         about: what was run, as named values.
         reports: pages that show a case's diagnosis by the own tool, by the case's name.
-        shown: recordings that the exam did not make.
     """
     style = (files("eha_core.exam") / "page.css").read_text(encoding="utf-8")
     items = "".join(f"<li>{escape(name)}: {escape(str(value))}</li>" for name, value in about.items())
@@ -57,9 +54,6 @@ def as_html(
     ]
     for place, summary in enumerate(summaries):
         parts += _tool(summary, marks.get(summary.tool, ()), reports if place == 0 else {})
-    if shown:
-        parts.append("<h2>Recordings that the exam did not make</h2>")
-        parts.append(_table(SHOWN, map(_cells, shown_rows(shown))))
     tiers = (_cells((tier, meaning)) for tier, meaning in MEANINGS.items())
     parts += ["<h2>Tiers</h2>", _table(("tier", "cases"), tiers), "</body></html>"]
     return "\n".join(parts)

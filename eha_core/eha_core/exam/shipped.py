@@ -30,16 +30,14 @@ BAGS: dict[str, tuple[str, frozenset[str]]] = {
 
 @dataclass(frozen=True)
 class Shown:
-    """What the diagnosis made of one recording. `source` is "measured" or "simulated"; `note` adds a figure."""
+    """What the diagnosis made of one recording, in so many CPU seconds."""
 
     recording: str
-    source: str
     expected: tuple[str, ...]
     verdict: str
     named: tuple[str, ...]
     right: bool
     seconds: float
-    note: str = ""
 
 
 def show_bags(folder: Path, progress: Progress) -> list[Shown]:
@@ -54,7 +52,7 @@ def show_bags(folder: Path, progress: Progress) -> list[Shown]:
         names = named(diagnosis)
         said = str(diagnosis.get("verdict", "none"))
         right = said == verdict and set(names) == effects
-        shown.append(Shown(path.name, "simulated", tuple(sorted(effects)), said, names, right, seconds))
+        shown.append(Shown(path.name, tuple(sorted(effects)), said, names, right, seconds))
         progress("shipped recordings", count, len(present))
     return shown
 

@@ -13,25 +13,19 @@ from eha_core.exam.summary import Summary
 from eha_core.exam.tiers import MEANINGS
 
 HEAD = ("cases", "right", "abstained", "wrong", "failed", "right site", "CPU s, median", "CPU s, longest")
-SHOWN = ("recording", "source", "concealed", "verdict", "named", "right", "s", "note")
+SHOWN = ("recording", "concealed", "verdict", "named", "right", "CPU s")
 
 
-def as_json(
-    summaries: Sequence[Summary],
-    marks: Mapping[str, Sequence[Mark]],
-    about: Mapping[str, object],
-    shown: Sequence[Shown] = (),
-) -> str:
+def as_json(summaries: Sequence[Summary], marks: Mapping[str, Sequence[Mark]], about: Mapping[str, object]) -> str:
     """Everything, by tool: rows, targets and the mark of each case."""
     tools = {
         summary.tool: {**asdict(summary), "marks": [asdict(mark) for mark in marks[summary.tool]]}
         for summary in summaries
     }
-    others = [asdict(result) for result in shown]
-    return json.dumps({"schema": SCHEMA, "about": dict(about), "tools": tools, "others": others}, indent=1)
+    return json.dumps({"schema": SCHEMA, "about": dict(about), "tools": tools}, indent=1)
 
 
-def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown: Sequence[Shown] = ()) -> str:
+def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object]) -> str:
     """The tables as Markdown: one of outcomes with all tools, then each tool's targets, and wrong or failed cases."""
     lines = ["# The exam's table", "", *(f"- {name}: {value}" for name, value in about.items()), ""]
     lines += _markdown_table(("group", "tool", *HEAD), outcome_rows(summaries))
@@ -46,28 +40,24 @@ def as_markdown(summaries: Sequence[Summary], about: Mapping[str, object], shown
         if summary.lost:
             lines += ["", f"## {summary.tool}: wrong or failed cases", ""]
             lines += _markdown_table(("case", "noise", "concealed", "verdict", "named"), _lost(summary))
-    if shown:
-        lines += ["", "## Recordings that the exam did not make", ""]
-        lines += _markdown_table(SHOWN, shown_rows(shown))
     lines += ["", "## Tiers", "", *(f"- `{tier}`: {meaning}" for tier, meaning in MEANINGS.items()), ""]
     return "\n".join(lines)
 
 
-def shown_rows(shown: Sequence[Shown]) -> list[list[str]]:
-    """A row for each recording that the exam did not make, under SHOWN."""
-    return [
+def shipped_as_markdown(shown: Sequence[Shown]) -> str:
+    """A row for each of the project's own recordings."""
+    rows = [
         [
             result.recording,
-            result.source,
             " + ".join(result.expected) or "nothing",
             result.verdict,
             " + ".join(result.named) or "-",
             "yes" if result.right else "no",
             f"{result.seconds:.1f}",
-            result.note,
         ]
         for result in shown
     ]
+    return "\n".join([*_markdown_table(SHOWN, rows), ""])
 
 
 def outcome_rows(summaries: Sequence[Summary]) -> list[list[str]]:
