@@ -64,3 +64,22 @@ def test_a_jump_that_nothing_smooth_follows_is_left_as_measured() -> None:
     channel = measured(truth)
     beside = (TIME > 2.0 - 2.5e-3) & (TIME < 2.0 + 1.5e-3)  # where five samples lie on both sides
     assert np.array_equal(follow(channel)[beside], channel.values[beside])
+
+
+@pytest.mark.parametrize("lost", [0.05, 0.5])
+def test_no_cubic_goes_through_samples_on_both_sides_of_a_gap(lost: float) -> None:
+    """A piston at 0.1 m/s, of whose position a part is lost: at the gap's sides the speed is what it is everywhere."""
+    kept = (TIME < 1.0) | (TIME > 1.0 + lost)
+    noise = 1e-5
+    values = 0.1 * TIME[kept] + noise * np.random.default_rng(5).standard_normal(np.sum(kept))
+    channel = Measured("position", 0, TIME[kept], values, noise)
+    beside = np.abs(channel.time - 1.0 - 0.5 * lost) < 0.5 * lost + 0.01
+    assert smooth(channel, 1)[beside] == pytest.approx(0.1, abs=0.03)
+    assert follow(channel)[beside] == pytest.approx(0.1 * channel.time[beside], abs=5.0 * noise)
+
+
+def test_a_piece_between_gaps_may_be_a_single_sample() -> None:
+    kept = (np.abs(TIME - 1.0) > 0.2) | (TIME == 1.0)
+    channel = Measured("position", 0, TIME[kept], 0.1 * TIME[kept], 1e-6)
+    alone = channel.time == 1.0
+    assert follow(channel)[alone] == 0.1 and smooth(channel, 1)[alone] == 0.0

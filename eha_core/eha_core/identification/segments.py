@@ -15,6 +15,10 @@ from eha_core.identification.shooting import SETTLING, STATE_SIZE, Sampling, Sho
 SPAN = 0.02
 """s; window of the smoothing cubics."""
 
+GAP = 2.5
+"""Sampling periods between samples, more than which are a gap if they are a quarter of SPAN, too: single samples that
+are lost hardly bend a cubic (assumed)."""
+
 BENT = 4.0
 """Standard deviations by which a cubic through more samples may differ from one through fewer before the channel counts
 as bending. Noise alone does so once in 16,000 samples."""
@@ -168,7 +172,19 @@ def _initial_states(observation: Observation, times: Array, values: Mapping[str,
 def smooth(channel: Measured, derivative: int, span: float = SPAN) -> Array:
     """A local cubic through the samples within `span` seconds, or its derivative, at each sample."""
     length, spacing = _length(channel, span)
-    return np.asarray(savgol_filter(channel.values, length, 3, deriv=derivative, delta=spacing))
+    return _through(channel, length, derivative, spacing)
+
+
+def _through(channel: Measured, length: int, derivative: int = 0, spacing: float = 1.0) -> Array:
+    """A local cubic through so many samples, or its derivative, at each sample; never through samples on both sides of
+    a gap, for samples are taken to be evenly spaced."""
+    filtered = np.empty(len(channel.values))
+    gaps = np.diff(channel.time)
+    breaks = np.flatnonzero(gaps > max(GAP * float(np.median(gaps)), 0.25 * SPAN)) + 1
+    for piece in np.split(np.arange(len(filtered)), breaks):
+        size = min(length, len(piece) - 1 + len(piece) % 2)
+        filtered[piece] = savgol_filter(channel.values[piece], size, min(3, size - 1), deriv=derivative, delta=spacing)
+    return filtered
 
 
 def _length(channel: Measured, span: float) -> tuple[int, float]:
@@ -189,7 +205,7 @@ def follow(channel: Measured) -> Array:
     closer, agrees = [(channel.values, 1.0)], np.ones(len(channel.values), dtype=bool)
     followed = channel.values
     for length in sorted({length for length in (longest // 4 | 1, longest // 2 | 1, longest) if length >= 5}):
-        cubic = np.asarray(savgol_filter(channel.values, length, 3))
+        cubic = _through(channel, length)
         # the middle sample's weight is the share of the noise's variance that a least-squares fit retains there; an
         # estimate from fewer of the same samples differs from it by the difference of their variances
         share = float(savgol_coeffs(length, 3)[length // 2])
