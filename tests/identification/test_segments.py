@@ -69,7 +69,7 @@ def test_a_jump_that_nothing_smooth_follows_is_left_as_measured() -> None:
 @pytest.mark.parametrize("lost", [0.05, 0.5])
 def test_no_cubic_goes_through_samples_on_both_sides_of_a_gap(lost: float) -> None:
     """A piston at 0.1 m/s, of whose position a part is lost: at the gap's sides the speed is what it is everywhere."""
-    kept = (TIME < 1.0) | (TIME > 1.0 + lost)
+    kept = np.abs(TIME - 1.0 - 0.5 * lost) > 0.5 * lost
     noise = 1e-5
     values = 0.1 * TIME[kept] + noise * np.random.default_rng(5).standard_normal(np.sum(kept))
     channel = Measured("position", 0, TIME[kept], values, noise)
