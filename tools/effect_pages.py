@@ -8,12 +8,12 @@ from io import BytesIO
 
 import numpy as np
 
-from eha_core.effects import SITES, Effect, effects
+from eha_core.effects import SITES, Effect, effect_title, effects
 from eha_core.identification.numbers import Array
 from eha_core.plant import Plant, Trajectory
 from eha_core.report.figures import drawn
 from eha_core.report.picture import Dots, Group, Line, Panel, Picture
-from eha_core.report.wording import capital, effect_title
+from eha_core.report.wording import capital
 from eha_core.signals import make_signal
 
 SECONDS, STEP, EVERY = 4.0, 1e-4, 20

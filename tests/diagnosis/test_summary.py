@@ -47,7 +47,7 @@ def test_the_kind_is_claimed_and_not_the_law():
     said = summary(decision(("coulomb_friction",), ("stribeck_friction",)), (friction,), None, Explained(1.0, {}, True))
     assert said.startswith("Physics is missing: dry friction; most simply, the seals rub: 1.9 kN.")
     assert "Its law cannot be identified from this recording: " in said
-    assert "coulomb_friction and stribeck_friction explain it equally well" in said
+    assert "Coulomb friction and Stribeck friction explain it equally well" in said
 
 
 def test_a_name_that_is_less_than_sure_has_its_probability():

@@ -38,7 +38,7 @@ def test_the_report_s_folder_has_it_while_there_is_one(
 
 def test_the_page_names_the_causes_in_words_and_its_commands_fit_their_lines(ambiguous: Diagnosis) -> None:
     assert ambiguous.next_experiment is not None
-    statement = "coulomb_friction or stribeck_friction: a sine should tell them apart"
+    statement = "Coulomb friction or Stribeck friction: a sine should tell them apart"
     experiment = replace(ambiguous.next_experiment, statement=statement)
     shown = stage(replace(ambiguous, next_experiment=experiment))
     assert shown.sentences[0] == "Coulomb friction or Stribeck friction: a sine should tell them apart."

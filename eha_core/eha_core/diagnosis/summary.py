@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from eha_core.diagnosis.criteria import CERTAINTY, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.result import CommonScale, Explained, NamedEffect, UnknownLaw
 from eha_core.diagnosis.verdict import Decision
+from eha_core.effects import effect_title
 from eha_core.effects import effects as every_effect
 from eha_core.quantities import quantity
 
@@ -63,16 +66,20 @@ def _found_in_words(decision: Decision, effects: tuple[NamedEffect, ...], unknow
     kind = common_kind(decision)
     if decision.verdict == "ambiguous" and kind:
         forms = " and ".join(
-            " + ".join(ids) for ids in (decision.winner.ids, *(entry.ids for entry, _ in decision.rivals))
+            _titles(ids) for ids in (decision.winner.ids, *(entry.ids for entry, _ in decision.rivals))
         )
         return (
             f"Physics is missing: {kind}; most simply, {named}. Its law cannot be identified from this recording:"
             f" {forms} explain it equally well."
         )
     if decision.verdict == "ambiguous":
-        others = ", ".join(" + ".join(entry.ids) for entry, _ in decision.rivals)
+        others = ", ".join(_titles(entry.ids) for entry, _ in decision.rivals)
         return f"Physics is missing, most likely: {named}. In this recording it cannot be distinguished from {others}."
     return f"Physics is missing: {named}."
+
+
+def _titles(ids: Iterable[str]) -> str:
+    return " + ".join(map(effect_title, ids))
 
 
 def _listed(effects: tuple[NamedEffect, ...]) -> str:

@@ -14,7 +14,9 @@ from pkgutil import iter_modules
 from eha_core.effects.declaration import Effect
 from eha_core.effects.sites import SITES
 
-__all__ = ["SITES", "Effect", "effect", "effects"]
+__all__ = ["SITES", "Effect", "effect", "effect_title", "effects"]
+
+_PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck"}
 
 
 @cache
@@ -32,3 +34,8 @@ def effects() -> tuple[Effect, ...]:
 def effect(identifier: str) -> Effect:
     """The effect of that id; KeyError where the catalogue has none."""
     return {entry.id: entry for entry in effects()}[identifier]
+
+
+def effect_title(identifier: str) -> str:
+    """An effect's id as words, with people's names in capitals."""
+    return " ".join(_PROPER.get(word, word) for word in identifier.split("_"))

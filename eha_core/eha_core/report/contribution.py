@@ -9,12 +9,12 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.result import AUGMENTED, NOMINAL, RECALIBRATED, Diagnosis, Residual
-from eha_core.effects import SITES
+from eha_core.effects import SITES, effect_title
 from eha_core.quantities import short
 from eha_core.report.finding import missing
 from eha_core.report.picture import Bars, Group, Panel, Picture, Upright
 from eha_core.report.stage import Table
-from eha_core.report.wording import capital, channel_title, effect_title
+from eha_core.report.wording import capital, channel_title
 
 TITLES = {NOMINAL: "nominal model", RECALIBRATED: "recalibrated, nothing added"}
 ROLES = {NOMINAL: "before", RECALIBRATED: "calibrated"}

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eha_core.diagnosis.criteria import LEFT_IN_A_CHANNEL
+from eha_core.effects import effect_title
 from eha_core.quantities import quantity, within
-from eha_core.report.wording import effect_title, words
+from eha_core.report.wording import words
 from eha_core.twin.explanation import Cause, Explanation, Size
 
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import TIE
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.effects import effects
+from eha_core.effects import effect_title, effects
 from eha_core.quantities import RAISED
 from eha_core.report.finding import counted
 from eha_core.report.picture import Bars, Group, Panel, Picture, Upright
-from eha_core.report.wording import effect_title, listed
+from eha_core.report.wording import listed
 
 SHOWN = 12
 

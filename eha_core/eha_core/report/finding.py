@@ -7,21 +7,12 @@ from dataclasses import dataclass
 from importlib import import_module
 
 from eha_core.diagnosis.result import Diagnosis, FittedParameter, FittedValue, NamedEffect
-from eha_core.effects import SITES, effects
+from eha_core.effects import SITES, effect_title, effects
 from eha_core.quantities import bounds, quantity, within
 from eha_core.report.health import fault_lines
 from eha_core.report.stage import SURE
 from eha_core.report.undetected import not_missing
-from eha_core.report.wording import (
-    VERDICT_TITLES,
-    channel_title,
-    effect_title,
-    listed,
-    plain,
-    sentence,
-    span,
-    words,
-)
+from eha_core.report.wording import VERDICT_TITLES, channel_title, listed, plain, sentence, span, words
 
 NEARLY_ALL = 0.9999
 """A larger share is stated as "more than" this one, because its last digits are noise."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from eha_core.diagnosis.result import Diagnosis, NamedEffect
+from eha_core.effects import effect_title
 from eha_core.investigation.ending import sets_of
 from eha_core.report.finding import fitted_in_words, identified_parameters
-from eha_core.report.wording import effect_title, probable, words
+from eha_core.report.wording import probable, words
 
 
 def probability_of(found: Diagnosis, ids: tuple[str, ...]) -> float | None:

@@ -9,11 +9,12 @@ import numpy as np
 
 from eha_core.diagnosis.criteria import TIE
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.effects import effect_title
 from eha_core.quantities import quantity, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged, representative_channel, residual_headline, residual_in_words
 from eha_core.report.evidence import behind_in_words, named, rung
-from eha_core.report.wording import channel_title, effect_title, listed
+from eha_core.report.wording import channel_title, listed
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from eha_core.diagnosis.result import Detectable, Diagnosis, Noticeable
+from eha_core.effects import effect_title
 from eha_core.quantities import quantity
 from eha_core.report.detectability import doubts
 from eha_core.report.stage import Table, adds_physics
-from eha_core.report.wording import channel_title, effect_title, words
+from eha_core.report.wording import channel_title, words
 
 MENTIONED = ("internal_leakage", "external_leakage", "coulomb_friction", "constant_load")
 """The effects in the line: the leaks, friction and loads that matter first on a bench; the table has all."""

@@ -56,14 +56,6 @@ LAW_AXES = {
 """A recovered law's quantity, its unit, and the unit of its variable."""
 
 
-_PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck"}
-
-
-def effect_title(name: str) -> str:
-    """An effect's id as words, with people's names in capitals."""
-    return " ".join(_PROPER.get(word, word) for word in name.split("_"))
-
-
 def capital(text: str) -> str:
     """Text with a capital first letter, the rest as it is."""
     return text[:1].upper() + text[1:]

@@ -12,6 +12,7 @@ from eha_core.diagnosis.experiment.command_signal import CommandSignal
 from eha_core.diagnosis.experiment.discrimination import STEP, separation
 from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.diagnosis.result import Experiment
+from eha_core.effects import effect_title
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 
@@ -94,7 +95,7 @@ def propose(
     beside = ", with the chambers' pressures recorded too," if record else ""
     verb = "should tell" if best.separation > TELLING else "may tell" if best.separation > CHANCE else "hardly tells"
     statement = (
-        f"{' or '.join(' and '.join(ids) for ids in names)}: a {best.trial.signal} of voltage ({best.trial.settings()})"
+        f"{_titles(names)}: a {best.trial.signal} of voltage ({best.trial.settings()})"
         f" for {best.duration:g} s{beside} {verb} them apart"
         f" (expected: {np.sqrt(best.separation):.0f} deviations of noise)"
     )
@@ -105,11 +106,15 @@ def propose(
 def not_proposed(names: Sequence[tuple[str, ...]], driving: Sequence[str], source: str) -> Experiment:
     """The result where no voltage drives the rig: why no test is proposed, and what may distinguish the rivals."""
     statement = (
-        f"{' or '.join(' and '.join(ids) for ids in names)}: no signal is proposed, as {' and '.join(driving)} of"
+        f"{_titles(names)}: no signal is proposed, as {' and '.join(driving)} of"
         f" {source} come from the rig and not from the reference generator; record slower and faster reversals than"
         " these, and diagnose both recordings together"
     )
     return Experiment(statement, tuple(dict.fromkeys(name for ids in names for name in ids)), {})
+
+
+def _titles(rivals: Sequence[tuple[str, ...]]) -> str:
+    return " or ".join(" and ".join(map(effect_title, ids)) for ids in rivals)
 
 
 def _best_discrimination(

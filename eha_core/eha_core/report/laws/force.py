@@ -8,11 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from eha_core.diagnosis.result import NamedEffect
+from eha_core.effects import effect_title
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import NOTHING, Axis, Law, band, span_of
 from eha_core.report.laws.models import Models, contribution, in_order, values_of
 from eha_core.report.stage import SURE
-from eha_core.report.wording import capital, effect_title
+from eha_core.report.wording import capital
 from eha_core.weak_form.grid import Grid
 
 STEP = 1e-4  # s

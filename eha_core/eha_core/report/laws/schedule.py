@@ -7,10 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from eha_core.diagnosis.result import NamedEffect
+from eha_core.effects import effect_title
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import CURVE, Axis, Law, band
 from eha_core.report.laws.models import Models, contribution, in_order, values_of
-from eha_core.report.wording import capital, effect_title
+from eha_core.report.wording import capital
 
 NAMES = ("internal_leakage", "damping_coefficient")
 UPS = (Axis("Leakage coefficient", "m^3/(s Pa)"), Axis("Damping coefficient", "N s/m"))

@@ -7,11 +7,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from eha_core.diagnosis.result import NamedEffect
+from eha_core.effects import effect_title
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import Axis, Law, band, span_of
 from eha_core.report.laws.models import Models, contribution, in_order, values_of
 from eha_core.report.series import spread
-from eha_core.report.wording import capital, channel_title, effect_title
+from eha_core.report.wording import capital, channel_title
 
 SENSED = ("position", "velocity", "pressure_a", "pressure_b")
 UNITS = {"position": "m", "velocity": "m/s", "pressure_a": "Pa", "pressure_b": "Pa"}

@@ -7,10 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from eha_core.diagnosis.result import NamedEffect
+from eha_core.effects import effect_title
 from eha_core.identification.numbers import Array
 from eha_core.report.laws.law import CURVE, Axis, Law, band
 from eha_core.report.laws.models import Models, contribution, in_order, values_of
-from eha_core.report.wording import capital, effect_title
+from eha_core.report.wording import capital
 
 SETTLED = 1e4
 """s; a step so long that the slowest supply (a time constant of 100 s) has settled in it."""

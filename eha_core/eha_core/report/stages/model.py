@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis, NamedEffect, UnknownLaw
-from eha_core.effects import SITES
+from eha_core.effects import SITES, effect_title
 from eha_core.quantities import interval, scale_for, with_deviation
 from eha_core.report.claims import judged
 from eha_core.report.contribution import contribution, step_table
@@ -23,7 +23,6 @@ from eha_core.report.wording import (
     VARIABLE_UNITS,
     capital,
     channel_title,
-    effect_title,
     listed,
     probable,
     sentence,

@@ -7,13 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from eha_core.diagnosis.result import Diagnosis
+from eha_core.effects import effect_title
 from eha_core.identification.numbers import Array
 from eha_core.quantities import scale_for
 from eha_core.report.experiment_file import FILE, channels_to_record, commands
 from eha_core.report.picture import Group, Line, Panel, Picture
 from eha_core.report.series import thinned
 from eha_core.report.stage import Stage
-from eha_core.report.wording import channel_title, effect_title, listed, sentence
+from eha_core.report.wording import channel_title, listed, sentence
 from eha_core.signals import make_signal, of_reference
 
 
@@ -28,16 +29,13 @@ def stage(diagnosis: Diagnosis) -> Stage:
     reference = experiment.reference
     if not reference:
         return Stage("next", "Next experiment", "No test is proposed", (sentence(experiment.statement),))
-    statement = experiment.statement
-    for effect in experiment.separates:
-        statement = statement.replace(effect, effect_title(effect))
     recorded = listed([channel_title(name) for name in channels_to_record(diagnosis, experiment)])
     return Stage(
         "next",
         "Next experiment",
         f"One more test would distinguish {' from '.join(effect_title(effect) for effect in experiment.separates[:2])}",
         (
-            sentence(statement),
+            sentence(experiment.statement),
             f"It lasts {experiment.duration:g} s; record {recorded}.",
             f"{FILE} beside this page is the test for the reference node. Then diagnose both recordings together:",
         ),
