@@ -46,6 +46,7 @@ def test_the_outcome_differs_by_what_is_predicted():
     apart = (two - one).reshape(-1, 1000) / NOISE["position"]  # as a fit, which starts again every second
     apart -= apart.mean(axis=1, keepdims=True)
     assert np.sqrt(np.sum(apart**2)) == pytest.approx(deviations(experiment), rel=0.01)
+    assert experiment.statement.startswith("constant load or flow gain asymmetry: a ")
     assert "should tell them apart" in experiment.statement
     amplitude, unit = re.search(r"amplitude ([0-9.]+) (\w+)", experiment.statement).groups()
     stated = float(amplitude) * {"V": 1.0, "mV": 1e-3}[unit]
