@@ -38,16 +38,17 @@ def recorded(
     amplitude: float = 0.12,
     channels: tuple[str, ...] = ("voltage_command", "position", "pressure_a", "pressure_b"),
     sine: float = 0.0,
+    voltage: np.ndarray | None = None,
 ) -> Recording:
-    """A multisine test of the plant with these parameters, or a sine of this frequency [1/s]; noise 1 is 10 um and
-    0.01 MPa."""
+    """A multisine test of the plant with these parameters, a sine of this frequency [1/s], or a voltage [V] of one
+    value a sample; noise 1 is 10 um and 0.01 MPa."""
     generator = np.random.default_rng(seed)
     every = round(1.0 / rate / STEP)
     samples = int(duration * rate)
     many = {"amplitude": amplitude, "lowest": 0.3, "highest": 8.0, "count": 16, "period": 20.0, "seed": seed}
     one = {"amplitude": amplitude, "frequency": sine}
     signal = make_signal("sine", one) if sine else make_signal("multisine", many)
-    voltage = np.asarray(signal.value(np.arange(samples) / rate))
+    voltage = np.asarray(signal.value(np.arange(samples) / rate)) if voltage is None else voltage
     rows = Plant(parameters, STEP).run(np.repeat(voltage, every), every)
     clean = {
         "voltage_command": (np.arange(samples) / rate, voltage, 0.0, "V"),

@@ -42,8 +42,8 @@ FEWEST = 100
 """Fewest samples from which a channel's usual noise and motion are known."""
 
 
-def examine(recording: Recording) -> Health:
-    """Find the faults that each channel shows by itself."""
+def examine(recording: Recording, doubted: bool = False) -> Health:
+    """Find the faults that each channel shows by itself; where the command is doubted, also where it may be clipped."""
     faults: list[Fault] = []
     lost, values = {}, {}
     for name, channel in recording.channels.items():
@@ -54,7 +54,7 @@ def examine(recording: Recording) -> Health:
             continue
         signal, gone = Signal.of(channel), np.zeros(len(channel.time), dtype=np.bool_)
         for check in CHECKS:
-            found = check(signal)
+            found = saturated.find(signal, doubted) if check is saturated.find else check(signal)
             if found is None or not found.faults:
                 continue
             faults += found.faults

@@ -20,28 +20,29 @@ MORE = 3.0
 """Smallest ratio of their number to that of the next value that occurs."""
 
 
-def find(signal: Signal) -> Found | None:
-    """The intervals at the end of the range."""
+def find(signal: Signal, doubted: bool = False) -> Found | None:
+    """The intervals at the end of the range; of a command that is doubted those, too, that a sound one may have."""
     if not (signal.is_noisy or signal.is_command):
         return None
     here = np.zeros(len(signal.values), dtype=np.bool_)
     faults = []
     for end in (np.min(signal.values), np.max(signal.values)):
         at = signal.values == end
-        if not _is_cut_off(signal, at, end):
+        if not _is_cut_off(signal, at, end, doubted):
             continue
         for first, last in joined(signal, at):
             here[first : last + 1] = True
             faults.append(
                 Fault(
                     signal.name, "saturated", float(signal.time[first]), float(signal.time[last]),
-                    f"at the end of its range, {end:.4g} {signal.channel.unit}", "give the sensor a wider range",
+                    f"at the end of its range, {end:.4g} {signal.channel.unit}",
+                    "log all of it" if signal.is_command else "give the sensor a wider range",
                 )
             )  # fmt: skip
     return Found(faults, signal.lost(here)) if faults else None
 
 
-def _is_cut_off(signal: Signal, at: Flags, end: float) -> bool:
+def _is_cut_off(signal: Signal, at: Flags, end: float, doubted: bool) -> bool:
     if np.sum(at) < OFTEN:
         return False
     runs = covered(at)
@@ -52,14 +53,14 @@ def _is_cut_off(signal: Signal, at: Flags, end: float) -> bool:
     nearest = others[np.argmin(np.abs(others - end))]
     if np.sum(at) < MORE * np.sum(others == nearest):
         return False
-    return not signal.is_command or _is_clipped(signal, runs)
+    return not signal.is_command or _is_clipped(signal, runs, doubted)
 
 
-def _is_clipped(signal: Signal, runs: list[tuple[int, int]]) -> bool:
-    """Whether a command that always moves reaches its extreme and leaves it again at speed."""
+def _is_clipped(signal: Signal, runs: list[tuple[int, int]], doubted: bool) -> bool:
+    """Whether a command reaches its extreme and leaves it again at speed; unless doubted, it also always moves."""
     outside = np.abs(signal.steps)
     inside = sum(last - first for first, last in runs)
-    if np.sum(outside == 0.0) - inside > 0.05 * len(outside):
+    if not doubted and np.sum(outside == 0.0) - inside > 0.05 * len(outside):
         return False
     usual = float(np.median(outside[outside > 0.0]))
     edges = [outside[first - 1] for first, _ in runs if first > 0] + [

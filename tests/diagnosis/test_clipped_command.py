@@ -1,0 +1,50 @@
+"""A command with rests whose log ends at a value that it exceeded: only the plant shows it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made import recorded
+
+from eha_core.diagnosis import diagnose
+from eha_core.parameters import nominal_values
+
+RATE, DURATION = 500.0, 8.0
+
+
+def moves(shape) -> np.ndarray:
+    """Smooth or trapezoidal pulses of several heights [V], with rests between them."""
+    heights = (0.5, -0.5, 0.5, -0.3, 0.2, -0.4, 0.45, -0.45)
+    pulse, rest = shape(np.arange(120) / 120.0), np.zeros(50)
+    return np.resize(np.concatenate([part for height in heights for part in (height * pulse, rest)]), 4000)
+
+
+def smooth(way: np.ndarray) -> np.ndarray:
+    return 16.0 * way**2 * (1.0 - way) ** 2
+
+
+def trapezoid(way: np.ndarray) -> np.ndarray:
+    return np.minimum(1.0, 4.0 * np.minimum(way, 1.0 - way))
+
+
+def test_a_command_that_was_clipped_in_the_log_is_no_physics() -> None:
+    made = recorded({"moving_mass": 10.0}, rate=RATE, duration=DURATION, voltage=moves(smooth))
+    command = made.channels["voltage_command"]
+    clipped = replace(command, values=np.minimum(command.values, 0.35))
+    found = diagnose(replace(made, channels={**made.channels, "voltage_command": clipped}), nominal_values())
+    assert found.verdict in ("consistent", "parameters") and not found.effects
+    lost = np.zeros(len(command.time), dtype=bool)
+    for _, fault in found.health:
+        assert (fault.channel, fault.fault) == ("voltage_command", "saturated")
+        lost |= (command.time >= fault.start) & (command.time <= fault.end)
+    assert np.array_equal(lost, command.values >= 0.35)
+
+
+@pytest.mark.parametrize(("name", "value"), [("flow_gain_asymmetry.ratio", 0.01), ("valve_null_offset.offset", 2e-5)])
+def test_an_effect_is_not_taken_for_a_log_that_ends_at_the_flat_tops_of_a_command(name: str, value: float) -> None:
+    made = recorded({name: value}, rate=RATE, duration=DURATION, voltage=moves(trapezoid))
+    found = diagnose(made, nominal_values())
+    assert [effect.id for effect in found.effects] == [name.partition(".")[0]]
+    assert not found.health
