@@ -6,6 +6,7 @@ import pytest
 from made import LAWS, bench, explanation
 
 from eha_core.diagnosis import criteria
+from eha_core.diagnosis.calibrate import is_at_noise
 from eha_core.diagnosis.criteria import UNLIKELY
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.finish import (
@@ -21,7 +22,7 @@ from eha_core.diagnosis.search.finish import (
     required_of,
     rivals,
 )
-from eha_core.diagnosis.search.pool import Pool, Trace, is_at_noise
+from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.identification.free_parameters import free_nominal_parameters
 from eha_core.parameters import nominal_values
 

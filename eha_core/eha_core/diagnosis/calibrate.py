@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import ENOUGH, NEAR_NOISE, NOISE_KNOWN, NOTICEABLE, RELEVANT
+from eha_core.diagnosis.criteria import ENOUGH, NEAR_NOISE, NOTICEABLE, RELEVANT
 from eha_core.health.noise import residual_noise
 from eha_core.identification.colour import colour_of
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
@@ -34,11 +34,6 @@ AT_ALL = 50.0
 shut down one after the other there, and commands still recorded no longer act. Nor could a law of that window be tested
 on held-out data."""
 
-
-ELSEWHERE = 5e-4
-"""Share of the excess chi^2 a sample that the nominal equations may leave outside the spans in which a command may have
-been clipped, the noise's uncertainty included. Clipped development recordings left 2.5e-4 and less there; of twenty
-effects under trapezoidal commands the one that shows least outside their tops, air in the oil, left 1.6e-3."""
 
 BEHIND_A_FILTER = 16.0
 """Largest ratio of the noise before a low-pass filter to the noise in the channel's differences: that of a first-order
@@ -139,20 +134,6 @@ def calibrate_without_faulty_ends(
     return rest, calibrate(rest, model, calibration.shooting.step_size)
 
 
-def leaves_noise(calibration: Calibration) -> bool:
-    """Whether the recalibrated nominal equations leave no more than noise."""
-    return calibration.fitted.data < NEAR_NOISE * calibration.fitted.count
-
-
-def fails_only_outside(part: Calibration, whole: Calibration) -> bool:
-    """Whether the nominal equations leave next to nothing but noise in a part of the recordings, and much in all.
-
-    Physics that acts where a command has its extreme acts just below it, too; a log's limit does not.
-    """
-    of_part, of_whole = (max(one.fitted.data / one.fitted.count - 1.0, 0.0) for one in (part, whole))
-    return leaves_noise(part) and of_part + NOISE_KNOWN < ELSEWHERE * of_whole
-
-
 def _without_faulty_end(observation: Observation, calibration: Calibration, number: int) -> Observation:
     """A recording without its last window, if the model's excess chi^2 is concentrated there."""
     shooting = recording_alone(calibration.shooting, number)
@@ -184,6 +165,11 @@ def filtered_channels(observations: Sequence[Observation]) -> frozenset[str]:
         for fault in observation.health
         if fault.fault == "low_passed"
     )
+
+
+def is_at_noise(result: Fit) -> bool:
+    """Whether a fit leaves no more than noise."""
+    return result.data < NEAR_NOISE * result.count
 
 
 def corrected_noise(shooting: Shooting, result: Fit, filtered: Collection[str] = ()) -> list[float]:

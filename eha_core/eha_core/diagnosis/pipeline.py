@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from threadpoolctl import threadpool_limits
 
 from eha_core.diagnosis.attribution import attribute
-from eha_core.diagnosis.calibrate import Calibration, calibrate_without_faulty_ends, fails_only_outside, leaves_noise
+from eha_core.diagnosis.calibrate import Calibration, calibrate_without_faulty_ends
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
+from eha_core.diagnosis.clipped_command import without_clipped_command
 from eha_core.diagnosis.conclude import conclude
 from eha_core.diagnosis.evidence import Evidence, recording_with_largest_residual
 from eha_core.diagnosis.experiment.limits import Limits
@@ -58,14 +59,7 @@ def _calibrated(
         seen[number], model = with_sufficient_stroke(observation, model)
     progress("calibrating the nominal equations")
     observations, calibration = calibrate_without_faulty_ends(seen, model)
-    if not leaves_noise(calibration):
-        doubted = [observe(recording, model.composition, doubted=True) for recording in recordings]
-        if any(one.undriven != other.undriven for one, other in zip(doubted, seen, strict=True)):
-            progress("calibrating without what may be clipped of the command")
-            rest, of_rest = calibrate_without_faulty_ends(doubted, model)
-            if fails_only_outside(of_rest, calibration):
-                return model, rest, of_rest
-    return model, observations, calibration
+    return model, *(without_clipped_command(recordings, seen, calibration, model) or (observations, calibration))
 
 
 def _equations(

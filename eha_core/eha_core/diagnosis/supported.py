@@ -63,14 +63,11 @@ def _unidentified(result: Fit, members: tuple[Member, ...]) -> list[Member]:
 
 def chance(evidence: Evidence, result: Fit, effect: Effect) -> float:
     """The gain in chi^2 that chance exceeds in one recording of twenty; larger where the residual is correlated."""
-    problem = evidence.calibration.problem
-    names = [name for name in effect.parameter_names() if any(name == parameter.name for parameter in result.free)]
-    white, wide = at_its_end(problem, result), with_residual(problem, result)
-    wider = max(
-        (wide.deviation(name) / white.deviation(name) for name in names if white.deviation(name) > 0.0), default=1.0
-    )
-    ordinary = max(1.0, result.data / max(result.count, 1)) * max(1.0, wider) ** 2
-    return float(chi2.ppf(CERTAINTY, max(1, len(names)))) * ordinary
+    _, wider = at_its_end(evidence.calibration.problem, result)
+    names = set(effect.parameter_names())
+    own = [width for parameter, width in zip(result.free, wider, strict=True) if parameter.name in names]
+    ordinary = max(1.0, result.data / max(result.count, 1)) * max(own, default=1.0) ** 2
+    return float(chi2.ppf(CERTAINTY, max(1, len(own)))) * ordinary
 
 
 def one_sided(evidence: Evidence, final: Fit, winner: Entry) -> Mapping[str, Ends]:

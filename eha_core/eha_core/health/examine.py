@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -36,14 +36,17 @@ CHECKS: tuple[Callable[[Signal], Found | None], ...] = (
 )  # fmt: skip
 """The more specific checks come first: a fill value is not a jump, and the end of a range is not a frozen sensor."""
 
+DOUBTING = tuple(saturated.find_in_doubt if check is saturated.find else check for check in CHECKS)
+"""The same where a command is taken to be clipped wherever it may be."""
+
 UNCHECKED = ("velocity",)
 """Channels that no fit uses."""
 FEWEST = 100
 """Fewest samples from which a channel's usual noise and motion are known."""
 
 
-def examine(recording: Recording, doubted: bool = False) -> Health:
-    """Find the faults that each channel shows by itself; where the command is doubted, also where it may be clipped."""
+def examine(recording: Recording, checks: Sequence[Callable[[Signal], Found | None]] = CHECKS) -> Health:
+    """Find the faults that each channel shows by itself."""
     faults: list[Fault] = []
     lost, values = {}, {}
     for name, channel in recording.channels.items():
@@ -53,8 +56,8 @@ def examine(recording: Recording, doubted: bool = False) -> Health:
         if len(channel.time) < FEWEST or not np.ptp(channel.values) > 0.0:
             continue
         signal, gone = Signal.of(channel), np.zeros(len(channel.time), dtype=np.bool_)
-        for check in CHECKS:
-            found = saturated.find(signal, doubted) if check is saturated.find else check(signal)
+        for check in checks:
+            found = check(signal)
             if found is None or not found.faults:
                 continue
             faults += found.faults

@@ -25,12 +25,21 @@ BLOCK = 0.1
 
 def with_residual(problem: Problem, result: Fit) -> Fit:
     """The fit with its parameters' standard deviations at its end, widened where the residual is not white."""
-    count = len(result.free)
-    if not count:
+    if not result.free:
         return result
+    white, wider = at_its_end(problem, result)
+    every = np.concatenate([wider, np.ones(len(white.covariance) - len(wider))])
+    return replace(white, covariance=white.covariance * np.outer(every, wider))
+
+
+def at_its_end(problem: Problem, result: Fit) -> tuple[Fit, Array]:
+    """The fit with the covariance from the curvature at its end, for its own is that of the iteration before; and how
+    many times as wide each parameter's standard deviation is because the residual is not white (parameters,)."""
+    count = len(result.free)
     linear = linearise(problem, result.values, result.free, result.q, result.states)
-    result = _with_curvature(problem, result, linear)
-    design = _pulls(problem, result, linear)
+    normal, _ = normal_equations(problem, result.free, result.q, result.states, linear)
+    white = replace(result, covariance=normal.covariance())
+    design = _pulls(problem, white, linear)
     pulls = design * linear.residual[:, None]
     blocks = (problem.flat_times() / BLOCK).astype(np.int64)
     used, place = np.unique(blocks, return_inverse=True)
@@ -38,20 +47,8 @@ def with_residual(problem: Problem, result: Fit) -> Fit:
     np.add.at(summed, place, pulls)
     observed = np.sqrt(np.sum(summed**2, axis=0) * len(used) / max(len(used) - 1, 1))
     observed = np.maximum(observed, np.sqrt(_by_colour(problem, design, linear.residual)))
-    expected = np.sqrt(np.maximum(np.diag(result.covariance)[:count], 1e-300))
-    wider = np.ones(len(result.covariance))
-    wider[:count] = np.maximum(1.0, observed / expected)
-    return replace(result, covariance=result.covariance * np.outer(wider, wider[:count]))
-
-
-def at_its_end(problem: Problem, result: Fit) -> Fit:
-    """The fit with the covariance from the curvature at its end; its own is that of the iteration before."""
-    return _with_curvature(problem, result, linearise(problem, result.values, result.free, result.q, result.states))
-
-
-def _with_curvature(problem: Problem, result: Fit, linear: Linearised) -> Fit:
-    normal, _ = normal_equations(problem, result.free, result.q, result.states, linear)
-    return replace(result, covariance=normal.covariance())
+    expected = np.sqrt(np.maximum(np.diag(white.covariance)[:count], 1e-300))
+    return white, np.maximum(1.0, observed / expected)
 
 
 def _pulls(problem: Problem, result: Fit, linear: Linearised) -> Array:

@@ -94,9 +94,9 @@ class Observation:
         return next((channel for channel in self.measured if channel.name == name), None)
 
 
-def observe(recording: Recording, composition: Composition = PAPER, doubted: bool = False) -> Observation:
-    """Choose the simulation's inputs and the channels that it is compared with; estimate noise; exclude faults, and of
-    a command that is doubted what may be clipped.
+def observe(recording: Recording, composition: Composition = PAPER, health: Health | None = None) -> Observation:
+    """Choose the simulation's inputs and the channels that it is compared with; estimate noise; exclude faults: those
+    of its `health`, by default as `examine` finds it.
 
     A source that no voltage drives declares its own inputs.
 
@@ -106,7 +106,7 @@ def observe(recording: Recording, composition: Composition = PAPER, doubted: boo
     where = str(recording.path)
     _require_position(recording)
     drive, driving, not_examined = _choose_drive(where, channels, composition.source)
-    health = examine(recording, doubted)
+    health = health or examine(recording)
     inputs = tuple(health.sound(channels[name]) for name in driving)
     undriven = _undriven(health, driving, recording.duration)
     remarks: list[str] = list(recording.remarks)

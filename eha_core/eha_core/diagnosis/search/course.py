@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.calibrate import Calibration, at_step, filtered_channels, step_needed
+from eha_core.diagnosis.calibrate import Calibration, at_step, filtered_channels, is_at_noise, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, FURTHER, OF_FRICTION, UNFITTED
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
@@ -17,7 +17,7 @@ from eha_core.diagnosis.search.comparison import Entry, ModelComparison, rank, r
 from eha_core.diagnosis.search.equations import Friction, friction_columns, friction_of
 from eha_core.diagnosis.search.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.search.finish import converge, finish, refit_nominal, rivals
-from eha_core.diagnosis.search.pool import Pool, Progress, Trace, in_noise_of, is_at_noise
+from eha_core.diagnosis.search.pool import Pool, Progress, Trace, in_noise_of
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, with_noise

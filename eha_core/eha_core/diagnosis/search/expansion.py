@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from eha_core.diagnosis.calibrate import is_at_noise
 from eha_core.diagnosis.criteria import (
     ADDED,
     AT_FIRST,
@@ -27,7 +28,7 @@ from eha_core.diagnosis.criteria import (
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.search.best_sets import Proposal, best_sets
 from eha_core.diagnosis.search.columns import Column
-from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
+from eha_core.diagnosis.search.pool import Pool, Progress
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array

@@ -7,6 +7,7 @@ from statistics import fmean
 
 import numpy as np
 
+from eha_core.diagnosis.calibrate import is_at_noise
 from eha_core.diagnosis.criteria import (
     AT_FIRST,
     CHANCE,
@@ -30,7 +31,7 @@ from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.comparison import Entry, rank
 from eha_core.diagnosis.search.instants import TO_THE_STEP, shift_instants
 from eha_core.diagnosis.search.intervals import in_span
-from eha_core.diagnosis.search.pool import Pool, Progress, is_at_noise
+from eha_core.diagnosis.search.pool import Pool, Progress
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
 from eha_core.identification.fit import Ending, Fit, exact, fit
 from eha_core.identification.numbers import Array

@@ -9,12 +9,11 @@ from math import inf
 
 import numpy as np
 
-from eha_core.diagnosis.calibrate import corrected_noise
+from eha_core.diagnosis.calibrate import corrected_noise, is_at_noise
 from eha_core.diagnosis.criteria import (
     BLOCK,
     EXPANSIONS_IN_ALL,
     FAR_FROM_NOISE,
-    NEAR_NOISE,
     TO_THE_END,
     WHITE,
     chance_gain,
@@ -241,11 +240,6 @@ def excess_of_block_means(problem: Problem, result: Fit, filtered: Collection[st
         excess += float(means @ means) * BLOCK / max(1.0, float(np.mean(left**2))) - len(means)
         count += len(means)
     return excess / np.sqrt(2.0 * count) if count else 0.0
-
-
-def is_at_noise(result: Fit) -> bool:
-    """Whether a fit leaves no more than noise."""
-    return result.data < NEAR_NOISE * result.count
 
 
 def without_bounds(

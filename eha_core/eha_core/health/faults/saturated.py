@@ -20,15 +20,24 @@ MORE = 3.0
 """Smallest ratio of their number to that of the next value that occurs."""
 
 
-def find(signal: Signal, doubted: bool = False) -> Found | None:
-    """The intervals at the end of the range; of a command that is doubted those, too, that a sound one may have."""
+def find(signal: Signal) -> Found | None:
+    """The intervals at the end of the range."""
+    return _find(signal, in_doubt=False)
+
+
+def find_in_doubt(signal: Signal) -> Found | None:
+    """The intervals at the end of the range, and those of a command that rests and may have been clipped there."""
+    return _find(signal, in_doubt=True)
+
+
+def _find(signal: Signal, in_doubt: bool) -> Found | None:
     if not (signal.is_noisy or signal.is_command):
         return None
     here = np.zeros(len(signal.values), dtype=np.bool_)
     faults = []
     for end in (np.min(signal.values), np.max(signal.values)):
         at = signal.values == end
-        if not _is_cut_off(signal, at, end, doubted):
+        if not _is_cut_off(signal, at, end, in_doubt):
             continue
         for first, last in joined(signal, at):
             here[first : last + 1] = True
@@ -42,7 +51,7 @@ def find(signal: Signal, doubted: bool = False) -> Found | None:
     return Found(faults, signal.lost(here)) if faults else None
 
 
-def _is_cut_off(signal: Signal, at: Flags, end: float, doubted: bool) -> bool:
+def _is_cut_off(signal: Signal, at: Flags, end: float, in_doubt: bool) -> bool:
     if np.sum(at) < OFTEN:
         return False
     runs = covered(at)
@@ -53,14 +62,15 @@ def _is_cut_off(signal: Signal, at: Flags, end: float, doubted: bool) -> bool:
     nearest = others[np.argmin(np.abs(others - end))]
     if np.sum(at) < MORE * np.sum(others == nearest):
         return False
-    return not signal.is_command or _is_clipped(signal, runs, doubted)
+    return not signal.is_command or _is_clipped(signal, runs, in_doubt)
 
 
-def _is_clipped(signal: Signal, runs: list[tuple[int, int]], doubted: bool) -> bool:
-    """Whether a command reaches its extreme and leaves it again at speed; unless doubted, it also always moves."""
+def _is_clipped(signal: Signal, runs: list[tuple[int, int]], in_doubt: bool) -> bool:
+    """Whether a command reaches its extreme and leaves it again at speed. One that rests at times may do so by itself:
+    it was clipped only if it is in doubt."""
     outside = np.abs(signal.steps)
     inside = sum(last - first for first, last in runs)
-    if not doubted and np.sum(outside == 0.0) - inside > 0.05 * len(outside):
+    if not in_doubt and np.sum(outside == 0.0) - inside > 0.05 * len(outside):
         return False
     usual = float(np.median(outside[outside > 0.0]))
     edges = [outside[first - 1] for first, _ in runs if first > 0] + [
