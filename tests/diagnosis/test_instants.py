@@ -13,7 +13,7 @@ def test_an_instant_that_derivatives_do_not_reach_is_found_by_trying_others():
     stuck = rig.fitted(begun)
     assert stuck.data > 1.5 * stuck.count
     onset = rig.set_of("leakage_onset")
-    shift_instants(rig.pool, onset, 12)
+    shift_instants(rig.pool, onset)
     found = rig.pool.found[onset]
     assert found.data < 1.1 * found.count
     for name, value in planted.items():
@@ -28,7 +28,7 @@ def test_other_instants_are_compared_once_all_else_has_adapted_to_them(late):
     stuck = rig.fitted({**planted, "leakage_onset.time": 4.0 + late}, 25)
     assert abs(stuck.values["leakage_onset.time"] - 4.0) > 0.2
     onset = rig.set_of("leakage_onset")
-    shift_instants(rig.pool, onset, 12)
+    shift_instants(rig.pool, onset)
     found = rig.pool.found[onset]
     assert found.objective < stuck.objective - 500.0
     assert found.values["leakage_onset.time"] == pytest.approx(4.0, abs=0.02)

@@ -29,7 +29,7 @@ from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
 from eha_core.diagnosis.search.best_sets import Proposal, best_sets, objective_without, one_more
 from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.comparison import Entry, rank
-from eha_core.diagnosis.search.instants import TO_THE_STEP, shift_instants
+from eha_core.diagnosis.search.instants import shift_instants
 from eha_core.diagnosis.search.intervals import in_span
 from eha_core.diagnosis.search.pool import Pool, Progress
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
@@ -57,7 +57,7 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
     and what each that stays gains over what is required."""
     converge(pool, hypothesis)
     from_nominal_values(pool, hypothesis)
-    shift_instants(pool, hypothesis, CONVERGED, TO_THE_STEP)
+    shift_instants(pool, hypothesis)
     at, gains = pool.found[hypothesis], dict[Member, float]()
     while len(gains) < len(hypothesis.members):
         if not gains:
@@ -111,7 +111,7 @@ def _without(pool: Pool, hypothesis: Hypothesis, member: Member, at: Fit, needed
     if simpler.objective - at.objective > needed:
         pool.go_on("without a member", rest, CONVERGED, 2, give_up_above=at.objective + needed)
     if pool.found[rest].objective - at.objective > needed:
-        shift_instants(pool, rest, CONVERGED)  # what acts together with the member may begin elsewhere without it
+        shift_instants(pool, rest)  # what acts together with the member may begin elsewhere without it
     return pool.found[rest]
 
 
@@ -193,7 +193,7 @@ def rivals(
     ranked = _ranked(pool, compared)
     for entry in ranked:
         if entry.hypothesis != best and entry.score > ranked[0].score - CONTENDING:
-            shift_instants(pool, entry.hypothesis, CONVERGED, TO_THE_STEP)  # as the best set was
+            shift_instants(pool, entry.hypothesis)  # as the best set was
     return _ranked(pool, compared)[0].hypothesis, compared, model
 
 

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 
+from eha_core.diagnosis.criteria import CONVERGED
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.pool import REACH, Pool
@@ -18,16 +19,16 @@ FINER = 0.2
 """Share of how far an instant was tried within which it is tried once more: the places were an eleventh of that
 apart (assumed)."""
 
-COARSE, TO_THE_STEP = 2, 4
-"""How often instants are tried: while a search goes on, to 18 ms, and at its end to 0.7 ms. Where
-friction begins to act between two samples the objective has a valley at each break-away."""
+TO_THE_STEP = 4
+"""How often instants are tried, the last time 0.7 ms apart. Where friction begins to act between two samples the
+objective has a valley at each break-away."""
 
 
-def shift_instants(pool: Pool, hypothesis: Hypothesis, iterations: int, times: int = COARSE) -> None:
+def shift_instants(pool: Pool, hypothesis: Hypothesis) -> None:
     """Fit a set on from other instants where one of those leaves less once all else has adapted to it."""
     at, about = pool.found[hypothesis], None
     instants = [parameter.name for parameter in at.free if parameter.resolution]
-    for reach, name in product([REACH * FINER**k for k in range(times)], instants):
+    for reach, name in product([REACH * FINER**k for k in range(TO_THE_STEP)], instants):
         if about is None or at is not pool.found[hypothesis]:
             at = pool.found[hypothesis]
             about = derivatives(pool.posed(hypothesis), at, pool.plant)
@@ -38,7 +39,7 @@ def shift_instants(pool: Pool, hypothesis: Hypothesis, iterations: int, times: i
         left = [model.empty - model.gain(place)[0] for place in places]
         if left and min(left) < at.objective:
             values, states = model.start(places[int(np.argmin(left))])
-            pool.try_set("other instants", hypothesis, values, states, iterations, give_up_above=at.objective)
+            pool.try_set("other instants", hypothesis, values, states, CONVERGED, give_up_above=at.objective)
 
 
 def _names_of(member: Member) -> tuple[str, ...]:
