@@ -9,7 +9,14 @@ import pytest
 from made import recorded
 
 from eha_core.diagnosis import diagnose
+from eha_core.diagnosis.calibrate import calibrate_without_faulty_ends, is_at_noise
+from eha_core.diagnosis.clipped_command import without_clipped_command
+from eha_core.errors import RecordingError
+from eha_core.health import DOUBTING, examine
+from eha_core.identification.observation import observe
+from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
+from eha_core.recording import Recording
 
 RATE, DURATION = 500.0, 8.0
 
@@ -48,3 +55,29 @@ def test_an_effect_is_not_taken_for_a_log_that_ends_at_the_flat_tops_of_a_comman
     found = diagnose(made, nominal_values())
     assert [effect.id for effect in found.effects] == [name.partition(".")[0]]
     assert not found.health
+
+
+def left_out(made: Recording) -> bool:
+    """Whether a command's extremes are left out, where the nominal equations do not explain the whole."""
+    model = NominalModel(nominal_values())
+    seen, calibration = calibrate_without_faulty_ends([observe(made)], model)
+    assert not is_at_noise(calibration.fitted)
+    return without_clipped_command([made], seen, calibration, model) is not None
+
+
+def test_a_square_wave_that_leaps_to_its_extremes_was_not_clipped_there() -> None:
+    """Of one half of it alone, other gains of the valve would explain what a valve of unequal gains does."""
+    voltage = 0.03 * np.sign(np.sin(2.0 * np.pi * (np.arange(2000) / RATE + 1e-4)))
+    made = recorded({"flow_gain_asymmetry.ratio": 0.05}, rate=RATE, duration=4.0, voltage=voltage)
+    assert not examine(made, DOUBTING).faults
+    assert not left_out(made)
+
+
+def test_a_command_that_is_nearly_always_at_its_extreme_leaves_nothing_to_judge_by() -> None:
+    ramp = np.linspace(0.0, 0.05, 20)
+    pulse = np.concatenate([ramp, np.full(250, 0.05), ramp[::-1], np.zeros(10)])
+    voltage = np.resize(np.concatenate([pulse, -pulse]), 1500)
+    made = recorded({"valve_deadband.half_width": 1e-4}, rate=RATE, duration=3.0, voltage=voltage)
+    with pytest.raises(RecordingError, match="almost nothing of position can be used"):
+        observe(made, health=examine(made, DOUBTING))
+    assert not left_out(made)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from eha_core.diagnosis.calibrate import Calibration, calibrate_without_faulty_ends, is_at_noise
 from eha_core.diagnosis.criteria import ELSEWHERE, NOISE_KNOWN
+from eha_core.errors import RecordingError
 from eha_core.health import DOUBTING, examine
 from eha_core.identification.observation import Observation, observe
 from eha_core.nominal import NominalModel
@@ -20,10 +21,13 @@ def without_clipped_command(
     the nominal equations explain the whole, where there is no such span, or where they fail outside, too."""
     if is_at_noise(calibration.fitted):
         return None
-    rest = [
-        replace(observe(recording, model.composition, examine(recording, DOUBTING)), remarks=observation.remarks)
-        for recording, observation in zip(recordings, observations, strict=True)
-    ]
+    try:
+        rest = [
+            replace(observe(recording, model.composition, examine(recording, DOUBTING)), remarks=observation.remarks)
+            for recording, observation in zip(recordings, observations, strict=True)
+        ]
+    except RecordingError:  # too little is left to judge by
+        return None
     if all(one.undriven == other.undriven for one, other in zip(rest, observations, strict=True)):
         return None
     outside, of_rest = calibrate_without_faulty_ends(rest, model)

@@ -67,13 +67,14 @@ def _is_cut_off(signal: Signal, at: Flags, end: float, in_doubt: bool) -> bool:
 
 def _is_clipped(signal: Signal, runs: list[tuple[int, int]], in_doubt: bool) -> bool:
     """Whether a command reaches its extreme and leaves it again at speed. One that rests at times may do so by itself:
-    it was clipped only if it is in doubt."""
-    outside = np.abs(signal.steps)
-    inside = sum(last - first for first, last in runs)
-    if not in_doubt and np.sum(outside == 0.0) - inside > 0.05 * len(outside):
+    it was clipped only if it is in doubt, and does not leap there, as a square wave does."""
+    moves = np.abs(signal.steps)
+    usual = float(np.median(moves[moves > 0.0]))
+    entered = [(first - 1, first - 2) for first, _ in runs if first > 1]
+    left = [(last, last + 1) for _, last in runs if last + 1 < len(moves)]
+    if not entered + left:
         return False
-    usual = float(np.median(outside[outside > 0.0]))
-    edges = [outside[first - 1] for first, _ in runs if first > 0] + [
-        outside[last] for _, last in runs if last < len(outside)
-    ]
-    return bool(np.median(edges) > 0.1 * usual)
+    inside = sum(last - first for first, last in runs)
+    if np.sum(moves == 0.0) - inside <= 0.05 * len(moves):
+        return bool(np.median([moves[edge] for edge, _ in entered + left]) > 0.1 * usual)
+    return in_doubt and bool(np.median([np.min(moves[list(edge)]) for edge in entered + left]) > 0.1 * usual)
