@@ -112,19 +112,22 @@ def quantisation(values: Array) -> float:
 
 
 def find_outliers(values: Array, noise: float, limit: float = 8.0, width: int = 51) -> Flags:
-    """Flags of single samples that differ from both neighbours by `limit` times the noise and the roughness nearby.
+    """Flags of single samples, and of two in a row, that differ from those around them by `limit` times the noise and
+    the roughness nearby.
 
-    At a step of the signal the neighbours differ from each other, and where it rings, other samples are as rough. That
-    is judged without the outliers themselves: two that are close together are not ringing.
+    At a step of the signal the samples on either side differ from each other, and where it rings, other samples are as
+    rough. That is judged without the outliers themselves: two that are close together are not ringing.
     """
-    before, after = _neighbours(values)
-    surprise = np.abs(values - 0.5 * (before + after))
-    usual = median_filter(surprise, size=width, mode="nearest")
-    found = (surprise > limit * noise) & (surprise > limit * usual) & (np.abs(after - before) < 0.25 * surprise)
+    usual = median_filter(_from_neighbours(values), size=width, mode="nearest")
+    found, surprise = np.zeros(len(values), dtype=np.bool_), np.zeros(len(values))
+    for count in (1, 2):
+        off, step = _off(_without(found, values), count)
+        far = (off > limit * np.maximum(noise, usual[: len(off)])) & (step < 0.25 * off)
+        for place in np.flatnonzero(far):
+            run = slice(place, place + count)
+            found[run], surprise[run] = True, np.maximum(surprise[run], off[place])
     while found.any():
-        rest = values.copy()
-        rest[found] = np.interp(np.flatnonzero(found), np.flatnonzero(~found), values[~found])
-        rough = maximum_filter(np.abs(rest - 0.5 * np.add(*_neighbours(rest))), footprint=NEARBY, mode="constant")
+        rough = maximum_filter(_from_neighbours(_without(found, values)), footprint=NEARBY, mode="constant")
         alone = rough[found] < 0.3 * surprise[found]
         if alone.all():
             break
@@ -132,6 +135,22 @@ def find_outliers(values: Array, noise: float, limit: float = 8.0, width: int = 
     return np.asarray(found)
 
 
-def _neighbours(values: Array) -> tuple[Array, Array]:
-    """The sample before each and the one after it; at an end, the only neighbour for both."""
-    return np.concatenate([values[1:2], values[:-1]]), np.concatenate([values[1:], values[-2:-1]])
+def _without(outliers: Flags, values: Array) -> Array:
+    """The values with a line through the others in place of the outliers."""
+    places = np.arange(len(values))
+    return np.where(outliers, np.interp(places, places[~outliers], values[~outliers]), values)
+
+
+def _from_neighbours(values: Array) -> Array:
+    """How far each sample is from the mean of its neighbours."""
+    return _off(values, 1)[0]
+
+
+def _off(values: Array, count: int) -> tuple[Array, Array]:
+    """How far `count` samples in a row are at least from the line between the samples on either side, and how far these
+    differ; per first sample. At an end, the only sample beside them stands for both."""
+    padded = np.concatenate([values[count : count + 1], values, values[-count - 1 : -count]])
+    before, after = padded[: -count - 1], padded[count + 1 :]
+    line = [before + (after - before) * place / (count + 1) for place in range(1, count + 1)]
+    inside = [padded[place : len(padded) - count - 1 + place] for place in range(1, count + 1)]
+    return np.min(np.abs(np.subtract(inside, line)), axis=0), np.abs(after - before)

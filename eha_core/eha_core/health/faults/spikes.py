@@ -1,4 +1,4 @@
-"""Single outliers: a flipped bit, a spark on a cable.
+"""Outliers of one sample or two: a flipped bit, a spark on a cable.
 
 They are found by `find_outliers` with a limit that no normal noise exceeds. Where friction breaks away, a sound
 pressure may have a sample ten times the noise off; it is excluded from fits as well, but is not called a fault.
@@ -39,7 +39,7 @@ def find(signal: Signal) -> Found | None:
     if not here.any():
         return None
     when, count = signal.time[here], int(here.sum())
-    seen = "1 sample far off its neighbours" if count == 1 else f"{count} single samples far off their neighbours"
+    seen = "1 sample far off its neighbours" if count == 1 else f"{count} samples far off their neighbours"
     fault = Fault(signal.name, "spikes", float(when[0]), float(when[-1]), seen, "see what disturbs the cable", False)
     return Found([fault], signal.lost(here))
 
@@ -47,7 +47,8 @@ def find(signal: Signal) -> Found | None:
 def _is_undisturbed(signal: Signal, spikes: Flags, place: int) -> bool:
     """Whether a spike does not affect the samples on either side of it that are no spikes themselves."""
     about = slice(max(0, place - AFTERWARDS), place + AFTERWARDS + 1)
-    beside = signal.values[about][~spikes[about]]
-    size = abs(signal.values[place] - 0.5 * (signal.values[place - 1] + signal.values[place + 1]))
+    rest = ~spikes[about]
+    beside, offset = signal.values[about][rest], place - about.start
+    size = abs(signal.values[place] - np.interp(offset, np.flatnonzero(rest), beside))
     rough = np.abs(beside[1:-1] - 0.5 * (beside[:-2] + beside[2:]))
     return bool(np.max(rough) < max(RINGS * size, USUAL * signal.noise, LEVELS * signal.level))
