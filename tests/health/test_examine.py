@@ -97,6 +97,17 @@ def test_a_sound_command_has_no_fault(name: str) -> None:
     assert examine(recording).faults == ()
 
 
+@pytest.mark.parametrize("again", [4, 400])
+def test_a_command_that_freezes_and_soon_steps_again_is_frozen(again: int) -> None:
+    """A staircase with dither; after the frozen part it may step at once."""
+    steps = np.where((TIME * 500.0 - 2000 - again) % 800 < 400, 1.0, -1.0)
+    command = steps + 0.2 * np.sin(2.0 * np.pi * 4.03 * TIME)
+    command[1300:2001] = command[1300]
+    beside = SOUND["a rest"].channels["position"].values
+    faults = examine(eha.Recording.from_arrays(time=TIME, voltage_command=command, position=beside)).faults
+    assert [(fault.fault, fault.start, fault.end) for fault in faults] == [("frozen", TIME[1300], TIME[2000])]
+
+
 def test_a_command_that_is_sent_only_where_it_changes_has_no_hole() -> None:
     moments = np.cumsum(CHANCE.exponential(0.1, 100))
     sent = eha.Recording.from_arrays(time=moments, voltage_command=CHANCE.standard_normal(100))

@@ -3,7 +3,7 @@
 A noisy channel repeats a value with a known largest probability, so that a run of equal values is too long from a known
 length (FALSE_ALARMS); the samples before and after it must have the noise. In a channel without noise, or quantised
 more coarsely than its noise, equal values are a piston at rest; there a position is frozen only if it jumps at the end
-of the run, by more than it moves in any later sample. A command may rest and jump, unless it never does elsewhere.
+of the run, by more than in any sample soon after it. A command may rest and jump, unless it never does elsewhere.
 """
 
 from __future__ import annotations
@@ -55,8 +55,10 @@ def _is_alive_beside(signal: Signal, first: int, end: int) -> bool:
 
 
 def _leaps(signal: Signal, end: int) -> bool:
-    """Whether a position or command jumps at the end of the run, by more than in any later sample."""
+    """Whether it jumps at the end of the run: a position by more than in any sample soon after it, a command by more
+    than in most, as it may step again at once."""
     if not (signal.is_command or signal.channel.unit == "m") or end + LONG > len(signal.values):
         return False
     leap, after = abs(signal.steps[end - 1]), np.abs(signal.steps[end : end + LONG])
-    return bool(leap > max(6.0 * float(np.max(after)), 5.0 * signal.step, 8.0 * signal.noise, signal.jump))
+    soon = float(np.median(after) if signal.is_command else np.max(after))
+    return bool(leap > max(6.0 * soon, 5.0 * signal.step, 8.0 * signal.noise, signal.jump))
