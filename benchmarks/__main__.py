@@ -14,8 +14,9 @@ from benchmarks.row import as_markdown
 from eha_core.errors import EhaError
 
 BENCHMARKS = ("plant_step", "lockstep", "integrators", "windows", "reading", "diagnosis", "layer", "node")
-ON_REQUEST = ("hour", "nodes")
-"""Those that take many minutes, or a core that nothing else uses: they are measured where they are named."""
+ON_REQUEST = ("hour", "nodes", "structure")
+"""Those that take many minutes, a core that nothing else uses, or a peer that `make env` does not install: they are
+measured where they are named."""
 
 
 def parser() -> argparse.ArgumentParser:

@@ -130,3 +130,29 @@ def test_failure_of_the_layers_benchmarks_is_told_in_one_line(
     assert main(["layer"]) != 0
     measuring, message = capsys.readouterr().err.splitlines()
     assert message.startswith("benchmarks: layer: ")
+
+
+def test_the_structural_model_has_a_place_for_every_effect() -> None:
+    from benchmarks.structure import EQUATIONS, PRESSURES, _equations
+    from eha_core.effects import effects
+
+    known = {*EQUATIONS, "position_sensor", *(f"{name}_sensor" for name in PRESSURES)}
+    for effect in effects():
+        for row in effect.parameters:
+            where = _equations(effect.id, row.name)
+            assert where and set(where) <= known, (effect.id, row.name)
+    assert _equations("external_leakage", "coefficient_a") == ("chamber_a",)
+    assert _equations("pressure_sensor_bias", "bias_b") == ("pressure_b_sensor",)
+
+
+def test_structure_isolates_a_load_from_a_leak_if_the_pressures_are_recorded() -> None:
+    peer = pytest.importorskip("faultdiagnosistoolbox")
+    from benchmarks.structure import PRESSURES, _by_structure
+
+    load, leak = ("constant_load", "force"), ("external_leakage", "coefficient_a")
+    friction = ("coulomb_friction", "force")
+    sizes = {load, leak, friction}
+    apart = _by_structure(peer, ("position", *PRESSURES), sizes)
+    assert (load, leak[0]) in apart and (leak, load[0]) in apart
+    assert (load, friction[0]) not in apart
+    assert not _by_structure(peer, ("position",), sizes)
