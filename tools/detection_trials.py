@@ -1,0 +1,156 @@
+"""How often effects are found, beside what `eha detect` predicts: on drawn rigs, tests, effects and sizes.
+
+    python -m tools.detection_trials --rigs 1000 --seed S --out FILE [--first K] [--jobs 2]
+
+Each rig and its test are drawn as the exam draws them. One effect is drawn, in one of the shapes that the search tries,
+and the probability with which it is to be found: its size follows from the linearisation. As in a certificate the
+prediction is lower if fitted nominal equations leave less of the response than that. Then noise is drawn, the equations
+are fitted with and without the effect, and the gain is compared with that required. Fits begin near the truth: what the
+search does not find is not seen here. A line of FILE is one rig, and rigs that are there already are not drawn again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from eha_core.detectability import PlannedTest
+from eha_core.detectability.planned import linearised
+from eha_core.detectability.refit import left_by_nominal
+from eha_core.diagnosis.criteria import TO_THE_END
+from eha_core.diagnosis.detection.power import energy_needed, probability_of
+from eha_core.diagnosis.detection.responses import FittedModel
+from eha_core.diagnosis.detection.sizes import Trial, smallest, trials
+from eha_core.diagnosis.effect_parameters import with_effects
+from eha_core.diagnosis.hypothesis import neutral
+from eha_core.exam.drawing import draw_case
+from eha_core.exam.excitation import draw_reference, feedforward
+from eha_core.exam.plants import Rig
+from eha_core.identification.fit import exact, fit
+from eha_core.identification.numbers import Array
+from eha_core.identification.problem import Problem
+from eha_core.nominal import nominal_of
+from eha_core.workers import Workers
+
+PROBABILITIES = (0.02, 0.98)
+"""Between which the probability is drawn with which the linearisation predicts that an effect is found."""
+DECILES = 10
+
+
+def try_rig(number: int, seed: int) -> dict[str, Any]:
+    """One rig: the effect, the probability predicted and whether it was found; `why` where nothing can be compared."""
+    generator = np.random.default_rng([seed, number])
+    at = _rig_and_test(number, seed)
+    tried = trials(at)
+    names = sorted({trial.column.effect.id for trial in tried})
+    name = str(generator.choice(names))
+    of_it = [trial for trial in tried if trial.column.effect.id == name]
+    trial = of_it[int(generator.integers(len(of_it)))]
+    wanted = float(generator.uniform(*PROBABILITIES))
+    row: dict[str, Any] = {"number": number, "effect": name, "wanted": wanted}
+    energy = at.variance * energy_needed(trial.gain / at.variance, trial.parameters, wanted)
+    factor = float(smallest(at, [replace(trial, energy=energy)])[0])
+    if not (isfinite(factor) and factor > 0.0):
+        return row | {"why": "not found at any size"}
+    left = min(left_by_nominal(at, trial.at(factor), thorough=True), energy)
+    found = _is_found(at, trial, factor, generator)
+    return row | {"predicted": probability_of(left, trial.gain, trial.parameters), "found": found}
+
+
+def _rig_and_test(number: int, seed: int) -> FittedModel:
+    """A rig and its test as the exam draws them, the command by the unloaded rig's inverse."""
+    case = draw_case("null", number, seed)
+    rig = Rig(case.family, case.plant)
+    time = np.arange(round(case.duration * case.rate) + 1) / case.rate
+    reference = draw_reference(
+        case.shape, rig, time, case.amplitude, case.speed, np.random.default_rng([case.seed, 1])
+    )
+    voltages = feedforward(rig, reference, case.rate)
+    test = PlannedTest(time, voltages, case.duration, noise=case.noise, rate=case.rate)
+    return linearised(nominal_of(dict(case.nominal)), test)
+
+
+def _is_found(at: FittedModel, trial: Trial, factor: float, generator: np.random.Generator) -> bool:
+    """Whether the effect gains what is required of it, under drawn noise."""
+    column = trial.at(factor).beside(at.fit.values)
+    values = {**at.fit.values, **column.values}
+    shooting = at.pool.problem.shooting
+    clean = shooting.sample(shooting.simulate(values, at.fit.states)[0])
+    noisy = [
+        response + one.noise * generator.standard_normal(len(response))
+        for one, response in zip(shooting.samplings, clean, strict=True)
+    ]
+    problem = exact(_measuring(at.pool.problem, noisy))
+    free = with_effects(at.pool.plant, [column.effect], values)
+    without = {**values, **neutral(column.effect)}
+    present = fit(problem, values, free, at.fit.states, iterations=TO_THE_END, in_a_row=2)
+    absent = min(
+        (
+            fit(problem, {**begin, **neutral(column.effect)}, at.pool.plant, states, iterations=TO_THE_END, in_a_row=2)
+            for begin, states in ((without, at.fit.states), (present.values, present.states))
+        ),
+        key=lambda result: result.objective,
+    )
+    return bool(absent.objective - present.objective > trial.gain)
+
+
+def _measuring(problem: Problem, measured: Sequence[Array]) -> Problem:
+    """The problem with other samples measured."""
+    pairs = zip(problem.shooting.samplings, measured, strict=True)
+    samplings = tuple(replace(sampling, values=values) for sampling, values in pairs)
+    return replace(problem, shooting=replace(problem.shooting, samplings=samplings))
+
+
+def by_decile(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """The table of predicted and observed shares, in bins of the predicted probability with as many rigs in each."""
+    compared = sorted((row for row in rows if "found" in row), key=lambda row: float(row["predicted"]))
+    yield f"| predicted | rigs | predicted, mean | found | standard error |\n{'|---' * 5}|"
+    for some in np.array_split(np.arange(len(compared)), DECILES):
+        if not len(some):
+            continue
+        predicted = np.array([compared[k]["predicted"] for k in some])
+        found = np.array([compared[k]["found"] for k in some])
+        error = float(np.sqrt(np.sum(predicted * (1.0 - predicted)))) / len(some)
+        yield (
+            f"| {predicted[0]:.2f} to {predicted[-1]:.2f} | {len(some)} | {predicted.mean():.3f} | {found.mean():.3f} |"
+            f" {error:.3f} |"
+        )
+    yield f"\n{len(compared)} rigs compared, {len(rows) - len(compared)} with an effect not found at any size"
+
+
+def _try_alone(number: int, seed: int) -> dict[str, Any]:
+    with threadpool_limits(1):
+        return try_rig(number, seed)
+
+
+def main() -> None:
+    """Try the rigs that FILE lacks, and print the table of all in it."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rigs", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--jobs", type=int, default=1)
+    given = parser.parse_args()
+    rows = [json.loads(line) for line in given.out.read_text().splitlines()] if given.out.is_file() else []
+    known = {row["number"] for row in rows}
+    calls = [(number, given.seed) for number in range(given.first, given.rigs) if number not in known]
+    with given.out.open("a", encoding="utf-8") as file:
+        for row in Workers(given.jobs, None).run(_try_alone, calls):
+            rows.append(row)
+            file.write(json.dumps(row) + "\n")
+            file.flush()
+    for line in by_decile(rows):
+        print(line)
+
+
+if __name__ == "__main__":
+    main()
