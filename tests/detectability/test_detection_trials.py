@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from tools import detection_trials  # noqa: E402
+from tools import detection_trials
 
 
 @pytest.mark.parametrize(("probabilities", "found"), [((0.9999, 0.99999), True), ((1e-5, 1e-4), False)])
