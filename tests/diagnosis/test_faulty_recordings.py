@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.errors import RecordingError
+from eha_core.exam.drawing import draw_case
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
@@ -19,7 +21,13 @@ from eha_core.plausibility import admit
 from eha_core.recording import Recording, read_recording
 from eha_core.report.document import document
 
-BAGS = Path(__file__).resolve().parents[2] / "bags"
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+from tools.hostile.diagnosed import make_rig  # noqa: E402
+from tools.hostile.faulty_recordings import FAULTS, faulty  # noqa: E402
+from tools.hostile.wrong_recordings import as_recording  # noqa: E402
+
+BAGS = ROOT / "bags"
 EVERY = ("voltage_command", "position", "pressure_a", "pressure_b")
 
 
@@ -153,3 +161,17 @@ def test_what_tells_nothing_is_refused_with_what_to_do(name: str, sound: Recordi
 def test_a_test_that_was_cut_to_pieces_is_refused(sound: Recording) -> None:
     with pytest.raises(RecordingError, match="almost nothing of position can be used"):
         observe(without(sound, EVERY[:1], lambda time: (time % 0.2 < 0.1) & (time > 0.3)))
+
+
+def test_beside_a_digital_filter_no_other_signal_is_named_late() -> None:
+    """A digital filter of first order delays by half a sample less than a lag of its time constant."""
+    rig = make_rig(draw_case("null_parameters", 135, 60411))
+    made, _ = faulty(next(kind for kind in FAULTS if kind.name == "position low-passed at 25 Hz"), rig.arrays, 60411135)
+    found = diagnose(admit(as_recording(made), rig.nominal), rig.nominal)
+    assert [fault.fault for _, fault in found.health] == ["low_passed"]
+    assert [effect.id for effect in found.effects] == ["position_sensor_lag"]
+    kept = np.exp(-2.0 * np.pi * 25.0 / 1000.0)
+    assert found.effects[0].parameters["time_constant"].value == pytest.approx(1e-3 * kept / (1.0 - kept), rel=0.01)
+    assert found.explained.complete
+    assert found.undetected is not None
+    assert not {row.effect for row in found.undetected.effects} & {"command_delay", "pressure_sensor_lag"}

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from eha_core.diagnosis.calibrate import filtered_channels
 from eha_core.diagnosis.criteria import COHERENT, IDENTIFIED, LEFT_IN_A_CHANNEL
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.locate import whereabouts
@@ -28,7 +29,9 @@ def explained(evidence: Evidence, final: Fit, held_out: Mapping[str, ChannelFit]
     fitted = {name: root_mean_square(residual) for name, residual in zip(names, final.residuals, strict=True)}
     # a wrong local minimum can reach the noise on training data, but not on held-out data
     left = {name: max(size, held_out[name].rmse_after / held_out[name].noise) for name, size in fitted.items()}
-    white = all(coherence(residual) < COHERENT for residual in final.residuals)
+    filtered = filtered_channels(evidence.observations)  # whose noise is not white by itself
+    pairs = zip(names, final.residuals, strict=True)
+    white = all(coherence(residual) < COHERENT for name, residual in pairs if name not in filtered)
     identified = all(is_identified(effect, final) for effect in evidence.decision.winner.effects if effect.named)
     noise = max(left.values()) < LEFT_IN_A_CHANNEL and white
     before = evidence.comparison.nominal.fit

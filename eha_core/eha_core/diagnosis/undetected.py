@@ -10,7 +10,9 @@ from eha_core.diagnosis.detection.sizes import smallest, trials
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import Explained, FittedParameter, Undetected
+from eha_core.diagnosis.search.finish import only_delays
 from eha_core.diagnosis.search.pool import Pool, Trace
+from eha_core.effects import effects
 
 
 def undetected(evidence: Evidence, left: Explained, parameters: tuple[FittedParameter, ...]) -> Undetected | None:
@@ -19,7 +21,10 @@ def undetected(evidence: Evidence, left: Explained, parameters: tuple[FittedPara
     if not (left.complete or left.vague):
         return None
     at = fitted_model(evidence)
-    tried = trials(at, [name for entry, _ in evidence.decision.rivals for name in entry.ids])
+    untold = [name for entry, _ in evidence.decision.rivals for name in entry.ids]
+    if at.pool.filtered:
+        untold += [effect.id for effect in effects() if only_delays(effect)]
+    tried = trials(at, untold)
     rows = effect_rows(at, *middle_shapes(tried, smallest(at, tried).tolist()))
     changed = {parameter.name for parameter in parameters if parameter.changed}
     return Undetected(CERTAINTY, rows, tuple(row for row in parameter_rows(at) if row.name not in changed))
