@@ -9,8 +9,8 @@ from threadpoolctl import threadpool_limits
 from eha_core.diagnosis.attribution import attribute
 from eha_core.diagnosis.calibrate import Calibration, calibrate_without_faulty_ends
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
-from eha_core.diagnosis.clipped_command import without_clipped_command
 from eha_core.diagnosis.conclude import conclude
+from eha_core.diagnosis.doubtful_command import without_doubtful_command
 from eha_core.diagnosis.evidence import Evidence, recording_with_largest_residual
 from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.diagnosis.result import Diagnosis
@@ -59,7 +59,7 @@ def _calibrated(
         seen[number], model = with_sufficient_stroke(observation, model)
     progress("calibrating the nominal equations")
     observations, calibration = calibrate_without_faulty_ends(seen, model)
-    return model, *(without_clipped_command(recordings, seen, calibration, model) or (observations, calibration))
+    return model, *(without_doubtful_command(recordings, seen, calibration, model) or (observations, calibration))
 
 
 def _equations(

@@ -36,8 +36,9 @@ CHECKS: tuple[Callable[[Signal], Found | None], ...] = (
 )  # fmt: skip
 """The more specific checks come first: a fill value is not a jump, and the end of a range is not a frozen sensor."""
 
-DOUBTING = tuple(saturated.find_in_doubt if check is saturated.find else check for check in CHECKS)
-"""The same where a command is taken to be clipped wherever it may be."""
+IN_DOUBT = {saturated.find: saturated.find_in_doubt, frozen.find: frozen.find_in_doubt}
+DOUBTING = tuple(IN_DOUBT.get(check, check) for check in CHECKS)
+"""The same where a command is taken to be clipped or frozen wherever it may be."""
 
 UNCHECKED = ("velocity",)
 """Channels that no fit uses."""

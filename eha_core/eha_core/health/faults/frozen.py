@@ -3,7 +3,8 @@
 A noisy channel repeats a value with a known largest probability, so that a run of equal values is too long from a known
 length (FALSE_ALARMS); the samples before and after it must have the noise. In a channel without noise, or quantised
 more coarsely than its noise, equal values are a piston at rest; there a position is frozen only if it jumps at the end
-of the run, by more than in any sample soon after it. A command may rest and jump, unless it never does elsewhere.
+of the run, by more than in any sample soon after it. A command may rest and jump, unless it never rests elsewhere; if
+it never jumps elsewhere, it is in doubt.
 """
 
 from __future__ import annotations
@@ -22,14 +23,28 @@ LONG = 10
 """Length of a run of equal samples in a channel whose noise is not visible."""
 OF_STEPS = 0.05
 """Share of zero changes up to which a command counts as always moving."""
+ALONE = 6.0
+"""Smallest ratio of a leap to what comes near it, in the samples soon after it or, in doubt, in the whole channel."""
 
 
 def find(signal: Signal) -> Found | None:
     """The runs of equal samples that are too long."""
+    return None if _rests(signal) else _find(signal)
+
+
+def find_in_doubt(signal: Signal) -> Found | None:
+    """The runs of equal samples that are too long, and that rest of a command which ends by its only leap."""
+    return _find(signal)
+
+
+def _rests(signal: Signal) -> bool:
+    """Whether it is a command that often rests, apart from the longest run of equal samples."""
+    resting = np.mean(signal.steps == 0.0) - np.max(signal.runs[1]) / len(signal.steps)
+    return bool(signal.is_command and resting > OF_STEPS)
+
+
+def _find(signal: Signal) -> Found | None:
     starts, lengths = signal.runs
-    steps = signal.steps
-    if signal.is_command and np.mean(steps == 0.0) - np.max(lengths) / len(steps) > OF_STEPS:
-        return None
     here = np.zeros(len(signal.values), dtype=np.bool_)
     faults = []
     least = signal.longest_repeat if signal.is_noisy else LONG
@@ -60,5 +75,7 @@ def _leaps(signal: Signal, end: int) -> bool:
     if not (signal.is_command or signal.channel.unit == "m") or end + LONG > len(signal.values):
         return False
     leap, after = abs(signal.steps[end - 1]), np.abs(signal.steps[end : end + LONG])
+    if _rests(signal):
+        return bool(leap > ALONE * np.max(np.abs(np.delete(signal.steps, end - 1))))
     soon = float(np.median(after) if signal.is_command else np.max(after))
-    return bool(leap > max(6.0 * soon, 5.0 * signal.step, 8.0 * signal.noise, signal.jump))
+    return bool(leap > max(ALONE * soon, 5.0 * signal.step, 8.0 * signal.noise, signal.jump))

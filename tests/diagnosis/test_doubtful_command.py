@@ -1,4 +1,4 @@
-"""A command with rests whose log ends at a value that it exceeded: only the plant shows it."""
+"""A command with rests whose log ends at a value that it exceeded, or froze in a rest: only the plant shows it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from made import recorded
 
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.calibrate import calibrate_without_faulty_ends, is_at_noise
-from eha_core.diagnosis.clipped_command import without_clipped_command
+from eha_core.diagnosis.doubtful_command import without_doubtful_command
 from eha_core.errors import RecordingError
 from eha_core.health import DOUBTING, examine
 from eha_core.identification.observation import observe
@@ -57,12 +57,37 @@ def test_an_effect_is_not_taken_for_a_log_that_ends_at_the_flat_tops_of_a_comman
     assert not found.health
 
 
+def frozen(values: np.ndarray) -> np.ndarray:
+    """Moves that are logged as a rest which begins in one and ends in the middle of a pulse."""
+    return np.where((np.arange(len(values)) > 1155) & (np.arange(len(values)) < 1420), values[1155], values)
+
+
+def test_a_command_that_froze_in_a_rest_is_no_physics() -> None:
+    made = recorded({"moving_mass": 10.0}, rate=RATE, duration=DURATION, voltage=moves(smooth))
+    command = made.channels["voltage_command"]
+    log = replace(command, values=frozen(command.values))
+    assert not examine(replace(made, channels={**made.channels, "voltage_command": log})).faults
+    found = diagnose(replace(made, channels={**made.channels, "voltage_command": log}), nominal_values())
+    assert found.verdict in ("consistent", "parameters") and not found.effects
+    ((_, fault),) = found.health
+    assert (fault.channel, fault.fault) == ("voltage_command", "frozen")
+    assert fault.start <= command.time[1155] and fault.end == command.time[1419]
+
+
+def test_an_effect_is_not_taken_for_a_log_that_froze_before_the_only_step_of_a_command() -> None:
+    made = recorded({"valve_null_offset.offset": 2e-5}, rate=RATE, duration=DURATION, voltage=frozen(moves(smooth)))
+    assert [fault.fault for fault in examine(made, DOUBTING).faults] == ["frozen"]
+    found = diagnose(made, nominal_values())
+    assert [effect.id for effect in found.effects] == ["valve_null_offset"]
+    assert not found.health
+
+
 def left_out(made: Recording) -> bool:
     """Whether a command's extremes are left out, where the nominal equations do not explain the whole."""
     model = NominalModel(nominal_values())
     seen, calibration = calibrate_without_faulty_ends([observe(made)], model)
     assert not is_at_noise(calibration.fitted)
-    return without_clipped_command([made], seen, calibration, model) is not None
+    return without_doubtful_command([made], seen, calibration, model) is not None
 
 
 def test_a_square_wave_that_leaps_to_its_extremes_was_not_clipped_there() -> None:

@@ -1,4 +1,5 @@
-"""A command that rests at times and was clipped in the log, which by itself looks like one with a limit of its own."""
+"""A command that rests at times and was clipped or froze in the log: by itself it looks like one with a limit of its
+own, or a longer rest."""
 
 from __future__ import annotations
 
@@ -14,11 +15,11 @@ from eha_core.nominal import NominalModel
 from eha_core.recording import Recording
 
 
-def without_clipped_command(
+def without_doubtful_command(
     recordings: Sequence[Recording], observations: Sequence[Observation], calibration: Calibration, model: NominalModel
 ) -> tuple[tuple[Observation, ...], Calibration] | None:
-    """The observations without the spans in which the command may have been clipped, and their calibration; None where
-    the nominal equations explain the whole, where there is no such span, or where they fail outside, too."""
+    """The observations without the spans in which the command may have been clipped or frozen, and their calibration;
+    None where the nominal equations explain the whole, where there is no such span, or where they fail outside, too."""
     if is_at_noise(calibration.fitted):
         return None
     try:
@@ -37,7 +38,8 @@ def without_clipped_command(
 def fails_only_inside(outside: Calibration, whole: Calibration) -> bool:
     """Whether the nominal equations leave next to nothing but noise outside of some spans, and much in the whole.
 
-    Physics that acts where a command has its extreme acts just below it, too; a log's limit does not.
+    Physics that acts where a command has its extreme acts just below it, too, and what acts in one rest acts in others;
+    a fault of the log does not.
     """
     left, of_whole = (max(one.fitted.data / one.fitted.count - 1.0, 0.0) for one in (outside, whole))
     return is_at_noise(outside.fitted) and left + NOISE_KNOWN < ELSEWHERE * of_whole
