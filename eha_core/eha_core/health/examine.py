@@ -30,13 +30,14 @@ from eha_core.health.still import still
 from eha_core.plant import Composition
 from eha_core.recording import Recording
 
-CHECKS: tuple[Callable[[Signal], Found | None], ...] = (
+Check = Callable[[Signal], Found | None]
+CHECKS: tuple[Check, ...] = (
     dropped.find, saturated.find, held.find, interpolated.find, frozen.find, rescaled.find, wrapped.find, jump.find,
     noisy.find, spikes.find, hum.find, low_passed.find,
 )  # fmt: skip
 """The more specific checks come first: a fill value is not a jump, and the end of a range is not a frozen sensor."""
 
-IN_DOUBT = {saturated.find: saturated.find_in_doubt, frozen.find: frozen.find_in_doubt}
+IN_DOUBT: dict[Check, Check] = {saturated.find: saturated.find_in_doubt, frozen.find: frozen.find_in_doubt}
 DOUBTING = tuple(IN_DOUBT.get(check, check) for check in CHECKS)
 """The same where a command is taken to be clipped or frozen wherever it may be."""
 
@@ -46,7 +47,7 @@ FEWEST = 100
 """Fewest samples from which a channel's usual noise and motion are known."""
 
 
-def examine(recording: Recording, checks: Sequence[Callable[[Signal], Found | None]] = CHECKS) -> Health:
+def examine(recording: Recording, checks: Sequence[Check] = CHECKS) -> Health:
     """Find the faults that each channel shows by itself."""
     faults: list[Fault] = []
     lost, values = {}, {}
