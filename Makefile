@@ -31,7 +31,7 @@ env:  ## make .venv/, or bring it up to date; PYTHON=... makes it anew with anot
 	@$(PYTHON) tools/make_env.py $(VENV)
 
 test: lint  ## lint, types, architecture and every test
-	$(WITH_PATH) $(RUN)/python -m pytest $(PYTEST_OPTIONS) --numprocesses 2
+	$(WITH_PATH) $(RUN)/python -m pytest $(PYTEST_OPTIONS) --numprocesses 2 --durations 30
 
 lint: env  ## style, types and the walls between the packages
 	$(RUN)/ruff check .
