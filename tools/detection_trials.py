@@ -3,10 +3,11 @@
     python -m tools.detection_trials --rigs 1000 --seed S --out FILE [--first K] [--jobs 2]
 
 Each rig and its test are drawn as the exam draws them. One effect is drawn, in one of the shapes that the search tries,
-and the probability with which it is to be found: its size follows from the linearisation. As in a certificate the
-prediction is lower if fitted nominal equations leave less of the response than that. Then noise is drawn, the equations
-are fitted with and without the effect, and the gain is compared with that required. Fits begin near the truth: what the
-search does not find is not seen here. A line of FILE is one rig, and rigs that are there already are not drawn again.
+and the probability with which it is to be found: its size follows from the linearisation and, as in a certificate, is
+enlarged where fitted nominal equations explain more. What they leave is the prediction. Then noise is drawn, the
+equations are fitted with and without the effect, and the gain is compared with that required. Fits begin near the
+truth: what the search does not find is not seen here. A line of FILE is one rig, and rigs that are there already are
+not drawn again.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from threadpoolctl import threadpool_limits
 
 from eha_core.detectability import PlannedTest
 from eha_core.detectability.planned import linearised
-from eha_core.detectability.refit import left_by_nominal
+from eha_core.detectability.refit import confirmed, left_by_nominal
 from eha_core.diagnosis.criteria import TO_THE_END
 from eha_core.diagnosis.detection.power import energy_needed, probability_of
 from eha_core.diagnosis.detection.responses import FittedModel
@@ -48,7 +49,8 @@ DECILES = 10
 def try_rig(number: int, seed: int) -> dict[str, Any]:
     """One rig: the effect, the probability predicted and whether it was found; `why` where nothing can be compared."""
     generator = np.random.default_rng([seed, number])
-    at = _rig_and_test(number, seed)
+    nominal, test = _rig_and_test(number, seed)
+    at = linearised(nominal_of(nominal), test)
     tried = trials(at)
     names = sorted({trial.column.effect.id for trial in tried})
     name = str(generator.choice(names))
@@ -60,12 +62,16 @@ def try_rig(number: int, seed: int) -> dict[str, Any]:
     factor = float(smallest(at, [replace(trial, energy=energy)])[0])
     if not (isfinite(factor) and factor > 0.0):
         return row | {"why": "not found at any size"}
-    left = min(left_by_nominal(at, trial.at(factor), thorough=True), energy)
-    found = _is_found(at, trial, factor, generator)
+    (larger,) = confirmed(at, [replace(trial, energy=energy)], [factor])
+    if not isfinite(larger):
+        return row | {"why": "not found at any size"}
+    left = left_by_nominal(at, trial.at(larger), thorough=True)
+    left, factor = (left if larger > factor else min(left, energy)), larger
+    found = _is_found(at, at.with_effect(trial.at(factor)), trial, generator)
     return row | {"predicted": probability_of(left, trial.gain, trial.parameters), "found": found}
 
 
-def _rig_and_test(number: int, seed: int) -> FittedModel:
+def _rig_and_test(number: int, seed: int) -> tuple[dict[str, float], PlannedTest]:
     """A rig and its test as the exam draws them, the command by the unloaded rig's inverse."""
     case = draw_case("null", number, seed)
     rig = Rig(case.family, case.plant)
@@ -74,28 +80,22 @@ def _rig_and_test(number: int, seed: int) -> FittedModel:
         case.shape, rig, time, case.amplitude, case.speed, np.random.default_rng([case.seed, 1])
     )
     voltages = feedforward(rig, reference, case.rate)
-    test = PlannedTest(time, voltages, case.duration, noise=case.noise, rate=case.rate)
-    return linearised(nominal_of(dict(case.nominal)), test)
+    return dict(case.nominal), PlannedTest(time, voltages, case.duration, noise=case.noise, rate=case.rate)
 
 
-def _is_found(at: FittedModel, trial: Trial, factor: float, generator: np.random.Generator) -> bool:
-    """Whether the effect gains what is required of it, under drawn noise."""
-    column = trial.at(factor).beside(at.fit.values)
-    values = {**at.fit.values, **column.values}
-    shooting = at.pool.problem.shooting
-    clean = shooting.sample(shooting.simulate(values, at.fit.states)[0])
-    noisy = [
-        response + one.noise * generator.standard_normal(len(response))
-        for one, response in zip(shooting.samplings, clean, strict=True)
-    ]
-    problem = exact(_measuring(at.pool.problem, noisy))
-    free = with_effects(at.pool.plant, [column.effect], values)
-    without = {**values, **neutral(column.effect)}
-    present = fit(problem, values, free, at.fit.states, iterations=TO_THE_END, in_a_row=2)
+def _is_found(at: FittedModel, rig: FittedModel, trial: Trial, generator: np.random.Generator) -> bool:
+    """Whether the effect gains what is required of it in a rig's record with drawn noise. Either model is fitted from
+    where the other ended, too."""
+    effect, shooting = trial.column.effect, rig.pool.problem.shooting
+    noisy = [one.values + one.noise * generator.standard_normal(len(one.values)) for one in shooting.samplings]
+    problem = exact(_measuring(rig.pool.problem, noisy))
+    off = neutral(effect)
+    free = with_effects(at.pool.plant, [effect], rig.fit.values)
+    present = fit(problem, rig.fit.values, free, rig.fit.states, iterations=TO_THE_END, in_a_row=2)
     absent = min(
         (
-            fit(problem, {**begin, **neutral(column.effect)}, at.pool.plant, states, iterations=TO_THE_END, in_a_row=2)
-            for begin, states in ((without, at.fit.states), (present.values, present.states))
+            fit(problem, {**begin.values, **off}, at.pool.plant, begin.states, iterations=TO_THE_END, in_a_row=2)
+            for begin in (rig.fit, present)
         ),
         key=lambda result: result.objective,
     )

@@ -10,10 +10,9 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from eha_core.detectability.margins import Margins
-from eha_core.detectability.planned import Array, PlannedTest, linearised
+from eha_core.detectability.planned import Array, PlannedTest, RigAsModelled, linearised
 from eha_core.detectability.refit import confirmed
 from eha_core.diagnosis.calibrate import STEPS
-from eha_core.diagnosis.detection.responses import FittedModel
 from eha_core.diagnosis.detection.rows import effect_rows, middle_shapes, parameter_rows
 from eha_core.diagnosis.detection.sizes import smallest, trials
 from eha_core.diagnosis.experiment.command_signal import CommandSignal
@@ -104,7 +103,7 @@ def design(model: NominalModel, names: Sequence[str], limits: Limits, usual: Pla
         )  # fmt: skip
 
 
-def _check(names: Sequence[str], at: FittedModel) -> None:
+def _check(names: Sequence[str], at: RigAsModelled) -> None:
     known = {trial.column.effect.id for trial in trials(at)} | {one.name for one in at.pool.plant}
     for name in names:
         if name not in known:
@@ -116,7 +115,7 @@ def _test(usual: PlannedTest, times: Array, signal: CommandSignal) -> PlannedTes
     return PlannedTest(times, signal.voltage(times), usual.duration, usual.channels, usual.noise, usual.rate)
 
 
-def _found(at: FittedModel, names: Sequence[str], sure: bool = False) -> dict[str, tuple[Row, ...]]:
+def _found(at: RigAsModelled, names: Sequence[str], sure: bool = False) -> dict[str, tuple[Row, ...]]:
     """The detectable sizes of each name; `sure`: with the sizes of effects confirmed by fits."""
     tried = [trial for trial in trials(at) if trial.column.effect.id in names]
     chosen, factors = middle_shapes(tried, smallest(at, tried).tolist())

@@ -11,6 +11,7 @@ from eha_core.diagnosis.calibrate import STEPS
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.detection.responses import FittedModel
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.errors import ParameterError
 from eha_core.identification.free_parameters import free_nominal_parameters
@@ -76,6 +77,13 @@ class RigAsModelled(FittedModel):
     """The rig as modelled in this test: an exact fit, and `motion`, the response."""
 
     motion: Trajectory
+    model: NominalModel
+    test: PlannedTest
+
+    def with_effect(self, column: Column) -> RigAsModelled:
+        """The same test of a rig with an effect, as its sensors would record it without noise."""
+        values = {**self.model.values, **column.beside(self.fit.values).values}
+        return linearised(replace(self.model, values=values), self.test)
 
 
 def linearised(model: NominalModel, test: PlannedTest) -> RigAsModelled:
@@ -111,4 +119,4 @@ def linearised(model: NominalModel, test: PlannedTest) -> RigAsModelled:
     # with a command that does not begin at zero, coil and spool start differently from the windows: that is no noise
     exact = replace(pool.at_rest(NOTHING, values, states), data=0.0, objective=0.0)
     scales = characteristic_scales([observation], problem.shooting, exact)
-    return RigAsModelled((observation,), pool, NOTHING, exact, scales, motion)
+    return RigAsModelled((observation,), pool, NOTHING, exact, scales, motion, model, test)

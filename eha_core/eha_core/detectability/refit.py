@@ -6,10 +6,10 @@ Nominal parameters that nearly compensate for a response may compensate for it b
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import inf, isfinite
 
-from eha_core.diagnosis.detection.responses import COMPENSATED, FittedModel, responses
+from eha_core.detectability.planned import RigAsModelled
+from eha_core.diagnosis.detection.responses import COMPENSATED, responses
 from eha_core.diagnosis.detection.sizes import Trial
 from eha_core.diagnosis.search.columns import Column
 from eha_core.identification.fit import exact, fit
@@ -27,19 +27,15 @@ LARGER = 3.0
 """Largest factor of one enlargement."""
 
 
-def left_by_nominal(at: FittedModel, column: Column, thorough: bool = False) -> float:
-    """Chi^2 of the best fit of the nominal equations to a column's response; `thorough`: with derivatives at the
-    simulation's own step size, without which a fit may end early in a flat valley."""
-    shooting = at.pool.problem.shooting
-    rows, _ = shooting.simulate({**at.fit.values, **column.beside(at.fit.values).values}, at.fit.states)
-    pairs = zip(shooting.samplings, shooting.sample(rows), strict=True)
-    faulty = replace(shooting, samplings=tuple(replace(sampling, values=values) for sampling, values in pairs))
-    problem = replace(at.pool.problem, shooting=faulty)
-    problem = exact(problem) if thorough else problem
-    return fit(problem, at.fit.values, at.pool.plant, at.fit.states, iterations=ITERATIONS, in_a_row=2).objective
+def left_by_nominal(at: RigAsModelled, column: Column, thorough: bool = False) -> float:
+    """Chi^2 of the best fit of the nominal equations to the test of a rig with a column's effect; `thorough`: with
+    derivatives at the simulation's own step size, without which a fit may end early in a flat valley."""
+    rig = at.with_effect(column)
+    problem = exact(rig.pool.problem) if thorough else rig.pool.problem
+    return fit(problem, at.fit.values, at.pool.plant, rig.fit.states, iterations=ITERATIONS, in_a_row=2).objective
 
 
-def confirmed(at: FittedModel, tried: Sequence[Trial], factors: Sequence[float]) -> list[float]:
+def confirmed(at: RigAsModelled, tried: Sequence[Trial], factors: Sequence[float]) -> list[float]:
     """The factors, enlarged where the nominal equations explain the response better than the linearisation predicts;
     inf where that exceeds the catalogue's bound. None is reduced."""
     columns = [trial.at(factor if isfinite(factor) else 1.0) for trial, factor in zip(tried, factors, strict=True)]
@@ -48,7 +44,7 @@ def confirmed(at: FittedModel, tried: Sequence[Trial], factors: Sequence[float])
             for place, (trial, factor) in enumerate(zip(tried, factors, strict=True))]  # fmt: skip
 
 
-def _confirmed(at: FittedModel, trial: Trial, factor: float, thorough: bool) -> float:
+def _confirmed(at: RigAsModelled, trial: Trial, factor: float, thorough: bool) -> float:
     for _ in range(ROUNDS):
         if not isfinite(factor):
             break
