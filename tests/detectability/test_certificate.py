@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tested_rig import SIGNAL, at, measuring, planned
+from tested_rig import SIGNAL, at, column_of, measuring, planned
 
 from eha_core.detectability import Certificate, PlannedTest, certify
 from eha_core.detectability.planned import linearised
@@ -15,6 +15,7 @@ from eha_core.diagnosis.criteria import CERTAINTY, chance_gain
 from eha_core.diagnosis.detection.power import required_gain
 from eha_core.diagnosis.detection.sizes import smallest, trials
 from eha_core.diagnosis.effect_parameters import with_effects
+from eha_core.diagnosis.search.columns import Column
 from eha_core.effects import effect
 from eha_core.errors import ParameterError
 from eha_core.identification.fit import fit
@@ -145,3 +146,21 @@ def test_a_test_that_tells_nothing_is_refused(changes: dict[str, object], words:
     given = {"times": np.arange(10) / 10.0, "voltages": np.sin(np.arange(10)), "duration": 1.0}
     with pytest.raises(ParameterError, match=words):
         PlannedTest(**{**given, **changes})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        column_of("load_friction", coefficient=3e-4),
+        column_of("position_sensor_backlash", half_width=5e-6),
+        column_of("pressure_sensor_bias", bias_a=2e4),
+    ],
+    ids=lambda column: column.effect.id,
+)
+def test_a_rig_with_an_effect_is_explained_by_it_and_not_by_the_nominal_equations(column: Column) -> None:
+    """Of one record: its windows follow on each other, so the effect explains where they meet, too."""
+    rig = at()
+    other = rig.with_effect(column)
+    problem, states = other.pool.problem, other.fit.states
+    assert fit(problem, other.fit.values, (), states, iterations=5).objective < 0.01
+    assert fit(problem, rig.fit.values, (), states, iterations=8).objective > 100.0

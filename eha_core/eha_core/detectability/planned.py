@@ -99,7 +99,8 @@ def linearised(model: NominalModel, test: PlannedTest) -> RigAsModelled:
     motion = Plant(model.composition.named(values), step, composition=model.composition).run(voltages)
     at = np.arange(1, int(test.duration * test.rate)) / test.rate
     measured = tuple(
-        Measured(name, FITTED.index(name), at, np.interp(at, motion.time, motion.values[:, COLUMNS.index(name)]),
+        Measured(name, FITTED.index(name), at,
+                 np.interp(at, motion.time, motion.values[:, COLUMNS.index(f"measured_{name}")]),
                  test.noise * NOISE[name])
         for name in FITTED if name in test.channels
     )  # fmt: skip
