@@ -300,3 +300,18 @@ def test_a_command_of_steps_that_drops_to_a_fill_value_is_told_from_its_steps() 
     faults = [fault for fault in examine(recording).faults if fault.channel == "voltage_command"]
     assert [fault.fault for fault in faults] == 4 * ["dropped"]
     assert faults[0].span == pytest.approx((TIME[510], TIME[529]))
+
+
+@pytest.mark.parametrize("every", [5, 10])
+def test_a_position_is_interpolated_where_its_corners_do_not_show_too(every: int) -> None:
+    """Rests of a quiet sensor, in which most bends are far below those of the moves, up to the end."""
+    slow = TIME[::every]
+    moves = 0.02 * np.interp(slow, [0.0, 1.0, 1.2, 3.0, 3.2, 5.0, 5.2, 8.0], [0.0, 0.0, 1.0, 1.0, -1.0, -1.0, 0.5, 0.5])
+    values = moves + 1e-5 * np.random.default_rng(3).standard_normal(len(slow))
+    recording = eha.Recording.from_arrays(time=TIME, position=np.interp(TIME, slow, values))
+    health = examine(recording)
+    assert [(fault.fault, fault.seen) for fault in health.faults] == [
+        ("interpolated", f"interpolated from {500 / every:g} Hz")
+    ]
+    kept = np.flatnonzero(~health.lost["position"])
+    assert np.count_nonzero(kept % every) <= 2 * every and len(kept) > 0.95 * len(slow)

@@ -33,12 +33,15 @@ def find(signal: Signal) -> Found | None:
         if interval * signal.period > SLOWEST or np.std(sizes) < ALIKE * np.mean(sizes):
             continue
         begin, end = corners[first], corners[last]
+        end = end if last + 1 < len(corners) else len(here)  # beyond the last corner, too, there is a line
         here[begin:end] = True
         here[corners[first:last]] = False
+        if interval == round(interval):
+            here[begin:end:round(interval)] = False  # a sample, too, where the corner is too flat to be seen
         rate = 1.0 / (interval * signal.period)
         faults.append(
             Fault(
-                signal.name, "interpolated", float(signal.time[begin]), float(signal.time[end]),
+                signal.name, "interpolated", float(signal.time[begin]), float(signal.time[corners[last]]),
                 f"interpolated from {rate:.3g} Hz", "export it as it was recorded, without resampling", False,
                 signal.is_command and interval * signal.period > LOST,
             )

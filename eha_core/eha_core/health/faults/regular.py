@@ -18,21 +18,38 @@ LARGE = 6
 
 
 def regular(places: Integers, shortest: int = 2) -> list[tuple[int, int, float]]:
-    """The regularly spaced stretches of `places`: the first and last of each, and its interval [samples]."""
+    """The regularly spaced stretches of `places`: the first and last of each, and its interval [samples].
+
+    Where all places between two stretches of one interval are spaced by it, too, they are one, and a stretch goes on to
+    an end if all places up to there are: however many of them are not visible.
+    """
     intervals = np.diff(places)
     if len(intervals) < IN_A_ROW:
         return []
     usual = percentile_filter(intervals, 20, size=9, mode="nearest")
     fits = (intervals % np.maximum(usual, 1) == 0) | ((usual >= LARGE) & (np.abs(intervals - usual) <= 1))
     fits &= (usual >= shortest) & (intervals <= MOST * usual + 1)
-    found = []
+    found: list[tuple[int, int, float]] = []
     for first, last in covered(fits):
-        if last + 1 - first >= IN_A_ROW:
-            found.append((first, last + 1, _interval(intervals[first : last + 1])))
+        if last + 1 - first < IN_A_ROW:
+            continue
+        interval = _interval(usual[first : last + 1])
+        before = found[-1] if found else (0, 0, interval)
+        if abs(before[2] - interval) < 0.5 and _is_spaced(places[before[1] : first + 1], interval):
+            found = [*found[:-1], (before[0], last + 1, before[2])]
+        else:
+            found.append((first, last + 1, interval))
+    if found and _is_spaced(places[found[-1][1] :], found[-1][2]):
+        found[-1] = (found[-1][0], len(intervals), found[-1][2])
     return found
 
 
-def _interval(intervals: Integers) -> float:
-    """The usual interval; an occasional longer one does not count."""
-    usual = float(np.median(intervals))
-    return float(np.mean(intervals[np.abs(intervals - usual) <= 1]))
+def _interval(usual: Integers) -> float:
+    """The shortest usual interval, or the mean of two that differ by one; a longer one skips places that are hidden."""
+    return float(np.mean(usual[usual <= np.min(usual) + 1]))
+
+
+def _is_spaced(places: Integers, interval: float) -> bool:
+    """Whether places lie on a grid of an interval that begins at the first."""
+    steps = (places - places[0]) / interval
+    return bool(np.all(np.abs(steps - np.round(steps)) * interval <= (interval >= LARGE)))
