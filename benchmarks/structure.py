@@ -94,10 +94,10 @@ def _by_response(certificate: Certificate) -> tuple[set[tuple[Size, str]], set[t
 def _by_structure(peer: ModuleType, channels: Sequence[str], sizes: set[Size]) -> set[tuple[Size, str]]:
     """The pairs in which some residual shows the size and not the other effect, whichever sizes that has."""
     model, faults = _model(peer, channels, sizes)
-    kept, found = np.arange(model.X.shape[0]), set()
+    every, found = np.arange(model.X.shape[0]), set()
     for rival in {name for name, _ in sizes}:
         own = [place for size, place in faults.items() if size[0] == rival]
-        rest = np.setdiff1d(kept, own)
+        rest = np.setdiff1d(every, own)
         over = set(rest[peer.dmperm.GetDMParts(model.X[rest]).Mp.row].tolist())
         found |= {(size, rival) for size, place in faults.items() if place in over and size[0] != rival}
     return found
@@ -134,4 +134,4 @@ def _equations(name: str, parameter: str) -> tuple[str, ...]:
     else:
         where = ELSEWHERE.get(name) or SITES[site]
     ending = parameter[-2:]
-    return tuple(one for one in where if f"{one}_".find(f"{ending}_") > 0) if ending in ("_a", "_b") else where
+    return tuple(one for one in where if f"{ending}_" in f"{one}_") if ending in ("_a", "_b") else where

@@ -67,7 +67,7 @@ def try_rig(number: int, seed: int) -> dict[str, Any]:
         return row | {"why": "not found at any size"}
     left = left_by_nominal(at, trial.at(larger), thorough=True)
     left, factor = (left if larger > factor else min(left, energy)), larger
-    found = _is_found(at, at.with_effect(trial.at(factor)), trial, generator)
+    found = is_found(at, at.with_effect(trial.at(factor)), trial, generator)
     return row | {"predicted": probability_of(left, trial.gain, trial.parameters), "found": found}
 
 
@@ -83,7 +83,7 @@ def _rig_and_test(number: int, seed: int) -> tuple[dict[str, float], PlannedTest
     return dict(case.nominal), PlannedTest(time, voltages, case.duration, noise=case.noise, rate=case.rate)
 
 
-def _is_found(at: FittedModel, rig: FittedModel, trial: Trial, generator: np.random.Generator) -> bool:
+def is_found(at: FittedModel, rig: FittedModel, trial: Trial, generator: np.random.Generator) -> bool:
     """Whether the effect gains what is required of it in a rig's record with drawn noise. Either model is fitted from
     where the other ended, too."""
     effect, shooting = trial.column.effect, rig.pool.problem.shooting

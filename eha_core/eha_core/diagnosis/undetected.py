@@ -10,7 +10,6 @@ from eha_core.diagnosis.detection.sizes import smallest, trials
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.result import Explained, FittedParameter, Undetected
-from eha_core.diagnosis.search.finish import only_delays
 from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.effects import effects
 
@@ -23,7 +22,7 @@ def undetected(evidence: Evidence, left: Explained, parameters: tuple[FittedPara
     at = fitted_model(evidence)
     untold = [name for entry, _ in evidence.decision.rivals for name in entry.ids]
     if at.pool.filtered:
-        untold += [effect.id for effect in effects() if only_delays(effect)]
+        untold += [effect.id for effect in effects() if effect.only_delays]
     tried = trials(at, untold)
     rows = effect_rows(at, *middle_shapes(tried, smallest(at, tried).tolist()))
     changed = {parameter.name for parameter in parameters if parameter.changed}

@@ -55,6 +55,11 @@ class Effect:
         """Full names of when it begins and ceases to act [s]; none of a curve's, which always acts."""
         return tuple(f"{self.id}.{name}" for name in ACTS) if self.named else ()
 
+    @property
+    def only_delays(self) -> bool:
+        """Whether it does nothing but delay signals: a lag, or a dead time."""
+        return all(row.unit == "s" for row in self.parameters)
+
     def is_active(self, values: Mapping[str, float]) -> bool:
         """True unless every parameter that switches the effect stands at its neutral, that is nominal, value."""
         return any(row.switches and values[f"{self.id}.{row.name}"] != row.nominal for row in self.parameters)

@@ -33,7 +33,6 @@ from eha_core.diagnosis.search.instants import shift_instants
 from eha_core.diagnosis.search.intervals import in_span
 from eha_core.diagnosis.search.pool import Pool, Progress
 from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
-from eha_core.effects import Effect
 from eha_core.identification.fit import Ending, Fit, exact, fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name
@@ -140,18 +139,13 @@ def required_of(pool: Pool, member: Member, costs: Mapping[Member, float], at: F
 def is_of_a_filters_form(pool: Pool, member: Member, at: Fit) -> bool:
     """Whether a member only delays signals, by less than a sampling period of a channel behind a filter: by so much
     filters of one cutoff delay differently, and beside one that is faster than its lag all other signals seem late."""
-    if not only_delays(member.effect):
+    if not member.effect.only_delays:
         return False
     shooting, names = pool.problem.shooting, member.effect.parameter_names()
     delays = [value for name, value in at.values.items() if base_name(name) in names]
     pairs = zip(shooting.names, shooting.samplings, strict=True)
     periods = [float(np.median(np.diff(shooting.times(one)))) for name, one in pairs if name in pool.filtered]
     return max(delays) < max(periods, default=0.0)
-
-
-def only_delays(effect: Effect) -> bool:
-    """Whether an effect does nothing but delay signals: a lag, or a dead time."""
-    return all(row.unit == "s" for row in effect.parameters)
 
 
 def left_by_forms(pool: Pool, member: Member, costs: Mapping[Member, float], at: Fit) -> float:

@@ -35,7 +35,7 @@ def find(signal: Signal) -> Found | None:
         begin, end = corners[first], corners[last]
         end = end if last + 1 < len(corners) else len(here)  # beyond the last corner, too, there is a line
         here[begin:end] = True
-        here[corners[first:last]] = False
+        here[corners[first : last + 1]] = False
         if interval == round(interval):
             here[begin:end:round(interval)] = False  # a sample, too, where the corner is too flat to be seen
         rate = 1.0 / (interval * signal.period)
