@@ -88,7 +88,7 @@ def is_found(at: FittedModel, rig: FittedModel, trial: Trial, generator: np.rand
     where the other ended, too."""
     effect, shooting = trial.column.effect, rig.pool.problem.shooting
     noisy = [one.values + one.noise * generator.standard_normal(len(one.values)) for one in shooting.samplings]
-    problem = exact(_measuring(rig.pool.problem, noisy))
+    problem = exact(measuring(rig.pool.problem, noisy))
     off = neutral(effect)
     free = with_effects(at.pool.plant, [effect], rig.fit.values)
     present = fit(problem, rig.fit.values, free, rig.fit.states, iterations=TO_THE_END, in_a_row=2)
@@ -102,7 +102,7 @@ def is_found(at: FittedModel, rig: FittedModel, trial: Trial, generator: np.rand
     return bool(absent.objective - present.objective > trial.gain)
 
 
-def _measuring(problem: Problem, measured: Sequence[Array]) -> Problem:
+def measuring(problem: Problem, measured: Sequence[Array]) -> Problem:
     """The problem with other samples measured."""
     pairs = zip(problem.shooting.samplings, measured, strict=True)
     samplings = tuple(replace(sampling, values=values) for sampling, values in pairs)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import sys
+from pathlib import Path
 
 import numpy as np
 
 from eha_core.detectability.planned import NOISE, PlannedTest, RigAsModelled, linearised
 from eha_core.diagnosis.search.columns import Column, columns_of
 from eha_core.effects import effect
-from eha_core.identification.problem import Problem
 from eha_core.nominal import nominal_of
 from eha_core.signals import from_text
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from tools.detection_trials import measuring
 
 SIGNAL = from_text("multisine:amplitude=0.12,lowest=0.3,highest=8,count=16,period=20,seed=5")
 
@@ -31,13 +34,6 @@ def column_of(name: str, **values: float) -> Column:
     full = {f"{name}.{short}": value for short, value in values.items()}
     sizes = tuple(f"{name}.{row.name}" for row in effect(name).parameters if row.switches and row.name in values)
     return Column(effect(name), full, sizes, 0, all(value >= 0.0 for value in values.values()))
-
-
-def measuring(problem: Problem, samples: list[np.ndarray]) -> Problem:
-    """The problem with other values measured."""
-    pairs = zip(problem.shooting.samplings, samples, strict=True)
-    return replace(problem, shooting=replace(problem.shooting, samplings=tuple(
-        replace(sampling, values=values) for sampling, values in pairs)))  # fmt: skip
 
 
 __all__ = ["at", "column_of", "columns_of", "measuring", "planned"]
