@@ -76,6 +76,18 @@ def test_reset_returns_to_the_start_and_keeps_the_parameters() -> None:
     assert np.array_equal(plant.run(sine(300)).values, first)
 
 
+def test_a_plant_goes_on_from_a_moment_to_which_it_returned() -> None:
+    lags = {"command_delay.delay": 0.004, "position_sensor_lag.time_constant": 0.01}
+    plant = Plant({"presliding_friction.force": 200.0, **lags})
+    plant.run(sine(700))
+    moment, state = plant.moment(), plant.state
+    first = plant.run(sine(500, 0.3))
+    plant.return_to(moment)
+    assert plant.state == state
+    again = plant.run(sine(500, 0.3))
+    assert np.array_equal(again.values, first.values) and np.array_equal(again.time, first.time)
+
+
 def test_a_parameter_acts_on_the_next_step() -> None:
     plant = Plant()
     plant.advance(0.02, 100)

@@ -165,6 +165,10 @@ def step_inputs(inputs: Array, source: Source) -> Array:
     return np.ascontiguousarray(columns[:, [0, columns.shape[1] - 1]])
 
 
+Moment = tuple[Array, Array, Array, Array, int]
+"""All states of a plant, and the steps that it has made."""
+
+
 class Plant:
     """The electro-hydraulic actuator of equations (1) to (10) with the catalogue's effects, as its parts make it.
 
@@ -247,6 +251,16 @@ class Plant:
         """Put piston and chambers into a measured state [SI]; time, valve, and the effects' own states go on."""
         stroke = self._places["actuator_displacement"]
         self._state[PISTON] = min(max(position, -stroke), stroke), velocity, pressure_a, pressure_b
+
+    def moment(self) -> Moment:
+        """Everything that goes on from here, to `return_to`."""
+        return self._state.copy(), self._history.copy(), self._memory.copy(), self._row.copy(), self.step_count
+
+    def return_to(self, moment: Moment) -> None:
+        """Go back to a moment of this plant, its parameters as they are now."""
+        for own, then in zip((self._state, self._history, self._memory, self._row), moment, strict=False):
+            own[:] = then
+        self.step_count = moment[-1]
 
     def _start_memory(self, chosen: Sequence[bool]) -> None:
         start_memory(self._memory, chosen, self._state[AT.current], self._state[PISTON])
