@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beside_rig import NANOSECONDS, PERIOD, beside, rig
+from beside_rig import NANOSECONDS, PERIOD, beside, comparisons, rig
 
 from eha_core.errors import ParameterError
 from eha_core.plant.state import COLUMNS
 from eha_core.recording.simulated import Experiment, Simulated, simulate
+from eha_core.signals import make_signal
 from eha_core.twin import Settings, Twin
 
 CHAMBERS = {"chamber A", "chamber B"}
@@ -25,6 +26,36 @@ def test_a_rig_as_modelled_is_followed_to_the_noise(noise: float) -> None:
     if noise:  # residuals in units of their noise are of size one
         everything = [list(comparison.ratios.values()) for _, comparison in found]
         assert np.sqrt(np.mean(np.square(everything), axis=0)) == pytest.approx(np.ones(4), abs=0.25)
+
+
+def quiet(record: Simulated, twin: Twin) -> float:
+    """The most evidence of a departure, in a rig that has none."""
+    evidence = []
+    for _, comparison in comparisons(record, twin):
+        assert not comparison.departs
+        evidence.append(twin.evidence[0])
+    return max(evidence)
+
+
+def test_fast_motion_at_low_pressure_is_followed_to_the_noise() -> None:
+    """A period of the command is as long as the time from which a window's state is estimated, and the pressures' noise
+    changes the flow more than it changes the oil's volume."""
+    plant = {"supply_pressure": 5e6, "valve_gain": 5e-5, "piston_area": 4.7e-4, "moving_mass": 6.5}
+    times = np.arange(5000) * PERIOD
+    shape = {"amplitude": 0.42, "lowest": 2.0, "highest": 20.0, "count": 16, "period": 10.0}
+    voltages = make_signal("multisine", shape).value(times)
+    record = simulate(Experiment(times, voltages, 10.0, parameters=plant, noise=3.0))
+    assert quiet(record, Twin(plant)) < 0.0
+    friction = simulate(Experiment(times, voltages, 10.0, {**plant, "coulomb_friction.force": 100.0}, noise=3.0))
+    assert all("force balance" in comparison.departs for _, comparison in beside(friction, Twin(plant))[1:])
+
+
+def test_a_piston_at_the_end_of_its_stroke_departs_from_nothing() -> None:
+    times = np.arange(0.0, 20.0, 1.5)
+    voltages = 0.8 * (-1.0) ** np.arange(len(times))
+    record = simulate(Experiment(times, voltages, 20.0, noise=3.0))
+    assert np.max(np.abs(record.column("position"))) == pytest.approx(0.1, abs=1e-9)
+    assert quiet(record, Twin(settings=Settings(command_timeout=0.0))) < 2.0
 
 
 def test_leakage_turned_up_is_raised_within_two_seconds_in_the_chambers() -> None:
@@ -82,7 +113,7 @@ def test_a_gap_and_a_clock_set_back_begin_anew_and_raise_nothing() -> None:
     twin, record = Twin(), rig(5.0)
     found = beside(record, twin, missing=(2.3, 2.9))
     starts = [comparison.start / NANOSECONDS for _, comparison in found]
-    assert starts == pytest.approx([0.1, 1.1, 3.0], abs=0.01)
+    assert starts == pytest.approx([0.2, 1.2, 3.1], abs=0.01)
     again = beside(record, twin, published_from=100 * NANOSECONDS)
     assert len(again) == 4
     assert not any(comparison.departs for _, comparison in [*found, *again])

@@ -30,22 +30,22 @@ def log_e_value(values: Array, allowed: float) -> Array:
 
 class Detector:
     """The evidence so far that a residual is larger than allowed; an alarm where it reaches `windows`, the mean number
-    of windows until that happens by chance."""
+    of windows until that happens by chance. `evidence` and what is `needed` are natural logarithms."""
 
     def __init__(self, windows: float) -> None:
-        self._needed = float(np.log(windows))
-        self._evidence = -np.inf  # its logarithm
+        self.needed = float(np.log(windows))
+        self.evidence = -np.inf
 
     @property
     def is_alarmed(self) -> bool:
         """Whether there is enough."""
-        return self._evidence >= self._needed
+        return self.evidence >= self.needed
 
     @property
     def is_suspicious(self) -> bool:
         """Whether there is more than the next window brings by chance."""
-        return self._evidence > 0.0
+        return self.evidence > 0.0
 
     def weigh(self, log_e: float) -> None:
         """Take a window's e-value. More than enough is not kept: a rig may follow the model again."""
-        self._evidence = min(log_e + float(np.logaddexp(0.0, self._evidence)), self._needed)
+        self.evidence = min(log_e + float(np.logaddexp(0.0, self.evidence)), self.needed)

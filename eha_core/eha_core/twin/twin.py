@@ -16,13 +16,14 @@ from eha_core.realtime import NANOSECONDS
 from eha_core.twin.comparison import DRIFT, Comparison, Settings
 from eha_core.twin.evidence import Detector, log_e_value
 from eha_core.twin.excerpt import Excerpt, held_changes
+from eha_core.twin.measured_state import State, corrected_state, measured_state
 from eha_core.twin.samples import Array, Samples, nanoseconds
 from eha_core.twin.soundness import Soundness
 from eha_core.weak_form.model_errors import CHANNELS, EQUATIONS, equation_residuals
 from eha_core.weak_form.weighting import weighting
 
-_LEAD = 0.1  # s of command that coil and spool see before the first window
-_REACH = 0.02  # s to either side of a window's start from which its state is estimated
+_LEAD = 0.1  # s in which coil and spool settle, and then the chambers, before the first window
+_REACH = 0.02  # s to either side of a window's start from which its state is estimated, two samples at least
 _LATE = 0.1  # s that commands and samples may come after the position of their time
 _DEAD = 0.5  # s after which a channel that brings nothing is done without
 _SEEN_AT_ONCE = 3.0  # times what is allowed, beyond which a sample shows by itself when a departure began
@@ -55,12 +56,18 @@ class Twin:
         self._soundness = Soundness()
         self._kept: deque[Excerpt] = deque()
         self._start: int | None = None  # of the window to come [ns]; None before there are samples enough
-        self._is_warm = False  # whether coil and spool have seen the command
+        self._before: Trajectory | None = None  # what was simulated up to there
 
     @property
     def kept(self) -> Sequence[Excerpt]:
         """The windows compared last, each beginning where the one before ended, the newest at the end."""
         return self._kept
+
+    @property
+    def evidence(self) -> tuple[float, float]:
+        """The most evidence of a departure that any equation has, and what an alarm needs [natural logarithms]."""
+        detectors = self._detectors.values()
+        return max(each.evidence for each in detectors), min(each.needed for each in detectors)
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -98,20 +105,37 @@ class Twin:
         if self._start is None:
             return None
         start = self._start
-        end = start + self._rows * self._every * self._step_ns
+        end = start + self._rows * self._row_time
         if not self._has_come(end) or self._passes_a_gap(end):
             return None
-        if not self._is_warm:
-            self._plant.reset()
-            self._plant.run(self._voltages(start - nanoseconds(_LEAD), start))
-            self._is_warm = True
-        self._plant.place(*self._measured_state(start))
+        if self._before is None:
+            self._before = self._led_to(start)
+        self._plant.place(*self._corrected(start, self._before))
         voltages = self._voltages(start, end)
-        result = self._compared(start, end, self._plant.run(voltages, self._every))
+        self._before = self._plant.run(voltages, self._every)
         self._keep(start, end, voltages)
         self._start = end
-        self._forget_before(end - nanoseconds(_LEAD))
+        result = self._compared(start, end, self._before)
+        self._forget_before(end - self._reach)
         return result
+
+    def _led_to(self, start: int) -> Trajectory:
+        """Simulate what is before the first window, from a rough state: coil and spool alone, then the whole plant."""
+        lead = self._lead
+        self._plant.reset()
+        self._plant.run(self._voltages(start - 2 * lead, start - lead))
+        self._plant.place(*measured_state(self._channels, start - lead, self._reach, self._plant.state))
+        return self._plant.run(self._voltages(start - lead, start), self._every)
+
+    def _corrected(self, start: int, before: Trajectory) -> State:
+        """The rig's state at a window's start, to which the simulation has come; it looks ahead and goes back."""
+        moment, state = self._plant.moment(), self._plant.state
+        after = self._plant.run(self._voltages(start, start + self._reach), self._every)
+        self._plant.return_to(moment)
+        times = self._row_time * np.arange(1 - len(before.time), len(after.time) + 1) / NANOSECONDS
+        measured = {name: f"measured_{name}" for name in CHANNELS}
+        shown = {name: np.append(getattr(before, column), getattr(after, column)) for name, column in measured.items()}
+        return corrected_state(self._channels, start, self._reach, state, times, shown)
 
     def _keep(self, start: int, end: int, voltages: Array) -> None:
         """Keep a window that was compared, and forget what is older than is asked for or lies before a gap."""
@@ -126,22 +150,27 @@ class Twin:
     def _restart(self) -> None:
         """Begin anew with the samples to come."""
         self._start = None
-        self._is_warm = False
+        self._before = None
 
     def _begin(self) -> int | None:
         """Return where the first window starts, and choose how dense its rows are, once there are samples enough."""
         stamps = self._channels["position"].stamps
-        if len(stamps) < 2 or stamps[-1] - stamps[0] < nanoseconds(_LEAD):
+        if len(stamps) < 2:
             return None
         spacing = float(np.median(np.diff(stamps)))
         self._every = max(1, round(spacing / self._step_ns))
-        self._rows = max(1, nanoseconds(self._settings.window) // (self._every * self._step_ns))
-        return stamps[bisect_left(stamps, stamps[0] + nanoseconds(_LEAD))]
+        self._row_time = self._every * self._step_ns
+        self._rows = max(1, nanoseconds(self._settings.window) // self._row_time)
+        self._reach = self._row_time * max(2, -(-nanoseconds(_REACH) // self._row_time))
+        self._lead = self._row_time * max(2, -(-nanoseconds(_LEAD) // self._row_time))
+        if stamps[-1] < stamps[0] + 2 * self._lead:
+            return None
+        return stamps[bisect_left(stamps, stamps[0] + 2 * self._lead)]
 
     def _has_come(self, end: int) -> bool:
         """Whether every channel that lives has brought all samples up to `end`, and commands must have come too."""
         newest = self._channels["position"].newest
-        if newest < end + nanoseconds(_LATE):
+        if newest < end + max(nanoseconds(_LATE), self._reach):
             return False
         living = [samples for samples in (*self._channels.values(), self._applied) if samples.stamps]
         return newest >= end + nanoseconds(_DEAD) or all(samples.newest >= end for samples in living)
@@ -182,35 +211,9 @@ class Twin:
         timeout = nanoseconds(settings.command_timeout) or inf
         return np.where((latest >= 0) & (times - acts[latest] < timeout), voltages, 0.0)
 
-    def _measured_state(self, stamp: int) -> tuple[float, float, float, float]:
-        """Position, velocity and pressures at a stamp, as a parabola through the samples about it has them.
-
-        A pressure that is not measured goes on as simulated.
-        """
-        fits = {}
-        for name, samples in self._channels.items():
-            times, values = samples.near(stamp, nanoseconds(_REACH))
-            if len(times) > 4:
-                fits[name] = np.polynomial.Polynomial.fit(times, values, 2)
-            elif len(times) > 1:
-                fits[name] = np.polynomial.Polynomial.fit(times, values, 1)
-        state = self._plant.state
-        if "position" not in fits:  # sparse samples: the line between the two about the stamp
-            stamps = np.array(self._channels["position"].stamps)
-            after = int(np.clip(np.searchsorted(stamps, stamp), 1, len(stamps) - 1))
-            part = slice(after - 1, after + 1)
-            times = (stamps[part] - stamp) / NANOSECONDS
-            fits["position"] = np.polynomial.Polynomial.fit(times, self._channels["position"].values[part], 1)
-        return (
-            float(fits["position"](0.0)),
-            float(fits["position"].deriv()(0.0)),
-            float(fits["pressure_a"](0.0)) if "pressure_a" in fits else state.pressure_a,
-            float(fits["pressure_b"](0.0)) if "pressure_b" in fits else state.pressure_b,
-        )
-
     def _compared(self, start: int, end: int, model: Trajectory) -> Comparison:
         """Hold the measured channels against the simulated ones."""
-        stamps = start + self._every * self._step_ns * np.arange(1, self._rows + 1)
+        stamps = start + self._row_time * np.arange(1, self._rows + 1)
         least = (self._settings.position_noise, self._settings.pressure_noise, self._settings.pressure_noise)
         errors, noises = {}, {}
         unsound = self._soundness.unsound(self._channels, start, end)
@@ -222,7 +225,7 @@ class Twin:
         if len(errors) == len(CHANNELS):
             period = self._every * self._plant.step_size
             residuals |= equation_residuals(errors, noises, model, self._plant.parameters, period)
-        ratios = {name: _rms(residual) for name, residual in residuals.items()}
+        ratios = {name: _rms(residual) for name, residual in residuals.items() if np.any(np.isfinite(residual))}
         self._note(residuals, stamps)
         alarmed = [name for name, detector in self._detectors.items() if detector.is_alarmed and name in ratios]
         departing = [name for name in EQUATIONS if name in alarmed] or alarmed
@@ -243,7 +246,11 @@ class Twin:
         apart = len(weighting(self._every * self._plant.step_size).weight)  # so that noise is independent
         for name, residual in residuals.items():
             detector = self._detectors[name]
-            detector.weigh(float(log_e_value(residual[::apart], allowed)))
+            independent = residual[::apart]
+            independent = independent[np.isfinite(independent)]
+            if not len(independent):
+                continue  # a window that shows nothing is no evidence, and none of the time between two alarms
+            detector.weigh(float(log_e_value(independent, allowed)))
             if not detector.is_suspicious:
                 self._since.pop(name, None)
             elif name not in self._since:
@@ -252,4 +259,4 @@ class Twin:
 
 
 def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
+    return float(np.sqrt(np.nanmean(values**2)))
