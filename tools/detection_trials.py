@@ -12,16 +12,12 @@ not drawn again.
 
 from __future__ import annotations
 
-import argparse
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from eha_core.detectability import PlannedTest
 from eha_core.detectability.planned import linearised
@@ -39,7 +35,7 @@ from eha_core.identification.fit import exact, fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import Problem
 from eha_core.nominal import nominal_of
-from eha_core.workers import Workers
+from tools.trial_rows import rows_of_trials
 
 PROBABILITIES = (0.02, 0.98)
 """Between which the probability is drawn with which the linearisation predicts that an effect is found."""
@@ -126,29 +122,9 @@ def by_decile(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     yield f"\n{len(compared)} rigs compared, {len(rows) - len(compared)} with an effect not found at any size"
 
 
-def _try_alone(number: int, seed: int) -> dict[str, Any]:
-    with threadpool_limits(1):
-        return try_rig(number, seed)
-
-
 def main() -> None:
     """Try the rigs that FILE lacks, and print the table of all in it."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rigs", type=int, default=1000)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--seed", type=int, required=True)
-    parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--jobs", type=int, default=1)
-    given = parser.parse_args()
-    rows = [json.loads(line) for line in given.out.read_text().splitlines()] if given.out.is_file() else []
-    known = {row["number"] for row in rows}
-    calls = [(number, given.seed) for number in range(given.first, given.rigs) if number not in known]
-    with given.out.open("a", encoding="utf-8") as file:
-        for row in Workers(given.jobs, None).run(_try_alone, calls):
-            rows.append(row)
-            file.write(json.dumps(row) + "\n")
-            file.flush()
-    for line in by_decile(rows):
+    for line in by_decile(rows_of_trials(try_rig, __doc__, 1000)):
         print(line)
 
 
