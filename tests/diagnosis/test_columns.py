@@ -3,6 +3,7 @@
 from dataclasses import replace
 from itertools import combinations
 
+import numpy as np
 import pytest
 from made import LAWS, recorded
 
@@ -140,3 +141,12 @@ def test_an_effect_is_offered_where_its_site_is_driven_and_its_sensor_was_there(
     without = {effect.id for effect in applicable_effects([replace(observation, measured=tuple(blind))])}
     of_pressure = {effect.id for effect in NAMED if "measured_pressure_a" in effect.needs}
     assert of_pressure and without == {effect.id for effect in NAMED} - of_pressure
+
+
+def test_laws_of_a_valve_or_of_oil_are_not_tried_where_nothing_tells_their_size():
+    """A plant that a measured force drives has a force law to draw, and neither an opening nor a leakage."""
+    known = {quantity: SCALES.by_quantity[quantity] for quantity in ("time", "position", "speed", "force")}
+    unnamed = [effect for effect in LAWS.values() if not effect.named]
+    assert {effect.site for effect in unnamed} > {"force"}
+    found = columns.law_columns(unnamed, Scales(known, np.empty((0, 0))))
+    assert found and {column.effect.site for column in found} == {"force"}

@@ -171,7 +171,10 @@ def law_columns(effects: Sequence[Effect], scales: Scales) -> tuple[Column, ...]
     """Laws that are in no catalogue: for each variable that a curve can be over, HATS columns that together draw it."""
     found = []
     for effect in effects:
-        size = OF_SCALE * _size_of(effect, scales)
+        known = _size_of(effect, scales)
+        if known is None:
+            continue
+        size = OF_SCALE * known
         for place, variable in enumerate(LAWS.get(effect.id, ())):
             covered = range_of(variable, scales)
             if covered is None:
@@ -189,13 +192,15 @@ def law_columns(effects: Sequence[Effect], scales: Scales) -> tuple[Column, ...]
     return tuple(found)
 
 
-def _size_of(effect: Effect, scales: Scales) -> float:
-    """What a curve of an effect is large against: the usual force, opening or leakage."""
-    if effect.site == "force":
-        return scales.by_quantity["force"][1]
-    if effect.site == "orifice":
-        return scales.by_quantity["spool"][1]
-    return scales.by_quantity["leakage_flow"][1] * scales.by_quantity["pressure"][1]
+def _size_of(effect: Effect, scales: Scales) -> float | None:
+    """What a curve of an effect is large against: the usual force, opening or leakage.
+
+    None where the recording does not tell, as of a plant that a measured force drives, which has no valve and no oil.
+    """
+    quantities = {"force": ("force",), "orifice": ("spool",)}.get(effect.site, ("leakage_flow", "pressure"))
+    if any(name not in scales.by_quantity for name in quantities):
+        return None
+    return float(np.prod([scales.by_quantity[name][1] for name in quantities]))
 
 
 def range_of(variable: str, scales: Scales) -> tuple[float, float] | None:
