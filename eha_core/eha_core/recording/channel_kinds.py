@@ -40,5 +40,6 @@ CHANNEL_KINDS: dict[str, ChannelKind] = {
         ChannelKind("position", "m", "piston position", 50.0),
         ChannelKind("velocity", "m/s", "piston velocity", 100.0),
         ChannelKind("force", "N", "force of the pressures on the piston", 1e9),
+        ChannelKind("schedule", "", "what coefficients may depend on, in a unit of its own", 1e12),
     )
 }

@@ -176,7 +176,7 @@ def _rule(path: str | Path, channel: str, entry: Any, may_be_open: bool = False)
         raise RecordingError(f"{where}: `minus` names a column that is taken from another; name that as `column` too")
     if "unit" in values and "scale" in values:
         raise RecordingError(f"{where}: unit and scale say the same thing; keep one")
-    if values.get("unit") is not None:
+    if values.get("unit") is not None and (channel == "time" or CHANNEL_KINDS[channel].unit):
         unit = _unit_of(where, channel, values["unit"])
         values["scale"] = unit.scale
         values.setdefault("reference", unit.reference)
