@@ -196,8 +196,8 @@ def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Record
     """Find the law of the force from the motion, as of a test bench or a damper that no command drives."""
     from eha_core.api import known_model
     from eha_core.motion_given import diagnose_motion
-    from eha_core.report.account import account
     from eha_core.report.document import as_json
+    from eha_core.report.motion_account import motion_account
     from eha_core.report.provenance import with_provenance
 
     tests = _read(arguments.test, arguments)
@@ -216,7 +216,7 @@ def _run_motion_given(arguments: argparse.Namespace, recordings: Sequence[Record
     else:
         if arguments.json is not None:
             written = (*written, write_json(Path(arguments.json), as_json(found.diagnosis)))
-        print(account(found.diagnosis, written))
+        print(motion_account(found, written))
     return DAMAGED if any(recording.damaged for recording in recordings) else 0
 
 

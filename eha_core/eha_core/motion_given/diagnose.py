@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,15 +15,17 @@ from eha_core.diagnosis.result import (
     Location,
     NamedEffect,
     Pictures,
+    PredictedRecording,
+    Prediction,
 )
-from eha_core.motion_given.law import Law, Regression, Value, predict
+from eha_core.motion_given.law import Law, Regression, noise_of, predict
 from eha_core.motion_given.motion import Array, Motion, motion_of
+from eha_core.motion_given.recorded import averaging, possible_timing
+from eha_core.motion_given.schedule import schedule_remarks
 from eha_core.motion_given.search import NOISE_REACHED, find_law, worth_of
-from eha_core.quantities import quantity
+from eha_core.motion_given.sentences import Sentences, near_reversals, sentences_of, statement_of
+from eha_core.motion_given.unmapped import unmapped_columns
 from eha_core.recording import Recording
-
-NEAR_REVERSAL = 0.2
-"""Share of the largest speed below which a motion is near a reversal (assumed)."""
 
 NOT_EXAMINED = "coil, spool, valve flow and chambers: nothing that drives the plant was recorded"
 SAME = (
@@ -34,11 +36,12 @@ SAME = (
 
 @dataclass(frozen=True)
 class Found:
-    """A diagnosis, with the law and the motions that it was found on."""
+    """A diagnosis, with the law, the motions that it was found on, and what it says of them."""
 
     diagnosis: Diagnosis
     law: Law
     motions: tuple[Motion, ...]
+    sentences: Sentences
 
 
 def diagnose_motion(
@@ -55,43 +58,68 @@ def diagnose_motion(
         RecordingError: a recording has no force or no motion.
     """
     motions = tuple(motion_of(recording, areas) for recording in recordings)
+    tested = tuple(motion_of(test, areas) for test in tests)
     law = find_law(motions, progress)
-    fits = ChannelFit(*_errors(motions, law), float(np.sqrt(np.mean([motion.noise**2 for motion in motions]))))
-    effects = _effects(motions, law)
+    noise = noise_of(motions)
+    fits = ChannelFit(*_errors(motions, law), float("nan") if noise is None else noise)
+    recorded = averaging(motions, law)
+    effects = (*_effects(motions, law), *([recorded] if recorded else []))
+    sentences = sentences_of(motions, law, [effect.statement for effect in effects])
     first = recordings[0]
-    left = law.share_left
-    explained = Explained(
-        1.0 - left**2, {"force": fits.rmse_after / fits.noise}, fits.rmse_after < NOISE_REACHED * fits.noise,
-        (_left_over(motions, law),),
-    )  # fmt: skip
-    remarks = [remark for recording in recordings for remark in recording.remarks]
-    if {"coulomb_friction", "stribeck_friction", "bouc_wen_friction"} & set(law.ids):
-        remarks.append(SAME)
     found = Diagnosis(
         path=str(first.path),
         duration=sum(recording.duration for recording in recordings),
         channels=tuple(first.channels),
         not_examined=(NOT_EXAMINED,),
-        remarks=tuple(remarks),
+        remarks=tuple(dict.fromkeys(_remarks(recordings, tests, motions, tested, law))),
         damaged=first.damaged,
-        verdict="missing_physics" if effects else "unknown_physics",
-        summary=_summary(effects, explained, fits, law, motions),
+        verdict="missing_physics" if law.terms else "unknown_physics",
+        summary=str(sentences),
         location=(Location("force", 1.0, "everywhere", (), alone=True),),
         parameters=(),
         effects=effects,
         alternatives=(),
         unknown=None,
         training={"force": fits},
-        held_out={"force": _predicted(motions, law, tuple(motion_of(test, areas) for test in tests))} if tests else {},
+        held_out={"force": _predicted(motions, law, tested)} if tests else {},
+        tests=tuple(_tested(test, _predicted(motions, law, [motion]))
+                    for test, motion in zip(tests, tested, strict=True)),
         next_experiment=None,
         rivals=(),
         whiteness={},
         fitted_values={},
         pictures=Pictures({}, {}, {}, {}, {}),
         start_stamp=first.start_stamp,
-        explained=explained,
-    )
-    return Found(found, law, motions)
+        explained=_explained(motions, law, noise),
+    )  # fmt: skip
+    return Found(found, law, motions, sentences)
+
+
+def _explained(motions: Sequence[Motion], law: Law, noise: float | None) -> Explained:
+    share, samples = near_reversals(motions, law)
+    text = f"{100 * share:.0f} % of the residual is near the reversals, where {100 * samples:.0f} % of the samples are"
+    ratio = {} if noise is None else {"force": law.error / noise}
+    complete = noise is not None and law.error < NOISE_REACHED * noise
+    return Explained(1.0 - law.share_left**2, ratio, complete, (Location("force", share, text, ()),))
+
+
+def _remarks(
+    recordings: Sequence[Recording], tests: Sequence[Recording], motions: Sequence[Motion], tested: Sequence[Motion],
+    law: Law,
+) -> Iterator[str]:
+    for recording in (*recordings, *tests):
+        yield from recording.remarks
+    if {"coulomb_friction", "stribeck_friction", "bouc_wen_friction"} & set(law.ids):
+        yield SAME
+    yield from possible_timing(motions, law)
+    yield from schedule_remarks(motions, tested, law.terms)
+    yield from unmapped_columns(recordings, motions, law)
+
+
+def _tested(test: Recording, fit: ChannelFit) -> PredictedRecording:
+    errors = {"nominal": fit.rmse_before, "recalibrated": fit.rmse_calibrated, "augmented": fit.rmse_after}
+    predicted = {model: {"force": Prediction({}, error)} for model, error in errors.items()}
+    return PredictedRecording(str(test.path), predicted, {"force": fit.noise})
 
 
 def _errors(motions: Sequence[Motion], law: Law) -> tuple[float, float, float]:
@@ -110,11 +138,11 @@ def _predicted(motions: Sequence[Motion], law: Law, tests: Sequence[Motion]) -> 
     speed, force = _joined(tests)
     left = np.concatenate([(predict(law, m) - m.force)[m.used] for m in tests])
     straight = force - np.polyval(line, speed)
-    noise = float(np.sqrt(np.mean([m.noise**2 for m in tests])))
+    noise = noise_of(tests)
     about_mean, about_line, about_law = (
         float(np.sqrt(np.mean(residual**2))) for residual in (force - force.mean(), straight, left)
     )
-    return ChannelFit(about_mean, about_line, about_law, noise)
+    return ChannelFit(about_mean, about_line, about_law, float("nan") if noise is None else noise)
 
 
 def _joined(motions: Sequence[Motion]) -> tuple[Array, Array]:
@@ -128,48 +156,16 @@ def _effects(motions: Sequence[Motion], law: Law) -> tuple[NamedEffect, ...]:
     return tuple(
         NamedEffect(
             id=term.id,
-            site="sensor" if term.kind == "smoothing" else "force",
+            site="force",
             equation=f"F = ... + {term.equation}",
             parameters={
                 name: FittedValue(value.value, value.std, value.unit) for name, value in law.values[term.id].items()
             },
             evidence=worth[term.id],
-            statement=term.statement.format(**_told(law.values[term.id])),
+            statement=statement_of(term, law.values[term.id]),
             kind=term.kind,
         )
         for term in law.terms
-    )
-
-
-def _told(values: Mapping[str, Value]) -> dict[str, str]:
-    """Each value with its unit, as a sentence says it."""
-    return {name: quantity(value.value, value.unit, 4) for name, value in values.items()}
-
-
-def _left_over(motions: Sequence[Motion], law: Law) -> Location:
-    """Whether the residual is largest near the reversals or in motion."""
-    near, all_of_it, shares = 0.0, 0.0, 0.0
-    for motion in motions:
-        square = (predict(law, motion) - motion.force)[motion.used] ** 2
-        slow = np.abs(motion.velocity[motion.used]) < NEAR_REVERSAL * np.max(np.abs(motion.velocity))
-        near, all_of_it = near + float(square[slow].sum()), all_of_it + float(square.sum())
-        shares += float(slow.mean()) / len(motions)
-    share = near / all_of_it if all_of_it > 0.0 else 0.0
-    text = f"{100 * share:.0f} % of the residual is near the reversals, where {100 * shares:.0f} % of the samples are"
-    return Location("force", share, text, ())
-
-
-def _summary(
-    effects: Sequence[NamedEffect], explained: Explained, fits: ChannelFit, law: Law, motions: Sequence[Motion]
-) -> str:
-    if not effects:
-        return f"Motion given: no term explains the force, which varies by {fits.rmse_before:.4g} N"
-    statements = "; ".join(effect.statement for effect in effects)
-    left = f"{fits.rmse_after:.3g} N RMS is left"
-    noise = ", which is noise" if explained.complete else f", {explained.times_noise['force']:.3g} times the noise"
-    return (
-        f"Motion given, the force is explained but for {100 * law.share_left:.1f} % of its deviation: {statements}."
-        f" {left}{noise}; {explained.left_over[0].where}"
     )
 
 

@@ -9,7 +9,9 @@ from itertools import product
 import numpy as np
 from scipy.optimize import least_squares, nnls
 
+from eha_core.errors import RecordingError
 from eha_core.motion_given.motion import Array, Flags, Indices, Motion
+from eha_core.motion_given.schedule import MOST_LEVELS, scheduled_terms
 from eha_core.motion_given.terms import TERMS, Shape, Term, dry_state, moving_average
 
 BLOCKS = 12
@@ -54,7 +56,8 @@ class Law:
 
 def ordered(terms: Sequence[Term]) -> tuple[Term, ...]:
     """The terms in the order of the catalogue."""
-    return tuple(sorted(terms, key=TERMS.index))
+    places = {term.id: place for place, term in enumerate(TERMS)}
+    return tuple(sorted(terms, key=lambda term: places[term.id]))
 
 
 def shapes_of(terms: Sequence[Term]) -> tuple[Shape, ...]:
@@ -65,7 +68,10 @@ def shapes_of(terms: Sequence[Term]) -> tuple[Shape, ...]:
 def columns_of(
     terms: Sequence[Term], motion: Motion, shape: Sequence[float] | Array, rows: Indices | None = None
 ) -> Array:
-    """The columns (n, sizes) of the law over one motion, or over the `rows` of it that are wanted."""
+    """The columns (n, sizes) of the law over one motion, or over the `rows` of it that are wanted.
+
+    They are averaged as the motion's force was; the average is taken as centred.
+    """
     own: dict[str, tuple[float, ...]] = {}
     place = 0
     for term in terms:
@@ -73,19 +79,24 @@ def columns_of(
         place += len(term.shapes)
     rubbing = next((term for term in terms if term.kind == "dry friction"), None)
     dry = dry_state(rubbing, motion, own[rubbing.id] if rubbing else ())
-    smooth = own.get("smoothed_force")
-    if smooth is None and rows is not None:
+    if motion.averaged is None and rows is not None:
         motion, dry = motion.at(rows), dry[rows]
     columns = [column for term in terms for column in term.columns(motion, dry, own[term.id])]
-    if smooth is not None and motion.period is not None:
-        samples = max(1.0, smooth[0] * motion.period / motion.step)
-        columns = [moving_average(column, samples, rows) for column in columns]
+    if motion.averaged is not None:
+        columns = [moving_average(column, motion.averaged / motion.step, rows) for column in columns]
     length = len(motion.time) if rows is None else len(rows)
     return np.stack(columns, axis=1) if columns else np.zeros((length, 0))
 
 
 def predict(law: Law, motion: Motion) -> Array:
-    """The force [N] of the law over a motion, whose own force it does not look at."""
+    """The force [N] of the law over a motion, whose own force it does not look at.
+
+    Raises:
+        RecordingError: the law depends on a schedule that the motion does not have.
+    """
+    over = next((term.schedule for term in law.terms if term.levels), None)
+    if over is not None and motion.schedule is None:
+        raise RecordingError(f"{motion.name}: no schedule channel; the law depends on {over}")
     return np.asarray(columns_of(law.terms, motion, law.shape) @ np.array(law.sizes))
 
 
@@ -94,6 +105,12 @@ def blocks_of(motion: Motion, most: int = ROWS) -> tuple[Indices, Indices]:
     rows: Indices = np.flatnonzero(motion.used).astype(np.int64)
     rows = rows[:: max(1, len(rows) // most)]
     return rows, (BLOCKS * np.arange(len(rows), dtype=np.int64)) // len(rows)
+
+
+def noise_of(motions: Sequence[Motion]) -> float | None:
+    """The RMS noise [N] of the force of all motions; None where the noise of one is not known."""
+    levels = [motion.noise for motion in motions if motion.noise is not None]
+    return float(np.sqrt(np.mean(np.square(levels)))) if len(levels) == len(motions) else None
 
 
 @dataclass(frozen=True)
@@ -125,9 +142,9 @@ class Regression:
         return max(float(np.max(np.abs(motion.velocity))) for motion in self.motions)
 
     @property
-    def noise(self) -> float:
-        """The noise of the force [N]."""
-        return float(np.sqrt(np.mean([motion.noise**2 for motion in self.motions])))
+    def noise(self) -> float | None:
+        """The noise of the force [N]; None where a recording's is not known."""
+        return noise_of(self.motions)
 
 
 def solve(columns: Array, force: Array) -> Array:
@@ -192,10 +209,20 @@ def search_shape(regression: Regression, terms: Sequence[Term], rows: Flags, kno
 
 
 def at_work(terms: Sequence[Term], sizes: Array) -> bool:
-    """Whether every size is there; dry friction may all be the pressure's, and then has only its shape."""
+    """Whether every size is there.
+
+    One that depends on the schedule may be zero at some of its values. Dry friction may all be the pressure's, and then
+    has only its shape.
+    """
     pressed = any(term.kind == "friction under pressure" for term in terms)
-    needed = [not (pressed and term.kind == "dry friction") for term in terms for _ in term.sizes]
-    return bool(np.all(sizes[np.array(needed, dtype=bool)] != 0.0))
+    place = 0
+    for term in terms:
+        own = sizes[place : place + len(term.sizes)] != 0.0
+        place += len(term.sizes)
+        there = own.any() if term.levels else own.all()
+        if len(own) and not there and not (pressed and term.kind == "dry friction"):
+            return False
+    return True
 
 
 def held_out_errors(regression: Regression, terms: Sequence[Term], shape: Sequence[float] | Array) -> Array:
@@ -210,14 +237,16 @@ def held_out_errors(regression: Regression, terms: Sequence[Term], shape: Sequen
     return np.array([np.mean(square[regression.block == block]) for block in blocks])
 
 
-def fit_law(motions: Sequence[Motion], ids: Sequence[str]) -> Law:
+def fit_law(motions: Sequence[Motion], ids: Sequence[str], scheduled: Sequence[str] = ()) -> Law:
     """Fit the law of those terms to recordings of one rig.
 
     Args:
         motions: the recordings.
         ids: terms, by id.
+        scheduled: those of them whose sizes are a function of the schedule, which all recordings must have.
     """
-    terms = ordered([term for term in TERMS if term.id in ids])
+    over = [term for term in scheduled_terms(motions, MOST_LEVELS) if term.id in scheduled]
+    terms = ordered([*over, *(term for term in TERMS if term.id in ids and term.id not in scheduled)])
     return finish(Regression.of(motions), terms)
 
 

@@ -12,7 +12,8 @@ from scipy.signal import savgol_filter
 
 from eha_core.errors import RecordingError
 from eha_core.health.noise import estimate_noise
-from eha_core.recording import Recording
+from eha_core.motion_given.averaging import averaging_window
+from eha_core.recording import Channel, Recording
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -41,8 +42,11 @@ PEAKED = 0.5
 class Motion:
     """One recording: (n,) values on an even time axis, SI; pressure gauge, None where there was none.
 
-    `used` is False in gaps of the recording. `period` [s] of a periodic motion, else None. `noise` [N] of the force.
-    `moving` [m/s] is the speed from which on a direction is certain.
+    `used` is False in gaps of the recording. `period` [s] of a periodic motion, else None. `noise` [N] of the force,
+    which an average over samples leaves unknown: then None. `moving` [m/s] is the speed from which on a direction is
+    certain. `averaged` [s] is the window of a moving average that the force went through, None where none shows, and
+    `position_averaged` the position's. `schedule` is a further quantity, in a unit of its own, on which coefficients
+    may depend, and `schedule_name` what it is called in the file.
     """
 
     name: str
@@ -54,8 +58,12 @@ class Motion:
     pressure: Array | None
     used: Flags
     period: float | None
-    noise: float
+    noise: float | None
     moving: float
+    averaged: float | None = None
+    position_averaged: float | None = None
+    schedule: Array | None = None
+    schedule_name: str = ""
 
     def at(self, rows: Indices) -> Motion:
         """The values at some of the instants; what needs an even axis, the step among it, is lost."""
@@ -63,7 +71,9 @@ class Motion:
             name: getattr(self, name)[rows]
             for name in ("time", "position", "velocity", "acceleration", "force", "used")
         }
-        return replace(self, **arrays, pressure=None if self.pressure is None else self.pressure[rows])
+        pressure = None if self.pressure is None else self.pressure[rows]
+        schedule = None if self.schedule is None else self.schedule[rows]
+        return replace(self, **arrays, pressure=pressure, schedule=schedule)
 
     @property
     def step(self) -> float:
@@ -109,6 +119,8 @@ def motion_of(recording: Recording, areas: tuple[float, float] | None = None) ->
     velocity, quiet = _velocity(position, step, noise)
     if "velocity" in on_axis:
         velocity, quiet = on_axis["velocity"], estimate_noise(channels["velocity"].values)
+    recorded = on_axis["force"] if pushed else channels["force"].values
+    averaged = _seconds(averaging_window(recorded), step)
     return Motion(
         name=recording.path.stem,
         time=time,
@@ -119,9 +131,24 @@ def motion_of(recording: Recording, areas: tuple[float, float] | None = None) ->
         pressure=_pressure(on_axis),
         used=_near_a_sample(time, stamps, GAP * step),
         period=_period(velocity, step),
-        noise=estimate_noise(on_axis["force"] if pushed else channels["force"].values),
+        noise=estimate_noise(recorded) if averaged is None else None,
         moving=4.0 * quiet,
+        averaged=averaged,
+        position_averaged=_seconds(averaging_window(channels["position"].values), step),
+        schedule=on_axis.get("schedule"),
+        schedule_name=_called(channels["schedule"]) if "schedule" in channels else "",
     )
+
+
+def _called(channel: Channel) -> str:
+    """The column's or topic's name, with the unit that the topics file gives."""
+    rule = channel.rule
+    name = (rule.column or rule.topic if rule else None) or channel.name
+    return f"{name} [{rule.unit}]" if rule and rule.unit else name
+
+
+def _seconds(samples: int | None, step: float) -> float | None:
+    return None if samples is None else samples * step
 
 
 def _pressure(on_axis: Mapping[str, Array]) -> Array | None:

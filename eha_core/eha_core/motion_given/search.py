@@ -17,6 +17,7 @@ from eha_core.motion_given.law import (
     solve_for,
 )
 from eha_core.motion_given.motion import Array, Motion
+from eha_core.motion_given.schedule import MOST_LEVELS, scheduled_terms
 from eha_core.motion_given.terms import TERMS, Term
 
 WORTH = 0.15
@@ -61,8 +62,9 @@ def find_law(motions: Sequence[Motion], progress: Callable[[str], None] = lambda
     regression = Regression.of(motions)
     total = float(np.var(regression.force[regression.held_out]))
     able = tuple(term for term in TERMS if _can_show(term, motions))
+    able = (*able, *(term for most in (2, MOST_LEVELS) for term in scheduled_terms(motions, most)))
     nothing = _try(regression, (), None)
-    together = _pruned(regression, _try(regression, _linear(regression, able), None), total)
+    together = _pruned(regression, _try(regression, _linear(regression, able), None), able, total)
     found = [_grown(regression, start, able, total, progress) for start in (nothing, together)]
     best = _simplest([tried for tried in found if np.isfinite(tried.mean)])
     return finish(regression, best.law.terms, best.law)
@@ -70,7 +72,7 @@ def find_law(motions: Sequence[Motion], progress: Callable[[str], None] = lambda
 
 def _linear(regression: Regression, able: Sequence[Term]) -> tuple[Term, ...]:
     """The linear terms that are at work where all are fitted at once, with no friction, spring or mass below zero."""
-    terms = [term for term in able if not term.shapes and term.id not in CONTAINED]
+    terms = [term for term in able if not term.shapes and not term.levels and term.id not in CONTAINED]
     columns = regression.columns(terms, ())
     sizes = solve_for(terms, columns, regression.force) * np.sqrt(np.sum(columns**2, axis=0))
     owners = [term.id for term in terms for _ in term.sizes]
@@ -82,14 +84,14 @@ def _grown(
     regression: Regression, best: Try, able: Sequence[Term], total: float, progress: Callable[[str], None]
 ) -> Try:
     """What adding to a set leads to, where every addition has to earn its place and keep the others'."""
-    while np.sqrt(best.mean) > NOISE_REACHED * regression.noise:
+    while np.sqrt(best.mean) > NOISE_REACHED * (regression.noise or 0.0):
         progress(f"{' + '.join(best.law.ids) or 'nothing'} leaves {100 * np.sqrt(best.mean / total):.1f} %")
         larger = [terms for terms in _neighbours(best.law.terms, able) if not _collinear(regression, terms, best.law)]
         grown = [_try(regression, terms, best.law) for terms in larger]
         earning = [tried for tried in grown if _earns(best, tried, total)]
         if not earning:
             break
-        best = _pruned(regression, _simplest(earning), total)
+        best = _pruned(regression, _simplest(earning), able, total)
     return best
 
 
@@ -115,8 +117,6 @@ def _simplest(tries: Sequence[Try]) -> Try:
 
 
 def _can_show(term: Term, motions: Sequence[Motion]) -> bool:
-    if term.id == "smoothed_force":
-        return all(motion.period is not None for motion in motions)
     return not term.needs_pressure or all(motion.pressure is not None for motion in motions)
 
 
@@ -165,23 +165,23 @@ def _earns(without: Try, with_it: Try, total: float) -> bool:
     return bool(certain and float(np.mean(gain)) > max(WORTH * without.mean, PLAIN * total))
 
 
-def _plainer(terms: Sequence[Term]) -> list[Term]:
+def _plainer(terms: Sequence[Term], able: Sequence[Term]) -> list[Term]:
     """Forms with fewer parameters, of the kinds that a set has."""
 
     def parameters(term: Term) -> int:
         return len(term.sizes) + len(term.shapes)
 
     return [
-        plain for plain in TERMS for term in terms if plain.kind == term.kind and parameters(plain) < parameters(term)
+        plain for plain in able for term in terms if plain.kind == term.kind and parameters(plain) < parameters(term)
     ]
 
 
-def _pruned(regression: Regression, best: Try, total: float) -> Try:
+def _pruned(regression: Regression, best: Try, able: Sequence[Term], total: float) -> Try:
     """The set without the terms that do not earn their place beside the others."""
     while len(best.law.terms) > 1:
         fewer = [ordered([other for other in best.law.terms if other is not term]) for term in best.law.terms]
         fewer += [ordered([term for term in best.law.terms if term.kind != plain.kind] + [plain]) for plain in
-                  _plainer(best.law.terms)]  # fmt: skip
+                  _plainer(best.law.terms, able)]  # fmt: skip
         tries = [_try(regression, terms, best.law) for terms in fewer]
         weakest = min(tries, key=lambda tried: tried.mean)
         if _earns(weakest, best, total):

@@ -1,4 +1,4 @@
-"""The terms that a law of given motion can have: friction, spring, inertia, and how the force was recorded."""
+"""The terms that a law of given motion can have: friction, spring and inertia."""
 
 from __future__ import annotations
 
@@ -40,6 +40,8 @@ class Term:
         columns: (motion, dry friction's direction or state, shape values) to one column for each size.
         signed: whether sizes may be negative: friction, springs and masses of a rig are not.
         needs_pressure: whether a chamber's pressure must have been recorded.
+        levels: values of the schedule at which each size has a value of its own; empty where it does not depend on it.
+        schedule: the schedule's name, with its unit.
     """
 
     id: str
@@ -51,6 +53,8 @@ class Term:
     shapes: tuple[Shape, ...] = ()
     needs_pressure: bool = False
     signed: bool = False
+    levels: tuple[float, ...] = ()
+    schedule: str = ""
 
 
 DISTANCE = Shape("distance", "m", (3e-5, 3e-4, 2e-3), 1e-6, 0.05)
@@ -111,10 +115,6 @@ TERMS = (
          lambda motion, dry, shape: [motion.position]),
     Term("moving_mass", "inertia", "a mass of {mass} is accelerated", "mass dv/dt", (("mass", "kg"),),
          lambda motion, dry, shape: [motion.acceleration]),
-    Term("smoothed_force", "smoothing",
-         "the recorded force is a centred moving average over {share} of the motion's period",
-         "mean of the force over share T", (), lambda motion, dry, shape: [],
-         (Shape("share", "-", (0.05, 0.12), 0.005, 0.4),)),
 )  # fmt: skip
 """Every term. The force is that which moves the rig: positive along positive position."""
 

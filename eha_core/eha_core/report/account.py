@@ -18,7 +18,9 @@ from eha_core.report.stage import compared_models, model_errors
 from eha_core.report.undetected import not_missing
 from eha_core.report.wording import channel_title, channels_listed, listed, span
 
-_INDENT = 13
+INDENT = 13
+"""Columns of the labels."""
+
 _LONGEST = {
     "Recording": 2, "Health": 4, "Verdict": 3, "Whole": 5, "Located": 2, "Named": 2, "Recovered": 2, "Parameters": 2,
     "Not found": 2, "Next test": 3, "Note": 2,
@@ -40,7 +42,7 @@ def account(diagnosis: Diagnosis, written: Sequence[Path] = (), width: int = 100
     lines += each_recording(diagnosis)
     lines += _section("Next test", diagnosis.next_experiment.statement if diagnosis.next_experiment else "", width)
     lines += _section("Note", "; ".join(_notes(diagnosis)), width)
-    lines += _written(written)
+    lines += files_written(written)
     return "\n".join(lines)
 
 
@@ -56,7 +58,7 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
     for location in diagnosis.location[:1]:
         yield "Located", _located(location)
     for place, effect in enumerate(diagnosis.effects[:_MOST_EFFECTS]):
-        yield "" if place else "Named", _named(effect)
+        yield "" if place else "Named", effect_in_words(effect)
     if diagnosis.unknown:
         law = diagnosis.unknown
         expression = f": {law.expression}" if law.expression else ""
@@ -71,7 +73,8 @@ def _findings(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
     yield "Rivals", f"cannot be distinguished from {' or '.join(rivals)}" if rivals else ""
 
 
-def _named(effect: NamedEffect) -> str:
+def effect_in_words(effect: NamedEffect) -> str:
+    """A named effect with its values and their 95 % intervals."""
     values = [f"{name} {fitted_in_words(fitted)}" for name, fitted in identified_parameters(effect).items()]
     return f"{effect.id} ({', '.join(values)}; 95 %)"
 
@@ -114,8 +117,8 @@ def _section(label: str, text: str, width: int, more: int = 0) -> list[str]:
     """The text beside its label, cut after its usual number of lines and `more`; the report has it all."""
     if not text:
         return []
-    wrapped = _cut(text, width - _INDENT, _LONGEST.get(label or "Named", 1) + more)
-    return [f"{'' if row else label:{_INDENT}}{line}" for row, line in enumerate(wrapped)]
+    wrapped = _cut(text, width - INDENT, _LONGEST.get(label or "Named", 1) + more)
+    return [f"{'' if row else label:{INDENT}}{line}" for row, line in enumerate(wrapped)]
 
 
 def _cut(text: str, width: int, longest: int) -> list[str]:
@@ -129,8 +132,9 @@ def _cut(text: str, width: int, longest: int) -> list[str]:
     return lines if len(lines) <= longest else wrap(text, width, max_lines=longest, placeholder=" …")
 
 
-def _written(written: Sequence[Path]) -> list[str]:
+def files_written(written: Sequence[Path]) -> list[str]:
+    """The folders that files were written to, with their names."""
     gathered: dict[Path, list[str]] = {}
     for path in written:
         gathered.setdefault(path.parent, []).append(path.name)
-    return [f"{'Written':{_INDENT}}{folder}/: {', '.join(names)}" for folder, names in list(gathered.items())[:2]]
+    return [f"{'Written':{INDENT}}{folder}/: {', '.join(names)}" for folder, names in list(gathered.items())[:2]]
