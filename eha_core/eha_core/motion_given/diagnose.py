@@ -18,8 +18,8 @@ from eha_core.diagnosis.result import (
     PredictedRecording,
     Prediction,
 )
-from eha_core.motion_given.law import Law, Regression, noise_of, predict
-from eha_core.motion_given.motion import Array, Motion, motion_of
+from eha_core.motion_given.law import Law, Regression, predict
+from eha_core.motion_given.motion import Array, Motion, motion_of, noise_of
 from eha_core.motion_given.recorded import averaging, possible_timing
 from eha_core.motion_given.schedule import schedule_remarks
 from eha_core.motion_given.search import NOISE_REACHED, find_law, worth_of

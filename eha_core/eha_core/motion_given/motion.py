@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import ceil
 
@@ -149,6 +149,12 @@ def _called(channel: Channel) -> str:
 
 def _seconds(samples: int | None, step: float) -> float | None:
     return None if samples is None else samples * step
+
+
+def noise_of(motions: Sequence[Motion]) -> float | None:
+    """The RMS noise [N] of the force of all motions; None where the noise of one is not known."""
+    levels = [motion.noise for motion in motions if motion.noise is not None]
+    return float(np.sqrt(np.mean(np.square(levels)))) if len(levels) == len(motions) else None
 
 
 def _pressure(on_axis: Mapping[str, Array]) -> Array | None:

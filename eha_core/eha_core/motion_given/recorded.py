@@ -74,7 +74,7 @@ def possible_timing(motions: Sequence[Motion], law: Law) -> list[str]:
     A residual says that the force turns round earlier, later or more slowly than the law, not why. Averages are only
     named where a spectrum proves them.
     """
-    if not law.terms:
+    if not law.terms or (len(motions) > 1 and not law.holds):
         return []
     periods = [motion.period for motion in motions if motion.period is not None]
     several = len(periods) > 1 and max(periods) - min(periods) > AGREE * max(periods)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eha_core.motion_given.law import Law, Value, noise_of, predict
-from eha_core.motion_given.motion import Motion
+from eha_core.motion_given.law import Law, Value, predict
+from eha_core.motion_given.motion import Motion, noise_of
 from eha_core.motion_given.search import NOISE_REACHED
 from eha_core.motion_given.terms import Term
 from eha_core.quantities import quantity
@@ -19,9 +19,9 @@ NEAR_REVERSAL = 0.2
 ONE_FREQUENCY = 0.05
 """Share by which the periods of single sines differ at most, for them to be one frequency (assumed)."""
 
-ONE_LAW = 0.2
-"""Share of the force's deviation that one law may leave on recordings of one rig in one condition (assumed; regression
-on sign(v), v and x leaves 0.17 of a damper whose current is kept)."""
+SINE = 0.9
+"""Correlation of position and acceleration from which on a motion is a sine, on which a spring and a mass are one law;
+measured sines have 0.97 to 0.99 (assumed)."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,13 @@ def sentences_of(motions: Sequence[Motion], law: Law, statements: Sequence[str])
         varies = float(np.std(np.concatenate([motion.force[motion.used] for motion in motions])))
         certain = f"Motion given: no term explains the force, which varies by {varies:.4g} N"
     else:
+        listed, left = "; ".join(statements), f"{100 * law.share_left:.1f} %"
+        all_of_them = " for all recordings" if len(motions) > 1 else ""
         certain = (
-            f"Motion given, the force is explained but for {100 * law.share_left:.1f} % of its deviation:"
-            f" {'; '.join(statements)}"
+            f"Motion given, the force is explained but for {left} of its deviation: {listed}"
+            if law.holds
+            else f"Motion given, no law was found that holds{all_of_them}: the best leaves {left} of the force's"
+            f" deviation, with these parts: {listed}"
         )
     return Sentences(certain, _remains(motions, law), _next(motions, law))
 
@@ -96,11 +100,11 @@ def _remains(motions: Sequence[Motion], law: Law) -> str:
 
 def _next(motions: Sequence[Motion], law: Law) -> str:
     """The one recording that would add most."""
-    if len(motions) > 1 and law.share_left > ONE_LAW and all(motion.schedule is None for motion in motions):
+    if len(motions) > 1 and not law.holds and all(motion.schedule is None for motion in motions):
         return "Record what was changed between the recordings and map it as schedule: one law does not hold for all"
     if any(motion.averaged is not None for motion in motions):
         return "Record the force as the sensor gives it: an average hides its noise and its reversals"
-    periods = [motion.period for motion in motions if motion.period is not None]
+    periods = [motion.period for motion in motions if motion.period is not None and _is_sine(motion)]
     if len(periods) == len(motions) and max(periods) - min(periods) < ONE_FREQUENCY * max(periods):
         return (
             "Record another frequency: at one frequency a spring and a mass are one law, and a delay and compliance"
@@ -109,3 +113,7 @@ def _next(motions: Sequence[Motion], law: Law) -> str:
     if near_reversals(motions, law)[0] > 0.5:
         return "Record slow reversals of the motion: most of what remains is there"
     return "Record a motion of other speeds and strokes, and give it as --test"
+
+
+def _is_sine(motion: Motion) -> bool:
+    return float(np.corrcoef(motion.position, motion.acceleration)[0, 1]) < -SINE
