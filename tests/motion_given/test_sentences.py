@@ -37,7 +37,7 @@ def test_a_residual_that_is_noise_is_called_so() -> None:
 
 def test_recordings_that_no_law_holds_for_are_not_explained_with_certainty() -> None:
     said = sentences(motion(FORCE), motion(6.0 * FORCE))
-    assert said.certain.startswith("Motion given, no law was found that holds for all recordings: the best leaves")
+    assert said.certain.startswith("Motion given, no law was found that holds for all recordings; the best leaves")
     assert said.next_recording.startswith("Record what was changed between the recordings")
 
 
@@ -49,7 +49,7 @@ def test_one_frequency_of_a_sine_asks_for_another_and_other_motions_do_not() -> 
 
 def test_no_law_says_how_much_the_force_varies() -> None:
     found = diagnose_motion([recording(np.zeros_like(TIME), noise=5.0)])
-    assert found.sentences.certain.startswith("Motion given: no term explains the force, which varies by 4.997 N")
+    assert found.sentences.certain.startswith("Motion given, no term explains the force, which varies by 4.997 N")
     assert found.diagnosis.summary == str(found.sentences)
 
 
@@ -65,4 +65,4 @@ def test_raw_recordings_of_two_currents_have_no_certain_law_without_the_current_
 
 @needs_dampers
 def test_the_head_of_the_file_at_5_hz_is_not_explained_with_certainty() -> None:
-    assert "no law was found that holds: the best leaves 25" in sentences(raw_at_5_hz()).certain
+    assert "no law was found that holds; the best leaves 25" in sentences(raw_at_5_hz()).certain

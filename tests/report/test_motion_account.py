@@ -1,9 +1,11 @@
-"""What is printed of a law of given motion: certain, remains, next, each test, and every remark as a whole."""
+"""What is printed of a law of given motion, and shown on its page: certain, remains, next, each test, every remark."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import replace
+from html import unescape
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +14,8 @@ from eha_core.motion_given import Found, diagnose_motion
 from eha_core.recording import Recording
 from eha_core.report.document import as_json
 from eha_core.report.motion_account import motion_account
+from eha_core.report.motion_given import write_motion_given
+from eha_core.report.motion_page import effect_table, error_table, motion_page
 
 TIME = np.arange(4000) / 500.0
 
@@ -80,3 +84,37 @@ def test_a_force_that_was_averaged_has_no_ratio_to_a_noise() -> None:
     assert document["explained"]["times_noise"] == {}
     assert not document["explained"]["complete"]
     assert "as the sensor gives it" in found.sentences.next_recording
+
+
+def test_the_page_says_the_same_in_the_same_order(found: Found, tmp_path: Path) -> None:
+    page, figures, document = write_motion_given(found, tmp_path)
+    shown = " ".join(unescape(page.read_text(encoding="utf-8")).replace("\N{NO-BREAK SPACE}", " ").split())
+    told = found.sentences
+    said = [told.explained, *told.parts, told.remains, told.next_recording, *found.diagnosis.remarks]
+    places = [shown.index(sentence) for sentence in said]
+    assert places == sorted(places)
+    assert "$" not in shown.split("</style>")[1].split("<script")[0]
+    assert json.loads(document.read_text())["summary"] and (figures / "law.png").is_file()
+
+
+def test_its_tables_have_every_part_of_the_law_and_every_test(found: Found) -> None:
+    parts = {(row[1]): row[2] for row in effect_table(found).rows}
+    assert set(parts) >= {"force", "damping"}
+    value = float(parts["damping"].split()[0])
+    assert value == pytest.approx(900.0, rel=0.02)
+    names = [row[0] for row in error_table(found).rows]
+    assert names == ["fitted recordings", "test: other.csv", "test: third.csv"]
+    deviation, law = (float(error_table(found).rows[1][place].split()[0]) for place in (1, 2))
+    assert deviation == pytest.approx(float(np.std(recording(-0.6).channels["force"].values)), rel=0.01)
+    assert law < 6.0
+
+
+def test_the_page_of_a_law_that_does_not_hold_says_so_first() -> None:
+    generator = np.random.default_rng(2)
+    rough = recording(1.0)
+    force = rough.channels["force"]
+    noisy = 300.0 * np.repeat(generator.standard_normal(200), 20)
+    loud = replace(rough, channels={**rough.channels, "force": replace(force, values=force.values + noisy)})
+    found = diagnose_motion([loud])
+    assert not found.law.holds
+    assert "No law holds" in motion_page(found).split("<h1>")[0].split("<body>")[1]

@@ -26,11 +26,20 @@ measured sines have 0.97 to 0.99 (assumed)."""
 
 @dataclass(frozen=True)
 class Sentences:
-    """One sentence on each: what is certain, what remains, and what to record next."""
+    """One sentence on each: what is certain, what remains, and what to record next.
 
-    certain: str
+    `explained` says how much the law explains, `parts` what each of its parts is.
+    """
+
+    explained: str
+    parts: tuple[str, ...]
     remains: str
     next_recording: str
+
+    @property
+    def certain(self) -> str:
+        """How much the law explains, and its parts."""
+        return f"{self.explained}: {'; '.join(self.parts)}" if self.parts else self.explained
 
     def __str__(self) -> str:
         return f"{self.certain}. {self.remains}. {self.next_recording}"
@@ -38,19 +47,19 @@ class Sentences:
 
 def sentences_of(motions: Sequence[Motion], law: Law, statements: Sequence[str]) -> Sentences:
     """The sentences on a law whose effects have these statements."""
+    left = f"{100 * law.share_left:.1f} %"
     if not law.terms:
         varies = float(np.std(np.concatenate([motion.force[motion.used] for motion in motions])))
-        certain = f"Motion given: no term explains the force, which varies by {varies:.4g} N"
+        explained = f"Motion given, no term explains the force, which varies by {varies:.4g} N"
+    elif law.holds:
+        explained = f"Motion given, the force is explained but for {left} of its deviation"
     else:
-        listed, left = "; ".join(statements), f"{100 * law.share_left:.1f} %"
         all_of_them = " for all recordings" if len(motions) > 1 else ""
-        certain = (
-            f"Motion given, the force is explained but for {left} of its deviation: {listed}"
-            if law.holds
-            else f"Motion given, no law was found that holds{all_of_them}: the best leaves {left} of the force's"
-            f" deviation, with these parts: {listed}"
+        explained = (
+            f"Motion given, no law was found that holds{all_of_them}; the best leaves {left} of the force's deviation,"
+            " with these parts"
         )
-    return Sentences(certain, _remains(motions, law), _next(motions, law))
+    return Sentences(explained, tuple(statements) if law.terms else (), _remains(motions, law), _next(motions, law))
 
 
 def statement_of(term: Term, values: Mapping[str, Value]) -> str:

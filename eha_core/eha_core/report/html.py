@@ -28,32 +28,34 @@ from eha_core.report.wording import VERDICT_TITLES, words
 def page(diagnosis: Diagnosis, contents: Contents | None = None) -> str:
     """The whole page as text."""
     contents = contents or contents_of(diagnosis)
-    template = Template((files("eha_core.report") / "page.html").read_text(encoding="utf-8"))
-    summary = effect_table(diagnosis) if len(diagnosis.effects) > 1 else None
-    return template.substitute(
+    return filled_page(
         title=escape(f"Diagnosis of {Path(diagnosis.path).name}"),
-        style=(files("eha_core.report") / "page.css").read_text(encoding="utf-8"),
-        script=(files("eha_core.report") / "page.js").read_text(encoding="utf-8"),
-        plotly=get_plotlyjs(),
         recording=escape(Path(diagnosis.path).name),
         verdict=diagnosis.verdict,
         verdict_title=escape(VERDICT_TITLES[diagnosis.verdict]),
         warnings="".join(f'<p class="warning" role="alert">{escape(warning)}</p>' for warning in warnings(diagnosis)),
-        headline=_text(headline(diagnosis)),
-        key_figures="".join(map(_key_figure, key_figures(diagnosis))),
-        supporting="".join(f"<li>{_text(sentence)}</li>" for sentence in supporting(diagnosis)),
-        summary=f"<h3>{escape(summary.title)}</h3>{_table(summary, folded=False, kind='summary')}" if summary else "",
-        proof="".join(_picture(picture) for picture in contents.first_screen),
-        errors_title=escape(error_table(diagnosis).title),
-        errors=_table(error_table(diagnosis), folded=False, kind="errors"),
+        headline=html_text(headline(diagnosis)),
+        key_figures="".join(map(html_key_figure, key_figures(diagnosis))),
+        supporting="".join(f"<li>{html_text(sentence)}</li>" for sentence in supporting(diagnosis)),
+        summary=titled_table(effect_table(diagnosis), "summary") if len(diagnosis.effects) > 1 else "",
+        proof="".join(html_picture(picture) for picture in contents.first_screen),
+        errors=titled_table(error_table(diagnosis), "errors"),
         files=_files(diagnosis),
-        provenance=_provenance(diagnosis),
+        provenance=html_provenance(diagnosis),
         steps="".join(
             f'<a href="#{stage.name}"><span>{number}</span>{escape(stage.title)}</a>'
             for number, stage in enumerate(contents.stages, start=1)
         ),
         stages="".join(_stage(number, stage) for number, stage in enumerate(contents.stages, start=1)),
     )
+
+
+def filled_page(**parts: str) -> str:
+    """The page with these parts in its places, as HTML, its style and its script."""
+    template = Template((files("eha_core.report") / "page.html").read_text(encoding="utf-8"))
+    own = {name: (files("eha_core.report") / f"page.{kind}").read_text(encoding="utf-8")
+           for name, kind in (("style", "css"), ("script", "js"))}  # fmt: skip
+    return template.substitute(**own, plotly=get_plotlyjs(), **parts)
 
 
 def write_page(diagnosis: Diagnosis, path: Path, contents: Contents | None = None) -> None:
@@ -71,14 +73,15 @@ FILES = {
 }
 
 
-def _key_figure(key_figure: KeyFigure) -> str:
+def html_key_figure(key_figure: KeyFigure) -> str:
+    """A question with its answer."""
     return (
-        f"<div><dt>{_text(key_figure.question)}</dt><dd><b>{_text(key_figure.answer)}</b>"
-        f"{_text(key_figure.basis)}</dd></div>"
+        f"<div><dt>{html_text(key_figure.question)}</dt><dd><b>{html_text(key_figure.answer)}</b>"
+        f"{html_text(key_figure.basis)}</dd></div>"
     )
 
 
-def _text(words: str) -> str:
+def html_text(words: str) -> str:
     """Text as HTML; a number and its unit stay on one line."""
     return escape(re.sub(UNIT_BEHIND, "\N{NO-BREAK SPACE}", words))
 
@@ -91,7 +94,7 @@ def _files(diagnosis: Diagnosis) -> str:
     return "".join(rows)
 
 
-def _provenance(diagnosis: Diagnosis) -> str:
+def html_provenance(diagnosis: Diagnosis) -> str:
     """The diagnosis' provenance as a list; empty if not known."""
     rows = (f"<dt>{escape(words(name))}</dt><dd>{escape(text)}</dd>" for name, text in diagnosis.provenance.items())
     return "".join(rows)
@@ -101,10 +104,10 @@ def _stage(number: int, stage: Stage) -> str:
     code = f"<pre>{escape(stage.code)}</pre>" if stage.code else ""
     return (
         f'<section id="{stage.name}"><p class="step"><span>{number}</span>{escape(stage.title)}</p>'
-        f"<h2>{_text(stage.headline)}</h2>{_paragraphs(stage.sentences)}{code}"
+        f"<h2>{html_text(stage.headline)}</h2>{_paragraphs(stage.sentences)}{code}"
         f"{''.join(_part(part) for part in stage.parts)}"
-        f"{''.join(_picture(picture) for picture in stage.pictures)}"
-        f"{''.join(_table(table) for table in stage.tables)}</section>"
+        f"{''.join(html_picture(picture) for picture in stage.pictures)}"
+        f"{''.join(html_table(table) for table in stage.tables)}</section>"
     )
 
 
@@ -113,15 +116,15 @@ def _part(part: Part) -> str:
     code = f"<pre>{escape(part.code)}</pre>" if part.code else ""
     return (
         f"<article><div><h3>{escape(part.title)}</h3>{_paragraphs(part.sentences)}{code}</div>"
-        f"<div>{''.join(_picture(picture) for picture in part.pictures)}</div></article>"
+        f"<div>{''.join(html_picture(picture) for picture in part.pictures)}</div></article>"
     )
 
 
 def _paragraphs(sentences: Iterable[str]) -> str:
-    return f"<p>{' '.join(_text(sentence) for sentence in sentences if sentence)}</p>"
+    return f"<p>{' '.join(html_text(sentence) for sentence in sentences if sentence)}</p>"
 
 
-def _picture(picture: Picture) -> str:
+def html_picture(picture: Picture) -> str:
     """A picture's plots as JSON, which the page's script draws."""
     title = f"<h3>{escape(picture.title)}</h3>" if picture.title else ""
     chips = "".join(
@@ -153,7 +156,13 @@ def _cells(headings: tuple[str, ...], row: tuple[str, ...]) -> str:
     )
 
 
-def _table(table: Table, folded: bool = True, kind: str = "") -> str:
+def titled_table(table: Table, kind: str) -> str:
+    """A table below its title."""
+    return f"<h3>{escape(table.title)}</h3>{html_table(table, folded=False, kind=kind)}"
+
+
+def html_table(table: Table, folded: bool = True, kind: str = "") -> str:
+    """A table, behind its title if it is `folded`."""
     head = "".join(f"<th>{escape(heading)}</th>" for heading in table.headings)
     body = "".join(f"<tr>{_cells(table.headings, row)}</tr>" for row in table.rows)
     content = (

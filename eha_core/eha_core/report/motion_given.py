@@ -1,4 +1,4 @@
-"""The output files of `eha diagnose` for a recording whose motion is given: the document and a figure of the law."""
+"""The output files of `eha diagnose` for a recording whose motion is given: page, document and a figure of the law."""
 
 from __future__ import annotations
 
@@ -21,21 +21,25 @@ NAME = "law"
 
 
 def write_motion_given(found: Found, folder: Path) -> tuple[Path, ...]:
-    """Write diagnosis.json and figures/law.png; returns what was written.
+    """Write report.html, diagnosis.json and figures/law.png; returns what was written.
 
     Raises:
         EhaError: the folder cannot be written to.
     """
-    document = folder / "diagnosis.json"
+    # the page draws with this module's picture, and loads slowly
+    from eha_core.report.motion_page import motion_page
+
+    page, document = folder / "report.html", folder / "diagnosis.json"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         document.write_text(as_json(found.diagnosis), encoding="utf-8")
         write_figures([law_picture(found)], folder / "figures")
+        page.write_text(motion_page(found), encoding="utf-8")
     except OSError as error:
         raise EhaError(
             f"{error.filename or folder}: cannot be written ({error.strerror}); choose another --out"
         ) from error
-    return (folder / "figures", document)
+    return (page, folder / "figures", document)
 
 
 def law_picture(found: Found) -> Picture:
