@@ -125,6 +125,17 @@ def test_what_explains_nothing_beside_the_others_is_dropped_and_they_stay(rig, p
         assert any(line.startswith(f"without {name}: ") for line in said)
 
 
+def test_a_set_with_a_member_that_was_not_needed_is_no_rival_of_another_set(rig, pool):
+    rig = replace(rig, pool=pool)
+    rig.fitted({**PLANTED, "hardening_spring.coefficient": 1e6})
+    whole = rig.set_of("constant_load", "valve_deadband", "hardening_spring")
+    needed, _ = finish(pool, whole, lambda _: None)
+    assert needed == rig.set_of("constant_load", "valve_deadband")
+    rig.fitted({"valve_null_offset.offset": 1e-5})
+    _, compared, _ = rivals(pool, rig.set_of("valve_null_offset"), (), lambda _: None)
+    assert needed in compared and whole not in compared
+
+
 def test_every_member_is_tried_whatever_the_curvature_says(rig, pool, monkeypatch):
     curvature = "eha_core.diagnosis.search.finish.predicted_costs"
     monkeypatch.setattr(curvature, lambda _, one, __: dict.fromkeys(one.members, 1e9))

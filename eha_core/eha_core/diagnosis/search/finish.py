@@ -75,6 +75,7 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
         if lost > needed[member]:
             gains[member] = lost / needed[member]
         else:
+            pool.excessive.add(hypothesis)
             # far from the noise no optimum is worth its last digits
             hypothesis, gains = hypothesis.without(member), {}
             near = hypothesis.members and simpler.data < FAR_FROM_NOISE * simpler.count
@@ -200,7 +201,7 @@ def rivals(
     close = [
         hypothesis for hypothesis, result in pool
         if hypothesis != best and result.objective < at.objective + within and hypothesis.members
-        and not set(best.members) < set(hypothesis.members)
+        and hypothesis not in pool.excessive and not set(best.members) < set(hypothesis.members)
     ]  # fmt: skip
     for hypothesis in sorted(close, key=lambda h: pool.found[h].objective)[:FITTED]:
         converge(pool, hypothesis, at.objective + within)
@@ -259,7 +260,7 @@ def _compare(
     progress: Progress,
 ) -> None:  # fmt: skip
     """Fit a rival's own parameters, and then all that is free where it may come near."""
-    if hypothesis in pool.hopeless:
+    if hypothesis in pool.hopeless | pool.excessive:
         return
     progress(f"comparing with {' + '.join(hypothesis.ids) or 'nothing'}")
     glanced = pool.glance(step, hypothesis, values, states, AT_FIRST)

@@ -67,7 +67,7 @@ class Pool:
     `believed`: the nominal parameters that are free, within the bounds of what is believed of them but for those
     `released`; `trace` is shared by the pools of all lengths; `filtered` are channels behind a filter, see
     `corrected_noise`; `settled` are the objectives of sets that were fitted to their end, `hopeless` those that were
-    compared with a best set and did not come near it.
+    compared with a best set and did not come near it, `excessive` those of which a member was not needed.
     """
 
     problem: Problem
@@ -78,6 +78,7 @@ class Pool:
     released: frozenset[str] = frozenset()
     settled: dict[Hypothesis, float] = field(default_factory=dict)
     hopeless: set[Hypothesis] = field(default_factory=set)
+    excessive: set[Hypothesis] = field(default_factory=set)
 
     @property
     def plant(self) -> tuple[FreeParameter, ...]:
@@ -124,7 +125,7 @@ class Pool:
 
     def fresh(self) -> Pool:
         """A pool of the same windows, noise and bounds that has no fits yet."""
-        return replace(self, found={}, settled={}, hopeless=set())
+        return replace(self, found={}, settled={}, hopeless=set(), excessive=set())
 
     def adopt(self, other: Pool) -> None:
         """Keep the fits of another pool of the same windows, in the noise of this one."""
