@@ -25,7 +25,7 @@ from eha_core.report.figures import write_figures
 from eha_core.report.first_screen import law_panel, law_picture, pictures
 from eha_core.report.html import page
 from eha_core.report.laws.law import Axis, Law
-from eha_core.report.picture import Bars, Line, Upright
+from eha_core.report.picture import LONGEST_LINE, Bars, Line, Upright
 from eha_core.report.provenance import with_provenance
 from eha_core.report.stages import report_stages
 from eha_core.report.wording import words
@@ -217,6 +217,23 @@ def test_hypotheses_whose_fits_stopped_short_are_said_to_have(friction: Diagnosi
 
     assert "dropped before its fit had converged" in caption(-4.6e6)
     assert "left before" not in caption(-12.0)  # what parameters cost
+
+
+def test_a_hypothesis_that_differs_in_many_effects_is_drawn_with_its_label_on_several_lines(
+    friction: Diagnosis, tmp_path: Path
+) -> None:
+    others = ("position_sensor_lag", "pressure_sensor_lag", "stribeck_friction", "turbulent_leakage", "valve_deadband")
+    named = tuple(effect.id for effect in friction.effects)
+    rivals = (*friction.rivals, ((*named, *others), -20.0), ((*named, "valve_null_leakage", *others), -30.0))
+    picture = evidence_picture(replace(friction, rivals=rivals))
+    (panel,) = picture.groups[0].panels
+    lines = [line for label in panel.row_labels for line in label]
+    assert max(map(len, lines)) <= LONGEST_LINE and max(map(len, panel.row_labels)) > 2
+    write_figures([picture], tmp_path)
+    height, width = imread(tmp_path / "4-name.png").shape[:2]
+    shown = evidence_picture(friction).groups[0].panels[0]
+    assert panel.height / len(panel.row_labels) > shown.height / len(shown.row_labels)
+    assert width > height
 
 
 def test_where_nothing_is_named_no_hypothesis_has_the_colour_of_a_name(unknown: Diagnosis, friction: Diagnosis) -> None:

@@ -9,13 +9,16 @@ from eha_core.diagnosis.result import Diagnosis
 from eha_core.effects import effect_title, effects
 from eha_core.quantities import RAISED
 from eha_core.report.finding import counted
-from eha_core.report.picture import Bars, Group, Panel, Picture, Upright
+from eha_core.report.picture import Bars, Group, Panel, Picture, Upright, label_lines
 from eha_core.report.wording import listed
 
 SHOWN = 12
 
 IN_FULL = 2
 """Effects of a hypothesis that are listed; a larger set is listed by how it differs from the one that was named."""
+
+LINE = 16
+"""Pixels of a line of a hypothesis' label."""
 
 STUB = 1.6
 """Length of the best hypothesis' bar, as a factor on the logarithmic axis."""
@@ -77,7 +80,7 @@ def evidence_picture(diagnosis: Diagnosis, most: int = SHOWN, name: str = "4-nam
     panel = Panel(
         (Upright(float(np.log10(TIE * STUB)), "distinguished"), rungs),
         "evidence behind the best (log scale)",
-        height=50 + 30 * len(ranked),
+        height=50 + max(30, LINE * max(len(label_lines(label)) for label, _, _ in ranked)) * len(ranked),
         x_range=(0.0, 1.45 * (decades[-1] + np.log10(STUB))),
         x_ticks=ticks,
     )

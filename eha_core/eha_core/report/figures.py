@@ -136,8 +136,8 @@ def _height(group: Group) -> float:
 
 def _left(group: Group) -> float:
     """Width of the labels left of a group's panels [pixels]."""
-    names = [name for panel in group.panels for name in panel.row_labels]
-    longest = max((len(part) for name in names for part in name.split(" + ")), default=0)
+    labels = [lines for panel in group.panels for lines in panel.row_labels]
+    longest = max((len(line) for lines in labels for line in lines), default=0)
     return LEFT + (CHARACTER * longest - LEFT / 2.0 if longest else 0.0)
 
 
@@ -150,7 +150,7 @@ def legend_below(figure: Figure, handles: Sequence[Any], place: str, columns: in
 
 def _draw(axes: Any, panel: Panel) -> None:
     if panel.names:
-        set_ticks(axes.yaxis, range(len(panel.names)), [name.replace(" + ", " +\n") for name in panel.row_labels])
+        set_ticks(axes.yaxis, range(len(panel.names)), ["\n".join(lines) for lines in panel.row_labels])
         axes.set_ylim(len(panel.names) - 0.4, -0.6)
     for mark in panel.marks:
         _mark(axes, mark)

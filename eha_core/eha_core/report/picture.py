@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 
 from eha_core.identification.numbers import Array
 
@@ -129,6 +130,16 @@ class Spans:
     label: str
 
 
+LONGEST_LINE = 48
+"""Letters of a line of a row's label: a third of a picture's width."""
+
+
+def label_lines(label: str) -> tuple[str, ...]:
+    """The lines of a row's label: an effect of a set begins a line, and none is longer than LONGEST_LINE."""
+    parts = label.replace(" + ", " +\n").split("\n")
+    return tuple(line for part in parts for line in (wrap(part, LONGEST_LINE) if len(part) > LONGEST_LINE else [part]))
+
+
 Mark = Line | Dots | Ribbon | Upright | Intervals | Bars | Cells | Band | Spans
 
 
@@ -154,10 +165,11 @@ class Panel:
         return next((mark.names for mark in self.marks if isinstance(mark, (Intervals, Bars, Cells))), ())
 
     @property
-    def row_labels(self) -> tuple[str, ...]:
-        """The rows' labels: numbered where the columns have room for a number only."""
+    def row_labels(self) -> tuple[tuple[str, ...], ...]:
+        """The lines of each row's label: numbered where the columns have room for a number only."""
         numbered = any(isinstance(mark, Cells) for mark in self.marks)
-        return tuple(f"{name}  {place}" if numbered else name for place, name in enumerate(self.names, start=1))
+        labels = (f"{name}  {place}" if numbered else name for place, name in enumerate(self.names, start=1))
+        return tuple(map(label_lines, labels))
 
 
 @dataclass(frozen=True)

@@ -111,7 +111,7 @@ def _up(panel: Panel, suffix: str, domain: tuple[float, float]) -> Drawing:
     if panel.names:
         axis |= {
             "tickvals": list(range(len(panel.names))),
-            "ticktext": [name.replace(" + ", " +<br>") for name in panel.row_labels],
+            "ticktext": ["<br>".join(lines) for lines in panel.row_labels],
             "range": (len(panel.names) - 0.4, -0.6),
             "showgrid": False,
             "zeroline": False,
