@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from eha_core.plant import simulate_many
     from eha_core.recording.recording import Recording
     from eha_core.report.results import Results
-    from eha_core.studies import budget, design_test, detect
+    from eha_core.studies import budget, curves, design_test, detect
 
 _HOMES = {
     "EhaError": "errors",
@@ -32,6 +32,7 @@ _HOMES = {
     "Results": "report.results",
     "budget": "studies",
     "catalogue": "api",
+    "curves": "studies",
     "design_test": "studies",
     "detect": "studies",
     "diagnose": "api",
@@ -50,6 +51,7 @@ __all__ = [
     "__version__",
     "budget",
     "catalogue",
+    "curves",
     "design_test",
     "detect",
     "diagnose",

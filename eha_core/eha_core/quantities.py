@@ -20,6 +20,12 @@ _PREFIXES = {
     "m^3/s": ((1e-6 / 60.0, "ml/min"), (1e-3 / 60.0, "l/min")),
     "m^3/(s Pa)": ((1e-12 / 60.0, "ml/min per MPa"), (1e-9 / 60.0, "l/min per MPa")),
     "m^3/(s Pa^0.5)": ((1e-9 / 60.0, "ml/min per √MPa"), (1e-6 / 60.0, "l/min per √MPa")),
+    "m^3/(s A)": ((1.0 / 60.0, "l/min per mA"),),
+    "m^3/(s V)": ((1e-3 / 60.0, "l/min per V"),),
+    "m^3/(s %)": ((1e-3 / 60.0, "l/min per %"),),
+    "Pa/A": ((1e8, "bar per mA"),),
+    "Pa/V": ((1e5, "bar per V"),),
+    "Pa/%": ((1e5, "bar per %"),),
     "Pa s/m^3": ((6e7, "kPa per l/min"), (6e10, "MPa per l/min")),
 }
 """The units of an engineer's data sheet, by SI unit, each with its size in that; the smallest first."""

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from eha_core.error_budget import Budget, Rig, Task
     from eha_core.report.results import Results
     from eha_core.signals import Signal
+    from eha_core.valve_curves import ValveCurves
 
 Array = NDArray[np.float64]
 Command = str | ArrayLike | tuple[ArrayLike, ArrayLike]
@@ -199,3 +200,46 @@ def rig_of(
         recording = found if isinstance(found, Recording) else read_recording(found, topics)
         found = diagnose(recording, nominal, jobs=jobs)
     return rig_from_document(document(found.diagnosis), found.diagnosis.path)
+
+
+def curves(
+    files: Sequence[str | Path | Mapping[str, ArrayLike]],
+    *,
+    command: str | None = None,
+    flow: str | None = None,
+    load_pressure: str | Sequence[str] | None = None,
+    leakage: str | None = None,
+    units: Mapping[str, str] | None = None,
+    pressure_drop: float | None = None,
+    supply_pressure: float | None = None,
+    rated_current: float | None = None,
+    rated_voltage: float | None = None,
+) -> ValveCurves:
+    """Find a valve's null, gains, overlap, hysteresis and leakage in the steady curves of a test bench.
+
+    Args:
+        files: tables, or columns by name; each one curve of flow, load pressure or leakage over the command.
+        command: column of the current [A], the voltage [V] or the share of the full command [%].
+        flow, load_pressure, leakage: the other column; of a load pressure also two, pressure A and pressure B. Columns
+            that are not named are recognised by their units and names.
+        units: by column, its unit, where its name states none, as {"Q": "l/min"}.
+        pressure_drop: over both edges of the valve during the flow curve [Pa].
+        supply_pressure: at blocked ports, above the return line's [Pa].
+        rated_current: coil current at the full command [A], of a curve over a voltage or a share.
+        rated_voltage: the full command [V], of a curve over a voltage.
+
+    Returns:
+        The figures of each curve with 95 % intervals, and the plant's parameters that follow;
+        `eha_core.report.curves` presents them.
+
+    Raises:
+        RecordingError: a file cannot be read as a table.
+        EhaError: a column or its unit is missing, or a curve is no valve's.
+    """
+    from eha_core.valve_curves import FLOW, LEAKAGE, PRESSURE, Conditions, Selection, curve_of, fit_curves
+
+    pressures = [load_pressure] if isinstance(load_pressure, str) else load_pressure
+    response = {FLOW: [flow] if flow else [], PRESSURE: pressures or [], LEAKAGE: [leakage] if leakage else []}
+    selection = Selection(command, response, units or {})
+    conditions = Conditions(pressure_drop, supply_pressure, rated_current, rated_voltage)
+    return fit_curves([curve_of(file, selection) for file in files], conditions)

@@ -1,0 +1,178 @@
+"""The columns of a test bench's table that make a curve: by their units, by the words of their names, or as chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from eha_core.errors import EhaError, RecordingError, remedy
+from eha_core.recording.column_names import words_of
+from eha_core.recording.name_words import LETTERS, OBJECTS, QUANTITIES, SIDES
+from eha_core.recording.stated_units import unit_of_name
+from eha_core.tables import Table, read_table
+from eha_core.unit_names import UNITS, Unit, unit_named
+from eha_core.valve_curves.result import FLOW, LEAKAGE, PRESSURE, RESPONSE_UNITS, Array, Curve
+
+_LEAKAGE_WORDS = frozenset(("leak", "leakage", "leckage", "leckoel", "leckstrom", "fuite", "fuga"))
+_COMMAND_UNITS = ("A", "V", "%")
+_COMMAND_WORDS = frozenset(("current", "voltage", "command"))
+_OPTIONS = {FLOW: "--flow", PRESSURE: "--load-pressure", LEAKAGE: "--leakage"}
+_WORDS = {FLOW: "flow", LEAKAGE: "flow", PRESSURE: "pressure"}
+_EXAMPLES = {"m^3/s": "l/min", "Pa": "bar", "A": "mA"}
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Columns and units as a user says them; what is not said is recognised.
+
+    Attributes:
+        command: the column of the current, the voltage or the share of the full command.
+        response: by kind of curve, its column; of a load pressure also two, pressure A and pressure B.
+        units: by column, the unit that its name does not state.
+    """
+
+    command: str | None = None
+    response: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+
+
+class _Columns:
+    """A table's columns with their units."""
+
+    def __init__(self, source: str, table: Table, selection: Selection) -> None:
+        self.source, self.table = source, table
+        names = tuple(table.columns)
+        stated = {name: table.units.get(name) or unit_of_name(name, names) for name in names}
+        self.units: dict[str, Unit | None] = {name: unit_named(text) for name, text in stated.items()}
+        for name, text in selection.units.items():
+            if name in self.units:
+                if (unit := unit_named(text)) is None:
+                    cure = remedy(text, UNITS, "write for example l/min")
+                    raise EhaError(f"--unit {name}={text}: {text} is no unit; {cure}")
+                self.units[name] = unit
+
+    def of_unit(self, si: str) -> list[str]:
+        return [name for name, unit in self.units.items() if unit is not None and unit.si == si]
+
+    def without_unit(self, words: frozenset[str]) -> list[str]:
+        """Columns without a unit that are named so."""
+        return [name for name, unit in self.units.items() if unit is None and words & _quantities(name)]
+
+    def require(self, name: str, option: str) -> str:
+        """The column of that name."""
+        if name not in self.table.columns:
+            found = remedy(name, self.table.columns, f"it has {', '.join(self.table.columns)}")
+            raise EhaError(f"{self.source}: has no column {name!r} for {option}; {found}")
+        return name
+
+    def one(self, names: list[str], what: str, option: str) -> str | None:
+        """The only one of some columns; None where there is none."""
+        if len(names) > 1:
+            raise EhaError(f"{self.source}: {' and '.join(names)} may be the {what}; choose one with {option} COLUMN")
+        return names[0] if names else None
+
+    def values(self, name: str, allowed: Sequence[str]) -> Array:
+        """A column in SI, or in %."""
+        unit, cure = self.units[name], f"give --unit '{name}={_EXAMPLES[allowed[0]]}'"
+        if unit is None:
+            raise EhaError(f"{self.source}: column {name!r} has no unit; {cure}")
+        if unit.si not in allowed:
+            raise EhaError(
+                f"{self.source}: column {name!r} is in {unit.si}, not in {' or '.join(allowed)}; choose another column,"
+                f" or {cure}"
+            )
+        return np.asarray(self.table.columns[name], dtype=np.float64) * unit.scale
+
+
+def curve_of(given: str | Path | Mapping[str, ArrayLike], selection: Selection) -> Curve:
+    """The curve that a file, or columns by name, holds: leakage where a column is named so, else flow, else pressure.
+
+    Raises:
+        RecordingError: the file cannot be read as a table.
+        EhaError: a column or its unit is missing, or several may be meant.
+    """
+    source, table = _table(given)
+    columns = _Columns(source, table, selection)
+    command_name = _command(columns, selection)
+    command = columns.values(command_name, _COMMAND_UNITS)
+    kind, names = _response(columns, selection)
+    responses = [columns.values(name, (RESPONSE_UNITS[kind],)) for name in names]
+    response = responses[0] if len(responses) == 1 else responses[0] - responses[1]
+    if command.shape != response.shape:
+        raise EhaError(
+            f"{source}: {command_name} has {command.size} values and {names[0]} {response.size}; give a table with one"
+            " row for each point"
+        )
+    whole = np.isfinite(command) & np.isfinite(response)
+    remarks = [f"{np.count_nonzero(~whole)} rows without a number were left out"] if not whole.all() else []
+    if not whole.any():
+        raise EhaError(f"{source}: has no row with both {command_name} and {names[0]}; check its cells")
+    unit = columns.units[command_name]
+    return Curve(source, kind, command[whole], unit.si if unit else "", response[whole], tuple(remarks))
+
+
+def _table(given: str | Path | Mapping[str, ArrayLike]) -> tuple[str, Table]:
+    if isinstance(given, Mapping):
+        return "columns", Table("columns", {name: np.asarray(values, float) for name, values in given.items()})
+    path = Path(given)
+    if not path.exists():
+        raise RecordingError(f"{path}: there is no such file or folder")
+    return path.name, read_table(path)
+
+
+def _quantities(name: str) -> frozenset[str]:
+    """The quantities that the words of a name mean; symbols count where no word does."""
+    words = words_of(name)
+    return frozenset(QUANTITIES[word] for word in words if word in QUANTITIES) or frozenset(
+        LETTERS[word] for word in words if word in LETTERS
+    )
+
+
+def _command(columns: _Columns, selection: Selection) -> str:
+    if selection.command is not None:
+        return columns.require(selection.command, "--current")
+    for names in (*map(columns.of_unit, _COMMAND_UNITS), columns.without_unit(_COMMAND_WORDS)):
+        if (name := columns.one(names, "current", "--current")) is not None:
+            return name
+    raise EhaError(
+        f"{columns.source}: no column is a current, a voltage or a command in %; choose one with --current COLUMN"
+    )
+
+
+def _response(columns: _Columns, selection: Selection) -> tuple[str, list[str]]:
+    for kind, names in selection.response.items():
+        if names and all(name in columns.table.columns for name in names):
+            return kind, list(names)
+    chosen = {kind: names for kind, names in selection.response.items() if names}
+    flows = columns.of_unit("m^3/s") or columns.without_unit(frozenset(("flow",)))
+    leaks = [name for name in (*flows, *columns.table.columns) if _LEAKAGE_WORDS & set(words_of(name))]
+    if (name := columns.one(list(dict.fromkeys(leaks)), "leakage", "--leakage")) is not None:
+        return LEAKAGE, [name]
+    if (name := columns.one(flows, "flow", "--flow")) is not None:
+        return FLOW, [name]
+    pressures = columns.of_unit("Pa") or columns.without_unit(frozenset(("pressure",)))
+    pressures = [name for name in pressures if not _objects(name) & {"supply", "tank", "pump"}]
+    if len(pressures) == 2 and [_side(name) for name in sorted(pressures, key=_side)] == ["a", "b"]:
+        return PRESSURE, sorted(pressures, key=_side)
+    if (name := columns.one(pressures, "load pressure", "--load-pressure")) is not None:
+        return PRESSURE, [name]
+    if chosen:
+        kind, (name, *_) = next(iter(chosen.items()))
+        columns.require(name, _OPTIONS[kind])
+    raise EhaError(
+        f"{columns.source}: no column is a flow or a pressure; choose one with --flow, --load-pressure or --leakage"
+    )
+
+
+def _objects(name: str) -> set[str]:
+    return {OBJECTS[word] for word in words_of(name) if word in OBJECTS}
+
+
+def _side(name: str) -> str:
+    """The side, a or b, that the words before the unit name; empty without one."""
+    sides = {SIDES[word] for word in words_of(name.partition("[")[0].partition("(")[0]) if word in SIDES}
+    return next(iter(sides)) if len(sides) == 1 else ""
