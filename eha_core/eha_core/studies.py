@@ -236,10 +236,10 @@ def curves(
         RecordingError: a file cannot be read as a table.
         EhaError: a column or its unit is missing, or a curve is no valve's.
     """
-    from eha_core.valve_curves import FLOW, LEAKAGE, PRESSURE, Conditions, Selection, curve_of, fit_curves
+    from eha_core.valve_curves import FLOW, LEAKAGE, PRESSURE, Conditions, Selection, curves_of, fit_curves
 
     pressures = [load_pressure] if isinstance(load_pressure, str) else load_pressure
     response = {FLOW: [flow] if flow else [], PRESSURE: pressures or [], LEAKAGE: [leakage] if leakage else []}
     selection = Selection(command, response, units or {})
     conditions = Conditions(pressure_drop, supply_pressure, rated_current, rated_voltage)
-    return fit_curves([curve_of(file, selection) for file in files], conditions)
+    return fit_curves(curves_of(files, selection), conditions)

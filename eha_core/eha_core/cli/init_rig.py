@@ -9,7 +9,7 @@ from pathlib import Path
 from eha_core.errors import EhaError
 from eha_core.plant import PAPER, composition_of
 from eha_core.plant.parts import parts
-from eha_core.rig import DATA, Datum, asked_of, nominal_text, parameters_of, quantity
+from eha_core.rig import DATA, Datum, asked_of, measured_entries, nominal_text, parameters_of, quantity
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -30,6 +30,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     default = PAPER.source.id
     what = f"what drives the piston: {what}; default {default}"
     add("--source", choices=sorted(known), default=default, metavar="SOURCE", help=what)
+    of_curves = "a curves.json of `eha curves`: the valve's flow gain, null and other parameters as measured"
+    add("--curves", type=Path, metavar="FILE", help=of_curves)
     for datum in DATA:
         add(f"--{datum.name.replace('_', '-')}", metavar=f"'{datum.example}'", help=datum.meaning.replace("%", "%%"))
 
@@ -45,9 +47,10 @@ def run(arguments: argparse.Namespace) -> int:
     idle = next((name for name in given if name not in [datum.name for datum in asked]), None)
     if idle is not None:
         raise EhaError(f"--{idle.replace('_', '-')} does not apply to a rig on {arguments.source}; leave it out")
-    if arguments.ask or (sys.stdin.isatty() and not given):
+    measured = measured_entries(arguments.curves, given.get("rated_current")) if arguments.curves else []
+    if arguments.ask or (sys.stdin.isatty() and not given and not measured):
         given |= _asked([datum for datum in asked if datum.name not in given])
-    entries = parameters_of(given, composition)
+    entries = parameters_of(given, composition, measured)
     text = nominal_text(entries, arguments.assume, composition)
     try:
         with arguments.out.open("x", encoding="utf-8") as file:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
@@ -11,12 +12,11 @@ import numpy as np
 
 from eha_core.quantities import quantity, scale_for, with_deviation
 from eha_core.report.study_files import write_study
+from eha_core.rig.measured_curves import SCHEMA
 from eha_core.valve_curves import FLOW, LEAKAGE, PRESSURE, CurveFit, Found, Value, ValveCurves
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-SCHEMA = "eha.curves/1"
 
 _WIDTH = 100
 _NULL = {FLOW: "zero flow", PRESSURE: "zero load pressure", LEAKAGE: "largest leakage"}
@@ -44,6 +44,7 @@ def document(curves: ValveCurves) -> dict[str, Any]:
     """The curves as plain JSON types; SI units and %, `reach` half of a 95 % interval."""
     return {
         "schema": SCHEMA,
+        "conditions": asdict(curves.conditions),
         "curves": [
             {"source": fit.curve.source, "kind": fit.curve.kind, "command_unit": fit.curve.unit,
              "points": fit.curve.command.size,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import pi, sqrt
 
@@ -26,17 +26,24 @@ class Entry:
     how: str
 
 
-def parameters_of(given: Mapping[str, float], composition: Composition = PAPER) -> list[Entry]:
+def parameters_of(
+    given: Mapping[str, float], composition: Composition = PAPER, measured: Sequence[Entry] = ()
+) -> list[Entry]:
     """The parameters of a rig, as far as they follow from a data sheet's lines [SI by name, see DATA].
 
     Args:
         given: a data sheet's lines.
         composition: the actuator's parts, which have some of the parameters and not others.
+        measured: entries that take the place of those of a data sheet.
 
     Raises:
         ParameterError: lines that contradict each other, or a parameter outside of its bounds.
     """
     found = [*_valve(given), *_cylinder(given), *_oil(given), *_load(given), *_pump(given)]
+    better = {entry.name: entry for entry in measured}
+    if "valve_gain" in better and "rated_flow" in given:
+        raise ParameterError("--rated-flow contradicts the flow gain of --curves; leave it out, with its pressure drop")
+    found = [*(better.pop(entry.name, entry) for entry in found), *better.values()]
     entries = [entry for entry in found if entry.name in composition.rows]
     values = {entry.name: UNKNOWN if entry.value is None else entry.value for entry in entries}
     nominal_of(values, composition=composition)

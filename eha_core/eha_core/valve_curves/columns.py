@@ -88,15 +88,23 @@ class _Columns:
         return np.asarray(self.table.columns[name], dtype=np.float64) * unit.scale
 
 
-def curve_of(given: str | Path | Mapping[str, ArrayLike], selection: Selection) -> Curve:
-    """The curve that a file, or columns by name, holds: leakage where a column is named so, else flow, else pressure.
+def curves_of(files: Sequence[str | Path | Mapping[str, ArrayLike]], selection: Selection) -> list[Curve]:
+    """The curve of each file, or of columns by name: leakage where a column is named so, else flow, else pressure.
 
     Raises:
-        RecordingError: the file cannot be read as a table.
+        RecordingError: a file cannot be read as a table.
         EhaError: a column or its unit is missing, or several may be meant.
     """
-    source, table = _table(given)
-    columns = _Columns(source, table, selection)
+    tables = [_Columns(*_table(given), selection) for given in files]
+    chosen = [(name, _OPTIONS[kind]) for kind, names in selection.response.items() for name in names]
+    for name, option in (*chosen, *((name, "--unit") for name in selection.units)):
+        if not any(name in columns.table.columns for columns in tables):
+            tables[0].require(name, option)
+    return [_curve(columns, selection) for columns in tables]
+
+
+def _curve(columns: _Columns, selection: Selection) -> Curve:
+    source = columns.source
     command_name = _command(columns, selection)
     command = columns.values(command_name, _COMMAND_UNITS)
     kind, names = _response(columns, selection)
@@ -147,7 +155,6 @@ def _response(columns: _Columns, selection: Selection) -> tuple[str, list[str]]:
     for kind, names in selection.response.items():
         if names and all(name in columns.table.columns for name in names):
             return kind, list(names)
-    chosen = {kind: names for kind, names in selection.response.items() if names}
     flows = columns.of_unit("m^3/s") or columns.without_unit(frozenset(("flow",)))
     leaks = [name for name in (*flows, *columns.table.columns) if _LEAKAGE_WORDS & set(words_of(name))]
     if (name := columns.one(list(dict.fromkeys(leaks)), "leakage", "--leakage")) is not None:
@@ -160,9 +167,6 @@ def _response(columns: _Columns, selection: Selection) -> tuple[str, list[str]]:
         return PRESSURE, sorted(pressures, key=_side)
     if (name := columns.one(pressures, "load pressure", "--load-pressure")) is not None:
         return PRESSURE, [name]
-    if chosen:
-        kind, (name, *_) = next(iter(chosen.items()))
-        columns.require(name, _OPTIONS[kind])
     raise EhaError(
         f"{columns.source}: no column is a flow or a pressure; choose one with --flow, --load-pressure or --leakage"
     )

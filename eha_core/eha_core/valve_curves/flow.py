@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -41,9 +42,8 @@ FLAT = 0.2
 """Share of the flow gain below which the flow counts as saturated (assumed)."""
 
 _BASE = ("gain_positive", "gain_negative", "offset", "overlap")
-_EXTRA = {"rounding": (0.02, 0.0, 0.5), "curvature": (0.1, 0.0, 10.0), "limit_positive": (0.97, 0.2, 1.0),
-          "limit_negative": (0.97, 0.2, 1.0)}  # fmt: skip
-"""Terms that are taken where they are needed: start, and bounds, in parts of the largest command and flow."""
+_EXTRA = {"rounding": (0.0, 0.5), "curvature": (0.0, 10.0), "limit_positive": (0.2, 1.0), "limit_negative": (0.2, 1.0)}
+"""Terms that are taken where they are needed, with their bounds in parts of the largest command and flow."""
 
 
 def fit_flow(curve: Curve) -> CurveFit:
@@ -166,41 +166,43 @@ def _fit(names: list[str], command: Array, travel: Travel, flow: Array, start: l
     def law(values: Array) -> Array:
         return flow_law(dict(zip(names, values, strict=True)), command, travel)
 
-    lower = [_EXTRA[name][1] if name in _EXTRA else -np.inf for name in names]
-    upper = [_EXTRA[name][2] if name in _EXTRA else np.inf for name in names]
+    lower = [_EXTRA[name][0] if name in _EXTRA else -np.inf for name in names]
+    upper = [_EXTRA[name][1] if name in _EXTRA else np.inf for name in names]
     return regress(law, flow, list(start), lower, upper)
 
 
 def _extended(
     names: list[str], simple: Regression, command: Array, travel: Travel, flow: Array
 ) -> tuple[list[str], Regression]:
-    """The law with each further term that the curve decisively asks for, the best first."""
-    while True:
-        trials = []
-        for name in [extra for extra in _EXTRA if extra not in names]:
-            trial = _fit([*names, name], command, travel, flow, [*simple.values, _EXTRA[name][0]])
-            if _is_flat([*names, name], trial, command, flow):
-                trials.append((criterion_gain(simple, trial), name, trial))
-        best = max(trials, key=lambda row: row[0], default=None)
-        if best is None or best[0] < DECISIVE:
-            return names, simple
-        names, simple = [*names, best[1]], best[2]
+    """The law with the further terms that the curve decisively asks for, each of which must pay for itself."""
+    best, chosen = 0.0, (names, simple)
+    starts = {
+        "rounding": 0.02, "curvature": 0.1, "limit_positive": 0.97 * float(flow.max()),
+        "limit_negative": -0.97 * float(flow.min()),
+    }  # fmt: skip
+    for count in range(1, len(_EXTRA) + 1):
+        for extra in combinations(_EXTRA, count):
+            more = [*names, *extra]
+            trial = _fit(more, command, travel, flow, [*simple.values, *(starts[name] for name in extra)])
+            score = criterion_gain(simple, trial) - count * DECISIVE
+            if score > best and _is_flat(dict(zip(more, trial.values, strict=True)), command, flow):
+                best, chosen = score, (more, trial)
+    return chosen
 
 
-def _is_flat(names: list[str], trial: Regression, command: Array, flow: Array) -> bool:
-    """Whether the flow is flat past the knee, where the last term is a limit: a bend is no saturation."""
-    name = names[-1]
-    if not name.startswith("limit"):
-        return True
-    values = dict(zip(names, trial.values, strict=True))
-    sign, gain = (1.0, values["gain_positive"]) if name == "limit_positive" else (-1.0, values["gain_negative"])
-    past = sign * command > values[name] / gain + values["overlap"] - sign * values["offset"] + abs(
-        values.get("half_width", 0.0)
-    )
-    if np.count_nonzero(past) < FEWEST_A_SIDE or np.ptp(command[past]) == 0.0:
-        return False
-    slope = float(np.polyfit(command[past], flow[past], 1)[0])
-    return slope < float(FLAT * gain)
+def _is_flat(values: dict[str, float], command: Array, flow: Array) -> bool:
+    """Whether the flow is flat past each knee: a bend is no saturation."""
+    for side, sign in (("positive", 1.0), ("negative", -1.0)):
+        if f"limit_{side}" not in values:
+            continue
+        gain = values[f"gain_{side}"]
+        knee = values[f"limit_{side}"] / gain + values["overlap"] - sign * values["offset"]
+        past = sign * command > knee + abs(values.get("half_width", 0.0))
+        if np.count_nonzero(past) < FEWEST_A_SIDE or np.ptp(command[past]) == 0.0:
+            return False
+        if float(np.polyfit(command[past], flow[past], 1)[0]) > FLAT * gain:
+            return False
+    return True
 
 
 def _unsaturated(names: list[str], fitted: Regression, command: Array, flow: Array) -> Array:

@@ -96,7 +96,7 @@ def fit_lands(fit: CurveFit, orifices: Orifices) -> tuple[tuple[float, float], t
 
     def law(values: Array) -> Array:
         spool = behind_play(command, travel, half) - values[0]
-        lands = values[1] / span * np.exp(-np.abs(spool) / values[2])
+        lands = values[1] / orifices.supply * np.exp(-np.abs(spool) / values[2])
         opening = np.maximum(np.abs(spool) * largest - max(orifices.overlap, 0.0), 0.0)
         flow = orifices.gain * opening / full
         root = (np.sqrt(flow**2 + 8.0 * lands**2 * orifices.supply) - flow) / np.maximum(4.0 * lands, 1e-300)

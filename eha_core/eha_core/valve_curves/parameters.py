@@ -3,29 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from eha_core.rig.parameters import AMPERE_EQUIVALENT, flow_gain
 from eha_core.valve_curves.leakage import Orifices, fit_lands
-from eha_core.valve_curves.result import FLOW, LEAKAGE, PRESSURE, CurveFit, Found, Value
-
-
-@dataclass(frozen=True)
-class Conditions:
-    """What the columns do not say.
-
-    Attributes:
-        pressure_drop: over both edges of the valve during the flow curve: supply less return less load [Pa].
-        supply_pressure: at blocked ports, above the return line's [Pa].
-        rated_current: coil current at the full command [A].
-        rated_voltage: the full command [V], of a curve over voltage.
-    """
-
-    pressure_drop: float | None = None
-    supply_pressure: float | None = None
-    rated_current: float | None = None
-    rated_voltage: float | None = None
-
+from eha_core.valve_curves.result import FLOW, LEAKAGE, PRESSURE, Conditions, CurveFit, Found, Value
 
 _NOT_MEASURED = {
     FLOW: ("valve_gain", "flow_gain_asymmetry.ratio", "valve_deadband.half_width", "spool_hysteresis.half_width"),

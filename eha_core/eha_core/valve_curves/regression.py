@@ -23,6 +23,9 @@ large (assumed)."""
 MOST_ALIKE = 0.999
 """Largest correlation of neighbouring residuals that is reckoned with: one in 2,000 points then counts (assumed)."""
 
+MOST_STEPS = 50
+"""Most steps of a fit: laws that suit a curve take about ten; those with a term too many do not end (assumed)."""
+
 
 @dataclass(frozen=True)
 class Regression:
@@ -70,7 +73,9 @@ def regress(
     """
     bounds = (np.full(len(start), -np.inf) if lower is None else np.asarray(lower, dtype=float),
               np.full(len(start), np.inf) if upper is None else np.asarray(upper, dtype=float))  # fmt: skip
-    found = least_squares(lambda values: law(values) - response, np.clip(start, *bounds), bounds=bounds)
+    found = least_squares(
+        lambda values: law(values) - response, np.clip(start, *bounds), bounds=bounds, max_nfev=MOST_STEPS
+    )
     residual: Array = found.fun
     alike = float(np.clip(_neighbours(residual), 0.0, MOST_ALIKE))
     effective = response.size * (1.0 - alike) / (1.0 + alike)

@@ -38,6 +38,23 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Conditions:
+    """What the columns do not say.
+
+    Attributes:
+        pressure_drop: over both edges of the valve during the flow curve: supply less return less load [Pa].
+        supply_pressure: at blocked ports, above the return line's [Pa].
+        rated_current: coil current at the full command [A].
+        rated_voltage: the full command [V], of a curve over voltage.
+    """
+
+    pressure_drop: float | None = None
+    supply_pressure: float | None = None
+    rated_current: float | None = None
+    rated_voltage: float | None = None
+
+
+@dataclass(frozen=True)
 class Value:
     """One figure of a curve: its name, value and half of its 95 % interval [unit]; `reach` None without an interval."""
 
@@ -86,10 +103,12 @@ class ValveCurves:
 
     Attributes:
         fits: each curve with its figures.
+        conditions: those of the test.
         parameters: the plant's parameters that follow.
         left_out: parameters of the plant that do not follow, each with the reason and the remedy.
     """
 
     fits: tuple[CurveFit, ...]
+    conditions: Conditions
     parameters: tuple[Found, ...] = ()
     left_out: dict[str, str] = field(default_factory=dict)

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from eha_core.errors import EhaError
 from eha_core.valve_curves.flow import fit_flow
 from eha_core.valve_curves.leakage import fit_leakage
-from eha_core.valve_curves.parameters import Conditions, parameters_of
+from eha_core.valve_curves.parameters import parameters_of
 from eha_core.valve_curves.pressure import fit_pressure
-from eha_core.valve_curves.result import FLOW, LEAKAGE, PRESSURE, Curve, CurveFit, ValveCurves
+from eha_core.valve_curves.result import FLOW, LEAKAGE, PRESSURE, Conditions, Curve, CurveFit, ValveCurves
 
 _FIT = {FLOW: fit_flow, PRESSURE: fit_pressure, LEAKAGE: fit_leakage}
 
@@ -28,4 +28,4 @@ def fit_curves(curves: Sequence[Curve], conditions: Conditions) -> ValveCurves:
             )
         by_kind[curve.kind] = curve
     fits: tuple[CurveFit, ...] = tuple(_FIT[curve.kind](curve) for curve in curves)
-    return ValveCurves(fits, *parameters_of(fits, conditions))
+    return ValveCurves(fits, conditions, *parameters_of(fits, conditions))
