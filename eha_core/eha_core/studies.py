@@ -218,7 +218,7 @@ def curves(
     """Find a valve's null, gains, overlap, hysteresis and leakage in the steady curves of a test bench.
 
     Args:
-        files: tables, or columns by name; each one curve of flow, load pressure or leakage over the command.
+        files: tables, or columns by name, with curves of flow, load pressure or leakage over the command.
         command: column of the current [A], the voltage [V] or the share of the full command [%].
         flow, load_pressure, leakage: the other column; of a load pressure also two, pressure A and pressure B. Columns
             that are not named are recognised by their units and names.

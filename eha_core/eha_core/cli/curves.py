@@ -25,8 +25,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "curves",
         help="find a valve's null, flow gain, overlap, hysteresis and leakage in its steady curves",
-        description="Reads tables of a valve test bench, each with one curve over the command: flow, load pressure at"
-        " blocked ports, or leakage. Prints the figures of ISO 10770-1 with 95 %% intervals, and the parameters of the"
+        description="Reads tables of a valve test bench, with steady curves over the command: flow, load pressure at"
+        " blocked ports, leakage. Prints the figures of ISO 10770-1 with 95 %% intervals, and the parameters of the"
         " plant that follow from them.",
         epilog="Columns are recognised by units and names. Rows are in the order of measuring: a sweep up and down"
         " shows hysteresis. `eha init-rig --curves out/curves/curves.json` puts the parameters into a nominal file.",

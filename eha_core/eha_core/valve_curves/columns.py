@@ -89,7 +89,7 @@ class _Columns:
 
 
 def curves_of(files: Sequence[str | Path | Mapping[str, ArrayLike]], selection: Selection) -> list[Curve]:
-    """The curve of each file, or of columns by name: leakage where a column is named so, else flow, else pressure.
+    """The curves of files, or of columns by name; a file of blocked ports may have pressure gain and leakage.
 
     Raises:
         RecordingError: a file cannot be read as a table.
@@ -100,14 +100,16 @@ def curves_of(files: Sequence[str | Path | Mapping[str, ArrayLike]], selection: 
     for name, option in (*chosen, *((name, "--unit") for name in selection.units)):
         if not any(name in columns.table.columns for columns in tables):
             tables[0].require(name, option)
-    return [_curve(columns, selection) for columns in tables]
+    return [
+        _curve(columns, _command(columns, selection), kind, names)
+        for columns in tables
+        for kind, names in _responses(columns, selection).items()
+    ]
 
 
-def _curve(columns: _Columns, selection: Selection) -> Curve:
+def _curve(columns: _Columns, command_name: str, kind: str, names: list[str]) -> Curve:
     source = columns.source
-    command_name = _command(columns, selection)
     command = columns.values(command_name, _COMMAND_UNITS)
-    kind, names = _response(columns, selection)
     responses = [columns.values(name, (RESPONSE_UNITS[kind],)) for name in names]
     response = responses[0] if len(responses) == 1 else responses[0] - responses[1]
     if command.shape != response.shape:
@@ -151,25 +153,40 @@ def _command(columns: _Columns, selection: Selection) -> str:
     )
 
 
-def _response(columns: _Columns, selection: Selection) -> tuple[str, list[str]]:
-    for kind, names in selection.response.items():
-        if names and all(name in columns.table.columns for name in names):
-            return kind, list(names)
+def _responses(columns: _Columns, selection: Selection) -> dict[str, list[str]]:
+    """The columns of each curve that a table holds: those chosen, else leakage, flow, and without a flow the pressures.
+
+    Pressures next to a flow are those of open ports, which make no pressure gain curve.
+    """
+    found = {kind: list(names) for kind, names in selection.response.items()
+             if names and all(name in columns.table.columns for name in names)}  # fmt: skip
+    if found:
+        return found
     flows = columns.of_unit("m^3/s") or columns.without_unit(frozenset(("flow",)))
-    leaks = [name for name in (*flows, *columns.table.columns) if _LEAKAGE_WORDS & set(words_of(name))]
-    if (name := columns.one(list(dict.fromkeys(leaks)), "leakage", "--leakage")) is not None:
-        return LEAKAGE, [name]
-    if (name := columns.one(flows, "flow", "--flow")) is not None:
-        return FLOW, [name]
-    pressures = columns.of_unit("Pa") or columns.without_unit(frozenset(("pressure",)))
-    pressures = [name for name in pressures if not _objects(name) & {"supply", "tank", "pump"}]
-    if len(pressures) == 2 and [_side(name) for name in sorted(pressures, key=_side)] == ["a", "b"]:
-        return PRESSURE, sorted(pressures, key=_side)
-    if (name := columns.one(pressures, "load pressure", "--load-pressure")) is not None:
-        return PRESSURE, [name]
-    raise EhaError(
-        f"{columns.source}: no column is a flow or a pressure; choose one with --flow, --load-pressure or --leakage"
-    )
+    leaks = [name for name in columns.table.columns if _LEAKAGE_WORDS & set(words_of(name))]
+    if (name := columns.one(leaks, "leakage", "--leakage")) is not None:
+        found[LEAKAGE] = [name]
+    if (name := columns.one([name for name in flows if name not in leaks], "flow", "--flow")) is not None:
+        found[FLOW] = [name]
+    elif pressures := _load_pressure(columns):
+        found[PRESSURE] = pressures
+    if not found:
+        raise EhaError(
+            f"{columns.source}: no column is a flow or a pressure; choose one with --flow, --load-pressure or --leakage"
+        )
+    return found
+
+
+def _load_pressure(columns: _Columns) -> list[str]:
+    """The column of the load pressure, or those of chambers A and B; supply and return pressure are none."""
+    named = columns.of_unit("Pa") or columns.without_unit(frozenset(("pressure",)))
+    others = {"supply", "tank", "pump"}
+    named = [name for name in named if not (_objects(name) & others or _side(name) in others)]
+    pair = sorted(named, key=_side)
+    if [_side(name) for name in pair] == ["a", "b"]:
+        return pair
+    name = columns.one(named, "load pressure", "--load-pressure")
+    return [] if name is None else [name]
 
 
 def _objects(name: str) -> set[str]:
@@ -177,6 +194,7 @@ def _objects(name: str) -> set[str]:
 
 
 def _side(name: str) -> str:
-    """The side, a or b, that the words before the unit name; empty without one."""
-    sides = {SIDES[word] for word in words_of(name.partition("[")[0].partition("(")[0]) if word in SIDES}
+    """The port that the words before the unit name: a, b, supply or tank; empty without one."""
+    ports = {**SIDES, "t": "tank", "r": "tank"}
+    sides = {ports[word] for word in words_of(name.partition("[")[0].partition("(")[0]) if word in ports}
     return next(iter(sides)) if len(sides) == 1 else ""
