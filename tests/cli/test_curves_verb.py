@@ -14,6 +14,7 @@ from eha_core.cli import main
 from eha_core.nominal import load_nominal
 
 CURRENT = sweep(21)
+CONDITIONS = ["--pressure-drop", "210 bar", "--supply-pressure", "210 bar", "--rated-current", "20 mA"]
 FLOW = noisy(valve_flow(CURRENT, ratio=0.1, offset=3e-4, overlap=1e-3, half_width=2e-4), 0.003, 1)
 
 
@@ -33,13 +34,15 @@ def test_from_tables_to_an_account_files_and_a_nominal_file(
     load = 2e7 * np.tanh((CURRENT + 3e-4) / 3e-3)
     pressure = written(tmp_path / "pressure.csv", dict(table(CURRENT, pA=1e7 + 0.5 * load, pB=1e7 - 0.5 * load)))
     out = tmp_path / "curves"
-    assert main(["curves", flow_file, pressure, "--pressure-drop", "210 bar", "--out", str(out)]) == 0
+    assert main(["curves", flow_file, pressure, *CONDITIONS, "--out", str(out)]) == 0
     told = capsys.readouterr().out
     assert "flow.csv: flow curve, 81 points from -20 to 20 mA" in told and "bar per mA" in told
     assert "overlap, half of the dead zone" in told and "no leakage curve is given" in told
     assert (out / "curves.png").stat().st_size > 10_000
     made = json.loads((out / "curves.json").read_text())
     assert [curve["kind"] for curve in made["curves"]] == ["flow", "pressure gain"]
+    gains = {row["name"]: row["value"] for row in made["curves"][1]["values"]}
+    assert gains["pressure_gain_share"] == pytest.approx(gains["pressure_gain"] * 20e-3 / 210e5)
 
     rig = tmp_path / "rig.yaml"
     assert main(["init-rig", "--curves", str(out / "curves.json"), "--rated-current", "20mA", "--out", str(rig)]) == 0

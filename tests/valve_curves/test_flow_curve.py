@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from bench import FULL, noisy, sweep, table, valve_flow
+from scipy.signal import lfilter
 
 import eha_core as eha
 from eha_core.errors import EhaError
@@ -66,6 +67,23 @@ def test_a_bend_is_no_saturation() -> None:
     assert not values.keys() & {"saturation_positive", "saturation_negative"}
     assert abs(values["curvature"].value - 20.0) < values["curvature"].reach
     assert values["linearity_error"].value > 0.01
+
+
+def test_a_noisy_ammeter_makes_no_saturation() -> None:
+    for seed in range(8):
+        current = noisy(sweep(301), 0.002, 100 + seed)
+        values = values_of(current, noisy(valve_flow(sweep(301), **RIG), 0.005, seed))
+        assert not values.keys() & {"saturation_positive", "saturation_negative"}
+
+
+def test_a_drifting_flow_meter_widens_the_intervals() -> None:
+    """Noise that neighbouring points share: 2,000 of them are worth no more than some dozen."""
+    inside = 0
+    for seed in range(10):
+        drift = lfilter([1.0], [1.0, -0.98], np.random.default_rng(seed).normal(0.0, 4e-7, sweep(301).size))
+        values = values_of(sweep(301), valve_flow(sweep(301), **RIG) + drift)
+        inside += sum(abs(values[name].value - true) <= (values[name].reach or 0.0) for name, true in TRUE.items())
+    assert inside >= 50  # of 60; on average 57
 
 
 def test_a_slow_triangle_of_the_truth_gives_its_valve_back() -> None:

@@ -34,6 +34,7 @@ _LABELS = {
     "linearity_error": "linearity error of the largest flow",
     "noise": "scatter of the points",
     "pressure_gain": "pressure gain",
+    "pressure_gain_share": "relative pressure gain",
     "largest_load_pressure": "largest load pressure",
     "null_leakage": "largest leakage",
     "leakage_far_from_null": "leakage far from null",

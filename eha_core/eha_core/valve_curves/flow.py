@@ -18,7 +18,7 @@ import numpy as np
 from eha_core.errors import EhaError
 from eha_core.valve_curves.regression import DECISIVE, Regression, criterion_gain, explained, regress
 from eha_core.valve_curves.result import Array, Curve, CurveFit, Value
-from eha_core.valve_curves.travel import Travel, behind_play, travel_of
+from eha_core.valve_curves.travel import AMMETER, Travel, behind_play, travel_of
 
 FEWEST = 8
 """Fewest points of a curve: the straight law has five values (assumed)."""
@@ -198,7 +198,8 @@ def _is_flat(values: dict[str, float], command: Array, flow: Array) -> bool:
         gain = values[f"gain_{side}"]
         knee = values[f"limit_{side}"] / gain + values["overlap"] - sign * values["offset"]
         past = sign * command > knee + abs(values.get("half_width", 0.0))
-        if np.count_nonzero(past) < FEWEST_A_SIDE or np.ptp(command[past]) == 0.0:
+        # where a noisy ammeter reads too much at the end of a sweep, the flow seems flat as well
+        if np.count_nonzero(past) < FEWEST_A_SIDE or np.ptp(command[past]) < AMMETER * np.ptp(command):
             return False
         if float(np.polyfit(command[past], flow[past], 1)[0]) > FLAT * gain:
             return False

@@ -8,9 +8,9 @@ import numpy as np
 
 from eha_core.valve_curves.result import Array
 
-TURN = 0.05
-"""Share of the command's range by which it must turn back for a new leg to begin: more than the noise of an ammeter,
-less than any sweep (assumed)."""
+AMMETER = 0.02
+"""Share of the command's range that is more than the noise of an ammeter and less than any sweep: by so much it must
+turn back for a new leg to begin, and the flow must stay flat to be saturated (assumed)."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Travel:
 
 def travel_of(command: Array) -> Travel:
     """The legs of a command in the order of its points."""
-    least = TURN * float(np.ptp(command))
+    least = AMMETER * float(np.ptp(command))
     turns: list[int] = []  # the first point of each leg but the first
     low = high = 0
     heading = 0
