@@ -48,6 +48,13 @@ def test_from_tables_to_an_account_files_and_a_nominal_file(
     assert main(["init-rig", "--curves", str(out / "curves.json"), "--rated-current", "20mA", "--out", str(rig)]) == 0
     values = load_nominal(rig).values
     assert values["valve_gain"] == pytest.approx(2e-2 / np.sqrt(1.05e7), rel=0.01)
+    assert values["valve_deadband.half_width"] == 0.0 and "# valve_deadband.half_width: 0.00" in rig.read_text()
+
+    # a simulation needs what a diagnosis finds itself
+    rig.unlink()
+    words = ["init-rig", "--assume", "--curves", str(out / "curves.json"), "--rated-current", "20mA"]
+    assert main([*words, "--out", str(rig)]) == 0
+    values = load_nominal(rig).values
     assert values["valve_deadband.half_width"] == pytest.approx(1e-3, rel=0.1)
     assert values["valve_null_offset.offset"] == pytest.approx(3e-4, rel=0.2)
     assert "(95 %)" in rig.read_text()

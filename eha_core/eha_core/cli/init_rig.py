@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from eha_core.errors import EhaError
+from eha_core.parameters import effect_names
 from eha_core.plant import PAPER, composition_of
 from eha_core.plant.parts import parts
 from eha_core.rig import DATA, Datum, asked_of, measured_entries, nominal_text, parameters_of, quantity
@@ -24,7 +25,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add = parser.add_argument
     add("--out", type=Path, required=True, metavar="FILE", help="the nominal file that is written")
     add("--ask", action="store_true", help="ask for values that no option gives, also if the answers come from a pipe")
-    add("--assume", action="store_true", help="write the catalogue's value, marked as assumed, in place of unknown")
+    add("--assume", action="store_true", help="write the catalogue's value, marked as assumed, in place of unknown,"
+        " and put measured effects in force, as a simulation needs it")  # fmt: skip
     known = parts("source")
     what = ", ".join(f"{name} ({known[name].summary})" for name in sorted(known))
     default = PAPER.source.id
@@ -58,8 +60,9 @@ def run(arguments: argparse.Namespace) -> int:
     except OSError as error:
         raise EhaError(f"{arguments.out}: cannot be written ({error.strerror}); choose another --out") from error
     print(text, end="")
+    in_force = [entry for entry in entries if arguments.assume or entry.name not in effect_names()]
     unknown = [] if arguments.assume else [entry.name for entry in entries if entry.value is None]
-    print(f"\n{arguments.out}: {len(entries) - len(unknown)} values, {len(unknown)} unknown")
+    print(f"\n{arguments.out}: {len(in_force) - len(unknown)} values, {len(unknown)} unknown")
     print(f"Go on with: eha diagnose RECORDING --nominal {arguments.out}")
     return 0
 

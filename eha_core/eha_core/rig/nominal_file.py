@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from eha_core.parameter import Parameter
-from eha_core.parameters import UNKNOWN, number_text
+from eha_core.parameters import UNKNOWN, effect_names, number_text
 from eha_core.plant import PAPER, Composition
 from eha_core.rig.parameters import Entry
 
@@ -17,7 +17,12 @@ _HEADING = f"""\
 
 
 def nominal_text(entries: Sequence[Entry], assume: bool = False, composition: Composition = PAPER) -> str:
-    """The file's text; with `assume`, the catalogue's value, marked as assumed, in place of each unknown one."""
+    """The file's text.
+
+    With `assume`, as a simulation needs it: the catalogue's value, marked as assumed, in place of each unknown one, and
+    measured effects in force. Without, these are comments: a diagnosis finds effects itself, but holds those of its
+    model, so that a bench's error of some percent would look like another fault.
+    """
     lines = [line for entry in entries for line in _lines(entry, assume, composition.rows)]
     if not composition.is_papers:
         source = composition.source
@@ -34,5 +39,11 @@ def _lines(entry: Entry, assume: bool, rows: Mapping[str, Parameter]) -> tuple[s
     comment = f"# {row.meaning} [{row.unit}]: {how}"
     if value is None:
         return comment, f"{entry.name}: {UNKNOWN}"
-    # As ROS and YAML 1.1 read a number, to six digits: data sheets have fewer.
-    return comment, f"{entry.name}: {number_text(float(f'{value:.6g}'))}"
+    if entry.name in effect_names() and not assume:
+        return f"{comment}; not in force, as a diagnosis finds effects itself", f"# {entry.name}: {_number(value)}"
+    return comment, f"{entry.name}: {_number(value)}"
+
+
+def _number(value: float) -> str:
+    """As ROS and YAML 1.1 read a number, to six digits: data sheets have fewer."""
+    return number_text(float(f"{value:.6g}"))
