@@ -146,8 +146,7 @@ def test_a_bound_is_released_in_the_nominal_equations_too():
 
 def test_where_a_member_sticks_derivatives_are_taken_more_finely(rig, pool):
     assert pool.posed(rig.set_of("constant_load")) is pool.problem
-    assert pool.posed(rig.set_of("coulomb_friction", "position_sensor_lag")) is pool.problem
-    assert pool.posed(rig.set_of("presliding_friction")).slope_step < pool.problem.slope_step
+    assert pool.posed(rig.set_of("coulomb_friction")).slope_step < pool.problem.slope_step
 
 
 def test_a_slow_residual_is_not_white(rig, pool):

@@ -80,11 +80,6 @@ class Hypothesis:
         """The kinds of law of which it contains a form."""
         return frozenset(effect.kind for effect in self.effects if effect.kind)
 
-    @property
-    def clings(self) -> bool:
-        """Whether it has friction with a state of its own, which clings before it slides."""
-        return any(effect.kind and effect.memory for effect in self.effects)
-
     def admits(self, effect: Effect) -> bool:
         """Whether an effect can be added: neither it nor another form of its law is a member."""
         return effect.id not in self.ids and effect.kind not in self.kinds

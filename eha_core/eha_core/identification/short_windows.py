@@ -25,9 +25,8 @@ for effects that have not converged yet, and stays there: of the true sets of te
 above the noise; with this, all but one, which had play in a sensor, reached the noise."""
 
 FINER = 2e-4
-"""s; step size of the derivatives where friction clings before it slides. Its state turns over within some steps, and
-longer ones miss a break-away, at which a fit then stops: presliding friction with four more effects at 25,700 times the
-noise's energy with 0.5 ms, at 1.01 times with this. Other forms of friction need no finer steps than the rest."""
+"""s; step size of the derivatives where friction may stick. Longer steps miss a break-away, at which a fit then stops:
+presliding friction with four more effects at 25,700 times the noise's energy with 0.5 ms, at 1.01 times with this."""
 
 
 def held(free: Sequence[FreeParameter], values: Mapping[str, float]) -> tuple[FreeParameter, ...]:

@@ -134,7 +134,7 @@ class Pool:
 
     def posed(self, hypothesis: Hypothesis) -> Problem:
         """The problem with derivatives taken as finely as the set needs."""
-        return with_finer_slopes(self.problem) if hypothesis.clings else self.problem
+        return with_finer_slopes(self.problem) if hypothesis.kinds else self.problem
 
     def keep(self, hypothesis: Hypothesis, result: Fit) -> Fit:
         """Keep a fit if it is the best of its set; the best fit of the set."""
