@@ -151,4 +151,4 @@ def test_given_motion_goes_its_own_way_as_on_the_command_line(tmp_path: Path) ->
     assert diagnosed.plot.law().axes
     with pytest.raises(EhaError, match="there is no plot 'residuals'"):
         diagnosed.plot.residuals()
-    assert {path.name for path in diagnosed.save(tmp_path)} == {"figures", "diagnosis.json"}
+    assert {path.name for path in diagnosed.save(tmp_path)} == {"figures", "diagnosis.json", "report.html"}

@@ -45,7 +45,7 @@ def test_the_twin_names_the_equation_the_stamp_and_the_cause_and_records_it(rig:
     assert warned["level"] == str(b"\x01")
     assert warned["message"].startswith("chamber ") and "times the noise since" in warned["message"]
     assert float(warned["departs since: chamber A"]) == pytest.approx(4.0, abs=0.1)
-    assert float(warned["window_end"]) == pytest.approx(5.1, abs=0.01)
+    assert float(warned["window_end"]) == pytest.approx(5.2, abs=0.01)
     rig.wait(lambda: "cause" in reports[-1], "the likely cause", 60)
     assert reports[-1]["cause"] == "internal_leakage" and reports[-1]["cannot be distinguished from"] == ""
     assert "; likely cause: internal leakage, " in reports[-1]["message"]
@@ -71,7 +71,7 @@ def test_a_sensor_that_freezes_is_reported_as_frozen_and_no_equation_departs(rig
         message.header.stamp.sec, message.header.stamp.nanosec = divmod(2_000_000 * number, 1_000_000_000)
         sensor.publish(message)
     rig.wait(lambda: reports and reports[-1].get("windows") == "3", "three windows")
-    assert reports[-1]["message"] == "position is frozen since 2.100 s"
+    assert reports[-1]["message"] == "position is frozen since 2.200 s"
     assert not any("departs" in name for name in reports[-1])
 
 
