@@ -22,8 +22,8 @@ from eha_core.parameters import changed, nominal_values
 from eha_core.plant import SEEN, simulate_many
 from eha_core.plant.composite import compiled_step
 from eha_core.plant.lockstep import LockStep
+from eha_core.plant.packing import pack
 from eha_core.plant.ring import LONGEST_DELAY
-from eha_core.plant.simulator import pack
 from eha_core.recording import read_recording
 
 STEP, EVERY, STEPS = 5e-4, 4, 5_000  # as a fit takes derivatives: rows of four columns at 500 Hz

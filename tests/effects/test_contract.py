@@ -17,8 +17,8 @@ from eha_core.effects.sites import SITES
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant, hooks, step
 from eha_core.plant.composite import compiled_step
+from eha_core.plant.packing import active_effects, pack
 from eha_core.plant.ring import LONGEST_DELAY
-from eha_core.plant.simulator import active_effects, pack
 from eha_core.plant.state import COLUMNS
 
 CATALOGUE = [

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from eha_core.parameters import nominal_values
 from eha_core.plant import Plant
 from eha_core.plant.composite import compiled_step
-from eha_core.plant.simulator import pack
+from eha_core.plant.packing import pack
 
 
 def coast(friction: dict[str, float], speed: float, step_size: float, steps: int, force: float = 0.0) -> np.ndarray:

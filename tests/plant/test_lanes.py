@@ -16,7 +16,7 @@ from eha_core.plant import COLUMNS, Plant
 from eha_core.plant.composite import compiled_step, write_lane_hooks
 from eha_core.plant.lane_rows import LANES
 from eha_core.plant.lockstep import LockStep
-from eha_core.plant.simulator import pack
+from eha_core.plant.packing import pack
 from eha_core.plant.state import PISTON
 
 STEP = 2e-4

@@ -8,7 +8,7 @@ import pytest
 from eha_core.parameters import changed, nominal_values
 from eha_core.plant import Plant
 from eha_core.plant.equations import TRANSITION_PRESSURE, orifice_root
-from eha_core.plant.simulator import pack
+from eha_core.plant.packing import pack
 from eha_core.plant.step import oil_half_step
 from eha_core.plant.vector import INTERNAL_LEAKAGE
 

@@ -9,8 +9,8 @@ import numpy as np
 from eha_core.parameters import nominal_values
 from eha_core.plant import COLUMNS, Plant
 from eha_core.plant.composite import compiled_step
+from eha_core.plant.packing import pack
 from eha_core.plant.ring import LONGEST_DELAY
-from eha_core.plant.simulator import pack
 from eha_core.plant.state import AT, PISTON, Places
 
 STEP = 1e-4

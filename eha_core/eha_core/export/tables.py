@@ -8,8 +8,8 @@ from eha_core.effects import effects
 from eha_core.export.kernel import DYNAMICS, MEMORY
 from eha_core.export.model import ExportedModel
 from eha_core.parameters import ACTING, NOMINAL, catalogue, step_rows
+from eha_core.plant.packing import pack
 from eha_core.plant.ring import ring_size
-from eha_core.plant.simulator import pack
 from eha_core.plant.state import AT, COLUMNS
 
 

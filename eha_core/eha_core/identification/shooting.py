@@ -20,8 +20,8 @@ from eha_core.plant.active_intervals import BEGINS, FIRST, Timetable, Windows, s
 from eha_core.plant.composite import compiled_windows
 from eha_core.plant.memory import start_memory, starting_memory, trailing
 from eha_core.plant.one_by_one import side_by_side
+from eha_core.plant.packing import pack
 from eha_core.plant.ring import ring_size
-from eha_core.plant.simulator import pack
 from eha_core.plant.state import AT, COLUMNS, PISTON, SEEN, Places
 
 STATE_SIZE = 4

@@ -26,8 +26,9 @@ from eha_core.plant.lane_rows import (
     VELOCITY,
 )
 from eha_core.plant.memory import trailing
+from eha_core.plant.packing import pack
 from eha_core.plant.ring import ring_size
-from eha_core.plant.simulator import Array, pack
+from eha_core.plant.simulator import Array
 
 CACHE_LINE = 64
 """Bytes."""

@@ -14,7 +14,8 @@ from eha_core.plant.composite import compiled_given_step
 from eha_core.plant.composition import PAPER, Composition
 from eha_core.plant.lockstep import LockStep
 from eha_core.plant.memory import trailing
-from eha_core.plant.simulator import Array, pack, step_inputs
+from eha_core.plant.packing import pack
+from eha_core.plant.simulator import Array, step_inputs
 from eha_core.plant.state import AT, PISTON, Places
 
 
