@@ -8,12 +8,13 @@ in it, and the simulation's initial state cancels out.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eha_core.plant import Trajectory
-from eha_core.weak_form.weighting import weighting
+from eha_core.weak_form.weighting import Weighting, weighting
 
 Array = NDArray[np.float64]
 
@@ -42,83 +43,86 @@ def equation_residuals(
     Returns (n - 2 half,) values each, at the centres of the test functions; empty where the rows are shorter than one.
     The force balance is nan where an end of the stroke may push on the piston: with a force that nobody knows.
     """
-    weight, slope, curvature = weighting(period)
-    if len(model.time) < len(weight):
+    test = weighting(period)
+    if len(model.time) < len(test.weight):
         return {}
-    x, a, b = (errors[name] for name in CHANNELS)
-    bulk, leak, outside = (parameters[name] for name in ("bulk_modulus", "internal_leakage", "external_leakage"))
+    opens = model.spool_position >= 0.0
+    sides = {
+        "chamber A": _Side(1.0, "pressure_a", "pressure_b", parameters["piston_area"], model.flow_a, opens),
+        "chamber B": _Side(-1.0, "pressure_b", "pressure_a", parameters["piston_area_b"], model.flow_b, ~opens),
+    }
+    force = _force_residual(errors, noises, parameters, test)
+    found = {"force balance": np.where(_touches_an_end(errors, noises, model, parameters, test), np.nan, force)}
+    return found | {name: _flow_residual(side, errors, noises, model, parameters, test) for name, side in sides.items()}
+
+
+class _Side(NamedTuple):
+    """One chamber: whether its piston side grows with the position (1) or shrinks (-1), its pressure and the other
+    one, its piston area, its port's flow (into A, out of B), and where the valve opens that port to the supply."""
+
+    direction: float
+    own: str
+    other: str
+    area: float
+    flow: Array
+    is_supplied: NDArray[np.bool_]
+
+
+def _force_residual(
+    errors: Mapping[str, Array], noises: Mapping[str, float], parameters: Mapping[str, float], test: Weighting
+) -> Array:
     area_a, area_b = parameters["piston_area"], parameters["piston_area_b"]
     mass, damping, spring = (parameters[name] for name in ("moving_mass", "damping_coefficient", "spring_stiffness"))
-    stroke, line = parameters["actuator_displacement"], parameters["line_volume"]
-    volume_a = line + area_a * (stroke + model.position)
-    volume_b = line + area_b * (stroke - model.position)
-    more_a, more_b = _flow_changes(model, a, b)
-    flow_a, flow_b = _flow_slopes(model)
-    inertia = mass * curvature - damping * slope + spring * weight
-    terms = {
-        "force balance": ((weight, area_a * a - area_b * b), (-inertia, x)),
-        "chamber A": (
-            (weight, more_a - leak * (a - b) - outside * a + area_a / bulk * model.velocity * a),
-            (slope, area_a * x + volume_a / bulk * a),
-        ),
-        "chamber B": (
-            (weight, -more_b + leak * (a - b) - outside * b - area_b / bulk * model.velocity * b),
-            (slope, -area_b * x + volume_b / bulk * b),
-        ),
-    }
+    inertia = mass * test.curvature - damping * test.slope + spring * test.weight
+    x, a, b = (errors[name] for name in CHANNELS)
     of_x, of_a, of_b = (noises[name] for name in CHANNELS)
-
-    def of_chamber(area: float, of_pressure: float, volume: Array, gain: Array) -> Array:
-        # a pressure's noise changes both the oil's volume and, where much flows, the flow
-        gain, volume = of_pressure * gain, of_pressure * volume / bulk
-        pairs = ((gain**2, weight**2), (2.0 * gain * volume, weight * slope), (volume**2, slope**2))
-        own = np.stack([np.correlate(*pair, mode="valid") for pair in pairs])
-        return np.asarray(np.sum(own, axis=0) + _power(slope, (area * of_x) ** 2))
-
-    leaks = leak + outside
-    of_force = _power(weight, (area_a * of_a) ** 2 + (area_b * of_b) ** 2) + _power(inertia, of_x**2)
-    variances = {
-        "force balance": np.asarray(of_force),
-        "chamber A": of_chamber(area_a, of_a, volume_a, flow_a - leaks + area_a / bulk * model.velocity),
-        "chamber B": of_chamber(area_b, of_b, volume_b, -flow_b - leaks - area_b / bulk * model.velocity),
-    }
-    found = {
-        name: sum(np.correlate(values, weight, mode="valid") for weight, values in parts) / np.sqrt(variances[name])
-        for name, parts in terms.items()
-    }
-    farthest = np.maximum(np.abs(model.position), np.abs(model.position + x))
-    touches = np.convolve(farthest > stroke - _AT_AN_END * of_x, np.ones(len(weight)), mode="valid") > 0.0
-    return found | {"force balance": np.where(touches, np.nan, found["force balance"])}
+    residual = _averaged(area_a * a - area_b * b, test.weight) - _averaged(x, inertia)
+    pressed = (area_a * of_a) ** 2 + (area_b * of_b) ** 2
+    variance = pressed * np.sum(test.weight**2) + of_x**2 * np.sum(inertia**2)
+    return np.asarray(residual / np.sqrt(variance))
 
 
-def _flow_changes(model: Trajectory, a: Array, b: Array) -> tuple[Array, Array]:
-    """The flows into port A and out of port B at the measured pressures, minus those at the simulated ones."""
-    (drop_a, sign_a), (drop_b, sign_b) = _drops(model)
-    ratio_a = 1.0 + sign_a * a / np.maximum(drop_a, _LOWEST_DROP)
-    ratio_b = 1.0 + sign_b * b / np.maximum(drop_b, _LOWEST_DROP)
-    return (
-        np.where(drop_a > _LOWEST_DROP, model.flow_a * (np.sqrt(np.maximum(ratio_a, 0.0)) - 1.0), 0.0),
-        np.where(drop_b > _LOWEST_DROP, model.flow_b * (np.sqrt(np.maximum(ratio_b, 0.0)) - 1.0), 0.0),
+def _flow_residual(
+    side: _Side, errors: Mapping[str, Array], noises: Mapping[str, float], model: Trajectory,
+    parameters: Mapping[str, float], test: Weighting,
+) -> Array:  # fmt: skip
+    bulk, leak, outside = (parameters[name] for name in ("bulk_modulus", "internal_leakage", "external_leakage"))
+    own, growing = errors[side.own], side.direction * side.area
+    reach = parameters["actuator_displacement"] + side.direction * model.position
+    compressed = (parameters["line_volume"] + side.area * reach) / bulk
+    more, slope = _flow_change(side, getattr(model, side.own), own, model)
+    moving = growing / bulk * model.velocity
+    flow = side.direction * more - leak * (own - errors[side.other]) - outside * own + moving * own
+    residual = _averaged(flow, test.weight) + _averaged(growing * errors["position"] + compressed * own, test.slope)
+    # a pressure's noise changes the oil's volume and, where much flows, the flow
+    gain = side.direction * slope - leak - outside + moving
+    of_pressure = (
+        _averaged(gain**2, test.weight**2)
+        + _averaged(2.0 * gain * compressed, test.weight * test.slope)
+        + _averaged(compressed**2, test.slope**2)
     )
+    of_position = (side.area * noises["position"]) ** 2 * np.sum(test.slope**2)
+    return np.asarray(residual / np.sqrt(noises[side.own] ** 2 * of_pressure + of_position))
 
 
-def _flow_slopes(model: Trajectory) -> tuple[Array, Array]:
-    """The derivatives of these flows by their own pressures."""
-    (drop_a, sign_a), (drop_b, sign_b) = _drops(model)
-    return (
-        np.where(drop_a > _LOWEST_DROP, sign_a * model.flow_a / (2.0 * np.maximum(drop_a, _LOWEST_DROP)), 0.0),
-        np.where(drop_b > _LOWEST_DROP, sign_b * model.flow_b / (2.0 * np.maximum(drop_b, _LOWEST_DROP)), 0.0),
-    )
+def _touches_an_end(
+    errors: Mapping[str, Array], noises: Mapping[str, float], model: Trajectory, parameters: Mapping[str, float],
+    test: Weighting,
+) -> NDArray[np.bool_]:  # fmt: skip
+    """Where either piston may rest against an end of the stroke within the test function."""
+    farthest = np.maximum(np.abs(model.position), np.abs(model.position + errors["position"]))
+    near = farthest > parameters["actuator_displacement"] - _AT_AN_END * noises["position"]
+    return np.asarray(_averaged(near.astype(np.float64), np.ones(len(test.weight))) > 0.0)
 
 
-def _drops(model: Trajectory) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-    """The pressure drop over the orifice of each port, and the sign with which the chamber's own pressure is in it."""
-    opens = model.spool_position >= 0.0
-    sign = np.where(opens, 1.0, -1.0)
-    drop_a = np.where(opens, model.supply_pressure - model.pressure_a, model.pressure_a - model.return_pressure)
-    drop_b = np.where(opens, model.pressure_b - model.return_pressure, model.supply_pressure - model.pressure_b)
-    return (drop_a, -sign), (drop_b, sign)
+def _flow_change(side: _Side, pressure: Array, error: Array, model: Trajectory) -> tuple[Array, Array]:
+    """The port's flow at the measured pressure minus that at the simulated one, and its derivative by the pressure."""
+    drop = np.where(side.is_supplied, model.supply_pressure - pressure, pressure - model.return_pressure)
+    sign = np.where(side.is_supplied, -1.0, 1.0)
+    least = np.maximum(drop, _LOWEST_DROP)
+    flow = np.where(drop > _LOWEST_DROP, side.flow, 0.0)
+    return flow * (np.sqrt(np.maximum(1.0 + sign * error / least, 0.0)) - 1.0), sign * flow / (2.0 * least)
 
 
-def _power(weight: Array, variance: float) -> float:
-    return float(np.sum(weight**2)) * variance
+def _averaged(values: Array, weight: Array) -> Array:
+    return np.asarray(np.correlate(values, weight, mode="valid"), dtype=np.float64)
