@@ -35,7 +35,7 @@ from eha_core.identification.fit import exact, fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import Problem
 from eha_core.nominal import nominal_of
-from tools.trial_rows import rows_of_trials
+from tools.trial_rows import try_rigs
 
 PROBABILITIES = (0.02, 0.98)
 """Between which the probability is drawn with which the linearisation predicts that an effect is found."""
@@ -122,11 +122,5 @@ def by_decile(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     yield f"\n{len(compared)} rigs compared, {len(rows) - len(compared)} with an effect not found at any size"
 
 
-def main() -> None:
-    """Try the rigs that FILE lacks, and print the table of all in it."""
-    for line in by_decile(rows_of_trials(try_rig, __doc__, 1000)):
-        print(line)
-
-
 if __name__ == "__main__":
-    main()
+    try_rigs(try_rig, by_decile, __doc__, 1000)

@@ -26,7 +26,7 @@ from eha_core.exam.plants import Rig
 from eha_core.exam.truth.simulate import COLUMNS, SteppedTruth
 from eha_core.investigation import Watch
 from eha_core.nominal import nominal_of
-from tools.trial_rows import rows_of_trials
+from tools.trial_rows import try_rigs
 
 TIERS = ("null_parameters", "single", "pair", "three", "rig")
 """Whose rigs are drawn in turn: with none, one, two, three, and four to six effects."""
@@ -111,11 +111,5 @@ def summed_up(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
             yield f"{row['number']}: {over}, {what}; {row['stopped'] or 'not stopped'}"
 
 
-def main() -> None:
-    """Try the rigs that FILE lacks, and say how many went past a limit."""
-    for line in summed_up(rows_of_trials(try_rig, __doc__, 1000)):
-        print(line)
-
-
 if __name__ == "__main__":
-    main()
+    try_rigs(try_rig, summed_up, __doc__, 1000)

@@ -32,7 +32,7 @@ from eha_core.exam.truth.simulate import COLUMNS, SteppedTruth
 from eha_core.recording import read_recording
 from eha_core.report.document import document
 from eha_core.signals import make_signal
-from tools.trial_rows import rows_of_trials
+from tools.trial_rows import try_rigs
 
 POSITION = COLUMNS.index("position")
 
@@ -136,11 +136,5 @@ def summed_up(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
                 yield f"{what}: without {name} {1e6 * said:.4g} um predicted, {1e6 * true:.4g} um true"
 
 
-def main() -> None:
-    """Try the rigs that FILE lacks, and say how well repairs were predicted."""
-    for line in summed_up(rows_of_trials(try_rig, __doc__, 100)):
-        print(line)
-
-
 if __name__ == "__main__":
-    main()
+    try_rigs(try_rig, summed_up, __doc__, 100)

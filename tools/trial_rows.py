@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +22,10 @@ def alone(trial: Trial, number: int, seed: int) -> dict[str, Any]:
         return trial(number, seed)
 
 
-def rows_of_trials(trial: Trial, description: str | None, rigs: int) -> list[dict[str, Any]]:
-    """Every row of the file that the command line names, once the rigs that it lacks were tried."""
+def try_rigs(
+    trial: Trial, summed_up: Callable[[Sequence[Mapping[str, Any]]], Iterable[str]], description: str | None, rigs: int
+) -> None:
+    """Try the rigs that the file which the command line names lacks, and print what all of its rows come to."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rigs", type=int, default=rigs)
     parser.add_argument("--first", type=int, default=0)
@@ -39,4 +41,5 @@ def rows_of_trials(trial: Trial, description: str | None, rigs: int) -> list[dic
             rows.append(row)
             file.write(json.dumps(row) + "\n")
             file.flush()
-    return rows
+    for line in summed_up(rows):
+        print(line)

@@ -22,7 +22,7 @@ from eha_core.nominal import nominal_of
 from eha_core.recording.simulated import Experiment, Simulated, simulate
 from eha_core.twin import Comparison, Settings, Twin
 from eha_core.twin.samples import nanoseconds
-from tools.trial_rows import rows_of_trials
+from tools.trial_rows import try_rigs
 
 PIECES, SECONDS = 18, 20.0
 """Motions of each rig, and how long one takes. Each begins at mid-stroke: in open loop a piston drifts to an end."""
@@ -88,11 +88,5 @@ def summed_up(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         yield f"noise {noise:g}x, {len(some)} rigs: evidence of {most:.2f} at most, where an alarm needs {needed:.2f}"
 
 
-def main() -> None:
-    """Try the rigs that FILE lacks, and say how far from an alarm they were."""
-    for line in summed_up(rows_of_trials(try_rig, __doc__, 100)):
-        print(line)
-
-
 if __name__ == "__main__":
-    main()
+    try_rigs(try_rig, summed_up, __doc__, 100)

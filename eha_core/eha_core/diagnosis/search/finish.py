@@ -260,7 +260,7 @@ def _compare(
     progress: Progress,
 ) -> None:  # fmt: skip
     """Fit a rival's own parameters, and then all that is free where it may come near."""
-    if hypothesis in pool.hopeless | pool.excessive:
+    if hypothesis in pool.hopeless or hypothesis in pool.excessive:
         return
     progress(f"comparing with {' + '.join(hypothesis.ids) or 'nothing'}")
     glanced = pool.glance(step, hypothesis, values, states, AT_FIRST)
