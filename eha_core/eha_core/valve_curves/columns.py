@@ -21,7 +21,6 @@ _LEAKAGE_WORDS = frozenset(("leak", "leakage", "leckage", "leckoel", "leckstrom"
 _COMMAND_UNITS = ("A", "V", "%")
 _COMMAND_WORDS = frozenset(("current", "voltage", "command"))
 _OPTIONS = {FLOW: "--flow", PRESSURE: "--load-pressure", LEAKAGE: "--leakage"}
-_WORDS = {FLOW: "flow", LEAKAGE: "flow", PRESSURE: "pressure"}
 _EXAMPLES = {"m^3/s": "l/min", "Pa": "bar", "A": "mA"}
 
 
