@@ -35,6 +35,30 @@ def unowned(array: NDArray[np.float64]) -> NDArray[np.float64]:
     return array
 
 
+@intrinsic
+def _data(context, array):  # type: ignore[no-untyped-def]
+    """Where an array's numbers begin, as a pointer to them."""
+
+    def generate(codegen, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        return codegen.make_array(signature.args[0])(codegen, builder, arguments[0]).data
+
+    return types.CPointer(array.dtype)(array), generate  # type: ignore[no-untyped-call]
+
+
+def bare(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same numbers without a length, for places that are known to be inside; the caller keeps `array` alive.
+
+    An array that is handed to an inlined function, as the effects' memory is, and an index that might count from the
+    end keep the compiler from taking all lanes at once.
+    """
+    return array
+
+
+@overload(bare, inline="always")
+def _bare(array):  # type: ignore[no-untyped-def]
+    return lambda array: _data(array)  # type: ignore[call-arg]
+
+
 @overload(unowned, inline="always")
 def _unowned(array):  # type: ignore[no-untyped-def]
     return lambda array: carray(_pointer(array.ctypes.data), (array.size,), np.float64)  # type: ignore[call-arg]

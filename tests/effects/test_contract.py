@@ -106,9 +106,12 @@ def test_the_longest_delay_fits_the_plants_memory_of_commands() -> None:
 def test_contribution_has_the_head_of_its_site(effect: Effect) -> None:
     contribution = import_module(f"eha_core.effects.{effect.id}").contribution
     head = list(inspect.signature(getattr(hooks, effect.site)).parameters)[:-2]
-    if "memory" in head:
-        head.insert(head.index("memory") + 1, "slot")
     parameters = inspect.signature(contribution.py_func).parameters.values()
+    if "memory" in head:
+        after, count = head.index("memory") + 1, max(1, len(effect.memory))
+        slots = [parameter.name for parameter in parameters][after : after + count]
+        assert all(name.startswith("slot") for name in slots)
+        head[after:after] = slots
     assert [parameter.name for parameter in parameters][: len(head)] == head
     own = list(parameters)[len(head) :]
     if own[-1].kind is not inspect.Parameter.VAR_POSITIONAL:

@@ -10,9 +10,8 @@ the clearance). The bell over the position is assumed: it lies between a Gaussia
 groove lets through.
 """
 
-from math import exp
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -86,7 +85,7 @@ def contribution(
     width,
 ):
     """Add a conductance that depends on where the piston is."""
-    fallen = exp(-2.0 * abs((position - centre) / width))
+    fallen = decayed(2.0 * abs((position - centre) / width))
     conductance = coefficient * 4.0 * fallen / ((1.0 + fallen) * (1.0 + fallen))
     cross_flow += conductance * (pressure_a - pressure_b)
     cross_slope += conductance

@@ -7,9 +7,8 @@ Validity: first-order filter; the velocity is derived from the same signal.
 Source: E. O. Doebelin, Measurement Systems, McGraw-Hill 1966, chapter 3 (first-order instruments).
 """
 
-from math import exp
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -42,6 +41,6 @@ def contribution(position, velocity, pressure_a, pressure_b, memory, slot, step_
     """Follow exactly a position that has moved steadily over the step."""
     trailing = velocity * time_constant
     start = position - velocity * step_size
-    seen = position - trailing + (memory[slot] - start + trailing) * exp(-step_size / time_constant)
+    seen = position - trailing + (memory[slot] - start + trailing) * decayed(step_size / time_constant)
     memory[slot] = seen
     return seen, (position - seen) / time_constant, pressure_a, pressure_b

@@ -10,9 +10,8 @@ Source: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, "A new model 
 IEEE Transactions on Automatic Control 40 (1995).
 """
 
-from math import exp
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -93,7 +92,7 @@ EFFECT = Effect(
 def level_of(velocity, sliding, static, stribeck_velocity):
     """g(v) in N, and its fall over the speed times that speed, as a share of it: -|v| g'(v) / g(v)."""
     square = (velocity / stribeck_velocity) ** 2
-    excess = (static - sliding) * exp(-square)
+    excess = (static - sliding) * decayed(square)
     level = max(LEAST_FORCE, sliding + excess)
     return level, 2.0 * square * excess / level
 

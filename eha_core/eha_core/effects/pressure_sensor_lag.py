@@ -11,9 +11,8 @@ load is not.
 Source: E. O. Doebelin, Measurement Systems, McGraw-Hill 1966, chapter 3 (first-order instruments).
 """
 
-from math import exp
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -58,19 +57,17 @@ EFFECT = Effect(
 
 
 @inlined
-def late(pressure, memory, slot, step_size, time_constant):
-    """Follow exactly a pressure that has changed steadily over the step.
+def late(pressure, old, step_size, time_constant):
+    """Follow exactly a pressure that has changed steadily over the step: what is shown, and what the next step needs.
 
-    The memory holds old pressure and what was shown, in the proportion in which the next step takes them.
+    That holds the pressure and what was shown, in the proportion in which the next step takes them, as `old` does.
     """
-    if time_constant <= 0.0:
-        memory[slot] = pressure
-        return pressure
-    kept = exp(-step_size / time_constant)
+    kept = decayed(step_size / time_constant)
     risen = (1.0 - kept) * (time_constant / step_size)
-    shown = (1.0 - risen) * pressure + risen * memory[slot]
-    memory[slot] = (kept * shown + (risen - kept) * pressure) / risen
-    return shown
+    shown = (1.0 - risen) * pressure + risen * old
+    held = (kept * shown + (risen - kept) * pressure) / risen
+    # without a lag nothing is held; asked last and of each, so that the compiler can choose in all lanes at once
+    return (shown if time_constant > 0.0 else pressure), (held if time_constant > 0.0 else pressure)
 
 
 @inlined
@@ -80,12 +77,13 @@ def contribution(
     pressure_a,
     pressure_b,
     memory,
-    slot,
+    slot_a,
+    slot_b,
     step_size,
     time_constant_a,
     time_constant_b,
 ):
     """Show both pressures late."""
-    shown_a = late(pressure_a, memory, slot, step_size, time_constant_a)
-    shown_b = late(pressure_b, memory, slot + 1, step_size, time_constant_b)
+    shown_a, memory[slot_a] = late(pressure_a, memory[slot_a], step_size, time_constant_a)
+    shown_b, memory[slot_b] = late(pressure_b, memory[slot_b], step_size, time_constant_b)
     return position, velocity, shown_a, shown_b

@@ -7,9 +7,8 @@ Validity: small departures about one working point; no line resonance.
 Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 3 (flow through lines). First order is assumed.
 """
 
-from math import exp
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -64,7 +63,7 @@ def contribution(
 ):
     """Let the rise follow the flow, which is held over the step."""
     rise = resistance * return_flow
-    rise += (memory[slot] - rise) * exp(-step_size / time_constant)
+    rise += (memory[slot] - rise) * decayed(step_size / time_constant)
     span = supply_pressure - return_pressure
     memory[slot] = min(span, max(-span, rise))
     return supply_pressure, return_pressure + memory[slot]

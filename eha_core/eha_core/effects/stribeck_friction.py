@@ -9,9 +9,8 @@ Source: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "A survey of models
 methods for the control of machines with friction", Automatica 30 (1994).
 """
 
-from math import exp
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -102,7 +101,7 @@ def contribution(
     """Linearise about the present speed: the fall of the friction there is a damping below zero."""
     share = abs(velocity) / stribeck_velocity
     power = share**shape
-    excess = (static - sliding) * exp(-power)
+    excess = (static - sliding) * decayed(power)
     fall = shape * power * excess
     # a shape below 1 falls infinitely fast at rest: no faster than over the Stribeck velocity
     slope = fall / (stribeck_velocity * max(share, min(power, 1.0))) if power > 0.0 else 0.0

@@ -8,9 +8,8 @@ Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 11 (suppli
 assumed.
 """
 
-from math import exp
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -65,7 +64,7 @@ def contribution(
 ):
     """Let the loss follow the flow, which is held over the step."""
     loss = resistance * supply_flow
-    loss += (memory[slot] - loss) * exp(-step_size / time_constant)
+    loss += (memory[slot] - loss) * decayed(step_size / time_constant)
     span = supply_pressure - return_pressure
     memory[slot] = min(span, max(-span, loss))
     return supply_pressure - memory[slot], return_pressure

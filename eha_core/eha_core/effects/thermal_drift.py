@@ -8,9 +8,8 @@ Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 2 (viscosi
 assumed.
 """
 
-from math import expm1
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -69,5 +68,5 @@ EFFECT = Effect(
 @inlined
 def contribution(internal_leakage, damping, time, damping_ratio, leakage_ratio, time_constant):
     """Apply what of the warming has come about."""
-    warmth = -expm1(-time / time_constant)
+    warmth = 1.0 - decayed(time / time_constant)
     return internal_leakage * (1.0 + leakage_ratio * warmth), damping * (1.0 - damping_ratio * warmth)

@@ -10,9 +10,8 @@ B. H. Wilson, "Unified modeling and analysis of a proportional valve", Journal o
 exponential fading is assumed.
 """
 
-from math import exp
-
 from eha_core.compiled import inlined
+from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
 from eha_core.parameter import Parameter
 
@@ -57,4 +56,4 @@ EFFECT = Effect(
 @inlined
 def contribution(opening, gain, conductance, spool_position, null_conductance, width):
     """Add the lands' conductance."""
-    return opening, gain, conductance + null_conductance * exp(-abs(spool_position) / width)
+    return opening, gain, conductance + null_conductance * decayed(abs(spool_position) / width)

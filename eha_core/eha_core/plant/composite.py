@@ -24,18 +24,24 @@ from typing import NamedTuple
 
 import numba
 
-from eha_core.effects import SITES, effects
+from eha_core.effects import SITES, Effect, effects
 from eha_core.parameters import NOMINAL, step_rows
 from eha_core.plant import hooks, lane_hooks
 from eha_core.plant.lane_rows import LANES, PARAMETERS
 from eha_core.plant.parts import Source, parts
 
 SOURCES = (
-    "compiled.py", "curve.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
+    "compiled.py", "curve.py", "decay.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
     "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
     "plant/windows.py", "plant/active_intervals.py", "plant/composite.py", "plant/ring.py", "plant/source.py",
     "plant/given.py", "plant/parts/sources/*.py", "effects/*.py",
 )
+
+
+def slots_of(effect: Effect, first: int) -> range:
+    """The memory slots that an effect of a site with memory is called with; without any of its own one that it leaves
+    alone."""
+    return range(first, first + max(1, len(effect.memory)))
 
 
 def write_hooks() -> str:
@@ -48,7 +54,8 @@ def write_hooks() -> str:
     for index, effect in enumerate(effects()):
         head = list(inspect.signature(getattr(hooks, effect.site)).parameters)
         kept = head[: SITES[effect.site].quantities]
-        arguments = [name if name != "memory" else f"memory, {slot}" for name in head[:-2]]
+        slots = ", ".join(map(str, slots_of(effect, slot)))
+        arguments = [name if name != "memory" else f"memory, {slots}" for name in head[:-2]]
         arguments += [f"parameters[{place + offset}]" for offset in range(len(effect.parameters))]
         calls[effect.site].append(f"    if active[{index}]:")
         calls[effect.site].append(f"        {', '.join(kept)} = {effect.id}({', '.join(arguments)})")
@@ -129,13 +136,11 @@ def _write_feed(own: list[str], places: list[str]) -> list[str]:
 SEEN = ("position", "velocity", "pressure_a", "pressure_b")
 
 
-def lane_row(site: str, name: str, slot: int, slots: int = 1) -> str:
-    """The row of a block, or what all lanes share, that an effect's argument of that name means.
-
-    A lane's memory of one effect, `slots` numbers, lies together, as the contribution finds it in a plant alone.
-    """
+def lane_row(site: str, name: str, slots: range) -> str:
+    """The row of a block, or what all lanes share, that an argument of that name of an effect with these memory slots
+    means."""
     if name == "memory":
-        return f"block, MEMORY + {slot} * LANES + {slots} * lane"
+        return ", ".join(["block", *(f"MEMORY + {slot} * LANES + lane" for slot in slots)])
     if name == "history":
         return "ring_of(history, lane, step_size)"
     if name in ("newest", "step_size", "time"):
@@ -167,7 +172,7 @@ def layout() -> Layout:
 def write_lane_hooks() -> str:
     """The source of the lock-step's hooks: each site calls its effects in order, in those lanes in which they act."""
     lines = ['"""Generated from the catalogue of effects, and written anew when a source changes: do not edit."""', ""]
-    lines += ["from eha_core.compiled import called, unowned", "from eha_core.plant.lane_rows import *"]
+    lines += ["from eha_core.compiled import called", "from eha_core.plant.lane_rows import *"]
     lines += ["from eha_core.plant.ring import ring_of", ""]
     lines += [f"from eha_core.effects.{effect.id} import contribution as {effect.id}" for effect in effects()]
     lines += ["", f"MEMORY, ACTS = {layout().memory}, {layout().acts}"]
@@ -176,7 +181,7 @@ def write_lane_hooks() -> str:
     masks = dict.fromkeys(SITES, 0)
     for index, effect in enumerate(effects()):
         head = list(inspect.signature(getattr(hooks, effect.site)).parameters)[:-2]
-        arguments = [lane_row(effect.site, name, slot, len(effect.memory)) for name in head]
+        arguments = [lane_row(effect.site, name, slots_of(effect, slot)) for name in head]
         kept = arguments[: SITES[effect.site].quantities]
         arguments += [f"block[PARAMETERS + {place + k} * LANES + lane]" for k in range(len(effect.parameters))]
         calls[effect.site] += [
@@ -191,7 +196,7 @@ def write_lane_hooks() -> str:
     lines += [f"{site.upper()}_EFFECTS = {mask}" for site, mask in masks.items()]
     for site, body in calls.items():
         head = list(inspect.signature(getattr(lane_hooks, site)).parameters)
-        lines += ["", "", "@called", f"def {site}({', '.join(head)}):", "    block = unowned(block)", *body]
+        lines += ["", "", "@called", f"def {site}({', '.join(head)}):", *(body or ["    pass"])]
     return "\n".join(lines) + "\n"
 
 

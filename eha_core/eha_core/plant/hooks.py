@@ -16,11 +16,11 @@ them. SI units throughout.
 * sensor: position, velocity, pressure_a, pressure_b / memory, slot, step_size
 
 `history` holds one voltage a step in a ring, the latest at index `newest`, and in its last element that index. `memory`
-holds the effects' own states; an effect's begin at `slot`. `bulk_change` is d ln(bulk) / dP in the chamber's own
-pressure; `cross_slope` the derivative of cross_flow (positive from A to B) in pressure_a - pressure_b. `force` acts
-along positive position; `damping` and `stiffness` are the linear parts that the step treats implicitly (the force of
-the stiffness is in `force`); the piston sticks where the rest of the force is below `dry_friction`. Pressures are above
-the return line's reference.
+holds the effects' own states; an effect's is at `slot`, and of several each has an argument of its own, named slot_...
+`bulk_change` is d ln(bulk) / dP in the chamber's own pressure; `cross_slope` the derivative of cross_flow (positive
+from A to B) in pressure_a - pressure_b. `force` acts along positive position; `damping` and `stiffness` are the linear
+parts that the step treats implicitly (the force of the stiffness is in `force`); the piston sticks where the rest of
+the force is below `dry_friction`. Pressures are above the return line's reference.
 """
 
 from __future__ import annotations

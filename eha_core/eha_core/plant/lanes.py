@@ -7,7 +7,7 @@ step. What stands between two loops is decided for all lanes together: a site no
 
 from __future__ import annotations
 
-from eha_core.compiled import called, compiled, inlined, unowned
+from eha_core.compiled import bare, called, compiled, inlined, unowned
 from eha_core.plant import lane_rows as at
 from eha_core.plant.equations import driving_force, external_leakage_flow, hydraulic_force, internal_leakage_flow
 from eha_core.plant.ring import rings_in
@@ -282,7 +282,7 @@ def advance(block, lanes, history, active, voltages, step_size, every, rows):
     `step.advance`, one for all lanes or, as `ring` has it, one a lane: `voltages` then has one a lane for each step.
     active: the bits of the effects that act in any lane.
     """
-    block, history = unowned(block), unowned(history)
+    block, history = bare(block), unowned(history)
     width = rings_in(history, step_size)
     size = history.shape[0] // width
     stride = size if width > 1 else 0
@@ -323,7 +323,7 @@ def advance(block, lanes, history, active, voltages, step_size, every, rows):
 @compiled
 def advance_driven(block, lanes, active, pressures_a, pressures_b, step_size, every, rows):
     """Advance position and velocity alone, driven by given chamber pressures held over each step: equation (10)."""
-    block = unowned(block)
+    block = bare(block)
     time, tau = block[at.TIME], 0.5 * step_size
     as_stated(block, lanes)
     for index in range(pressures_a.shape[0]):

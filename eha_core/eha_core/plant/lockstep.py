@@ -192,14 +192,8 @@ def _memory() -> list[tuple[int, str]]:
 
 @cache
 def memory_places() -> Integers:
-    """Where each memory slot stands in the block, in each lane (slots, LANES): a lane's slots of one effect lie
-    together."""
-    found, place = [np.empty((0, LANES), dtype=np.int64)], layout().memory
-    for effect in effects():
-        size = len(effect.memory)
-        found.append(place + np.arange(size * LANES).reshape(LANES, size).T)
-        place += size * LANES
-    return np.concatenate(found)
+    """Where each memory slot stands in the block, in each lane (slots, LANES)."""
+    return np.arange(layout().memory, layout().acts, dtype=np.int64).reshape(-1, LANES)
 
 
 def _aligned(size: int) -> Array:
