@@ -38,6 +38,8 @@ THRESHOLDS = {
     "DEAR": 0.03,
     "HELD_OUT": 5.0,
     "ODDS_OF_GAIN": 1.7,
+    "MISSED": 0.35,
+    "TRUE_EVEN_SO": 0.5,
     "CONTENDING": 20.0,
     "PARTLY": 0.2,
     "NEARLY_ALL": 0.1,

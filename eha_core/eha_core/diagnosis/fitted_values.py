@@ -66,9 +66,10 @@ def named_effects(
     composition: Composition,
     sets: tuple[ProbableSet, ...],
     intervals: Mapping[str, Ends] = MappingProxyType({}),
+    missed: float = 0.0,
 ) -> tuple[NamedEffect, ...]:
     """The named effects, each with its values, statement and probability; `intervals`: one-sided ones, of values whose
-    standard deviation gives none."""
+    standard deviation gives none; `missed`: the probability that the true set is none of the `sets`."""
     found = []
     for member in (member for member in winner.hypothesis.members if member.effect.named):
         effect = composition.as_shown(member.effect)
@@ -83,7 +84,7 @@ def named_effects(
         evidence = winner.score if len(winner.effects) == 1 else wald(final, effect)
         row = NamedEffect(
             effect.id, effect.site, effect.equation, values, evidence, statement, active, effect.kind,
-            probability(sets, effect.id),
+            probability(sets, effect.id, missed),
         )  # fmt: skip
         found.append(row)
     return tuple(found)

@@ -50,6 +50,7 @@ class ModelComparison:
         gain_over_required: of each member of the best set, what it gains over what is required of it.
         trace: every fit of the search.
         cut_short: whether the search ended at its limit.
+        begun_anew: whether it began anew over longer windows, because what short ones showed explained too little.
     """
 
     nominal: Entry
@@ -61,6 +62,7 @@ class ModelComparison:
     gain_over_required: Mapping[Member, float] = field(default_factory=dict)
     trace: tuple[TraceStep, ...] = ()
     cut_short: bool = False
+    begun_anew: bool = False
 
 
 def residual_variance(fits: Sequence[Fit]) -> float:

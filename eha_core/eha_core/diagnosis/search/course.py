@@ -115,6 +115,7 @@ def _over_growing_windows(
     pool = carried(bridge, calibration.problem, material)
     if at_the_noise(pool):
         return calibration, pool
+    material.trace.begun_anew = True
     longer = searched(longer, begin, friction, material, laws=True)
     found = carried(longer, calibration.problem, material)
     found.adopt(pool)
@@ -290,6 +291,7 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
         gains,
         tuple(material.trace.steps),
         material.trace.is_over,
+        material.trace.begun_anew,
     )
     return calibration, comparison
 

@@ -43,11 +43,13 @@ Progress = Callable[[str], None]
 
 @dataclass
 class Trace:
-    """Every fit of a diagnosis, in order, and how often the channels were linearised in order to propose sets."""
+    """Every fit of a diagnosis, in order, how often the channels were linearised in order to propose sets, and whether
+    the search began anew over longer windows, because what short ones showed explains too little."""
 
     began: float = field(default_factory=time.process_time)
     steps: list[TraceStep] = field(default_factory=list)
     expansions: int = 0
+    begun_anew: bool = False
 
     @property
     def is_over(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eha_core.diagnosis.criteria import ENOUGH
+from eha_core.diagnosis.criteria import CERTAINTY, ENOUGH
 from eha_core.diagnosis.result import Diagnosis
 from eha_core.report.evidence import IN_FULL, evidence_picture, named, rung
 from eha_core.report.finding import counted, names_listed
@@ -28,10 +28,14 @@ def stage(diagnosis: Diagnosis) -> Stage:
 
 
 def _sets(diagnosis: Diagnosis) -> tuple[Table, ...]:
-    """Table of the sets that together have 95 % of the probability."""
+    """Table of the sets that together have most of the probability."""
     chosen = {effect.id for effect in diagnosis.effects}
     rows = tuple((rung(set(each.effects), chosen), probable(each.probability)) for each in diagnosis.sets)
-    return (Table(("set", "probability"), rows, "Sets that together have 95 % of the probability"),) if rows else ()
+    together = sum(each.probability for each in diagnosis.sets)
+    title = "Sets that together have 95 % of the probability"
+    if together < CERTAINTY:
+        title = f"Sets that together have {together:.0%} of the probability; the rest is that of sets not found"
+    return (Table(("set", "probability"), rows, title),) if rows else ()
 
 
 def _why_none(diagnosis: Diagnosis) -> str:
