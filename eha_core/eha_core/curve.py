@@ -12,11 +12,38 @@ SOURCE = "recovered from a recording"
 def knot_parameters(symbol: str, unit: str, largest: float, meaning: str) -> tuple[Parameter, ...]:
     """The curve's rows: the range it was seen over, and its value at each knot."""
     return (
-        Parameter("lower", "z_0", "-", -1.0, -1e9, 1e9, "where the first knot stands, in the variable's unit", SOURCE),
-        Parameter("upper", "z_n", "-", 1.0, -1e9, 1e9, "where the last knot stands, in the variable's unit", SOURCE),
+        Parameter(
+            name="lower",
+            symbol="z_0",
+            unit="-",
+            nominal=-1.0,
+            lower=-1e9,
+            upper=1e9,
+            meaning="where the first knot stands, in the variable's unit",
+            source=SOURCE,
+        ),
+        Parameter(
+            name="upper",
+            symbol="z_n",
+            unit="-",
+            nominal=1.0,
+            lower=-1e9,
+            upper=1e9,
+            meaning="where the last knot stands, in the variable's unit",
+            source=SOURCE,
+        ),
         *(
-            Parameter(f"knot_{k:02d}", f"{symbol}_{k}", unit, 0.0, -largest, largest, f"{meaning} at knot {k}", SOURCE,
-                      switches=True)
+            Parameter(
+                name=f"knot_{k:02d}",
+                symbol=f"{symbol}_{k}",
+                unit=unit,
+                nominal=0.0,
+                lower=-largest,
+                upper=largest,
+                meaning=f"{meaning} at knot {k}",
+                source=SOURCE,
+                switches=True,
+            )
             for k in range(KNOTS)
         ),
     )

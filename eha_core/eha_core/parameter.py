@@ -8,7 +8,7 @@ from math import isfinite
 from eha_core.errors import ParameterError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Parameter:
     """A physical quantity that the plant is built from.
 

@@ -22,7 +22,11 @@ def _row(
     name: str, symbol: str, unit: str, nominal: float, bounds: tuple[float, float], meaning: str,
     source: str = "Table 1", logarithmic: bool = True,
 ) -> Parameter:
-    return Parameter(name, symbol, unit, nominal, *bounds, meaning, source, typical=nominal, logarithmic=logarithmic)
+    lower, upper = bounds
+    return Parameter(
+        name=name, symbol=symbol, unit=unit, nominal=nominal, lower=lower, upper=upper, meaning=meaning, source=source,
+        typical=nominal, logarithmic=logarithmic,
+    )  # fmt: skip
 
 
 NOMINAL: tuple[Parameter, ...] = (

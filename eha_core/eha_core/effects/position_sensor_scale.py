@@ -20,7 +20,17 @@ EFFECT = Effect(
     equation="y = (1 + ratio) x_p",
     parameters=(
         Parameter(
-            "ratio", "r_y", "-", 0.0, -0.9, 9.0, "gain error", ASSUMED, typical=0.05, switches=True, starts=(-1.0, 1.0)
+            name="ratio",
+            symbol="r_y",
+            unit="-",
+            nominal=0.0,
+            lower=-0.9,
+            upper=9.0,
+            meaning="gain error",
+            source=ASSUMED,
+            typical=0.05,
+            switches=True,
+            starts=(-1.0, 1.0),
         ),
     ),
     order=2,

@@ -19,14 +19,15 @@ EFFECT = Effect(
     equation="M_p x_p'' = ... + curve(z)",
     parameters=(
         Parameter(
-            "variable",
-            "z",
-            "-",
-            0.0,
-            0.0,
-            4.0,
-            "what the curve is over: 0 position, 1 velocity, 2 pressure difference, 3 time, 4 position, times velocity",
-            SOURCE,
+            name="variable",
+            symbol="z",
+            unit="-",
+            nominal=0.0,
+            lower=0.0,
+            upper=4.0,
+            meaning="what the curve is over: 0 position, 1 velocity, 2 pressure difference, 3 time, 4 position, times "
+            "velocity",
+            source=SOURCE,
         ),
         *knot_parameters("F", "N", 1e7, "force"),
     ),

@@ -16,11 +16,13 @@ PART = Cylinder(
     uses=CONTINUITY,
     parameters=(
         Parameter(
-            "vane_displacement", "D_v", "m^3/rad", 5e-5, 1e-6, 1.0, "oil that each chamber takes or gives per radian",
-            ASSUMED, typical=5e-5, logarithmic=True,
+            name="vane_displacement", symbol="D_v", unit="m^3/rad", nominal=5e-5, lower=1e-6, upper=1.0,
+            meaning="oil that each chamber takes or gives per radian",
+            source=ASSUMED, typical=5e-5, logarithmic=True,
         ),
         Parameter(
-            "half_travel", "theta_s", "rad", 1.5, 1e-3, 10.0, "angle from the middle to either stop", ASSUMED,
+            name="half_travel", symbol="theta_s", unit="rad", nominal=1.5, lower=1e-3, upper=10.0,
+            meaning="angle from the middle to either stop", source=ASSUMED,
             typical=1.5, logarithmic=True,
         ),
     ),

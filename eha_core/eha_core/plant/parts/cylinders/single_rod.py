@@ -28,8 +28,9 @@ PART = Cylinder(
     uses=(*CONTINUITY, "piston_area", "actuator_displacement"),
     parameters=(
         Parameter(
-            "piston_area_b", "A_b", "m^2", 430e-6, 1e-6, 1.0, "annular area towards chamber B, where the rod is",
-            "assumed: two thirds of Table 1's area", typical=430e-6, logarithmic=True,
+            name="piston_area_b", symbol="A_b", unit="m^2", nominal=430e-6, lower=1e-6, upper=1.0,
+            meaning="annular area towards chamber B, where the rod is",
+            source="assumed: two thirds of Table 1's area", typical=430e-6, logarithmic=True,
         ),
     ),
     balanced=True,

@@ -14,16 +14,19 @@ PART = Load(
     summary="a sprung inertia",
     parameters=(
         Parameter(
-            "moment_of_inertia", "J", "kg m^2", 0.5, 1e-5, 1e5, "moment of inertia of vane, shaft and load", ASSUMED,
+            name="moment_of_inertia", symbol="J", unit="kg m^2", nominal=0.5, lower=1e-5, upper=1e5,
+            meaning="moment of inertia of vane, shaft and load", source=ASSUMED,
             typical=0.5, logarithmic=True,
         ),
         Parameter(
-            "rotational_damping", "B_r", "N m s/rad", 10.0, 0.0, 1e7, "viscous damping of vane and load", ASSUMED,
+            name="rotational_damping", symbol="B_r", unit="N m s/rad", nominal=10.0, lower=0.0, upper=1e7,
+            meaning="viscous damping of vane and load", source=ASSUMED,
             typical=10.0,
         ),
         Parameter(
-            "rotational_stiffness", "K_r", "N m/rad", 0.0, 0.0, 1e8, "stiffness of the spring that the load turns",
-            ASSUMED,
+            name="rotational_stiffness", symbol="K_r", unit="N m/rad", nominal=0.0, lower=0.0, upper=1e8,
+            meaning="stiffness of the spring that the load turns",
+            source=ASSUMED,
         ),
     ),
     stands_for={
