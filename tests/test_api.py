@@ -17,7 +17,7 @@ from eha_core.cli import main
 from eha_core.effects import effects
 from eha_core.errors import EhaError
 from eha_core.recording import read_recording
-from eha_core.report.summary import summarise
+from eha_core.report.summary_tables import summarise
 
 COMMAND = "multisine:amplitude=0.12,lowest=0.3,highest=8,count=16,period=20,seed=3"
 RIG = {"coulomb_friction.force": 250.0, "moving_mass": 11.0}

@@ -14,7 +14,7 @@ from eha_core.errors import EhaError
 from eha_core.exam.files import read_answer
 from eha_core.exam.page import as_html
 from eha_core.exam.run_exam import Exam, open_answers, run_exam, run_tool
-from eha_core.exam.summary import summarise
+from eha_core.exam.shares import summarise
 from eha_core.exam.tables import as_json, as_markdown
 from eha_core.recording import read_recording
 from eha_core.workers import Workers

@@ -13,7 +13,7 @@ from eha_core.exam.drawing import draw_case
 from eha_core.exam.outside import curve_agreement
 from eha_core.exam.reliability import reliability
 from eha_core.exam.scoring import Answer, Proportion, mark, wilson
-from eha_core.exam.summary import confusion, summarise
+from eha_core.exam.shares import confusion, summarise
 from eha_core.exam.tiers import MEANINGS, SHARES, plan
 
 

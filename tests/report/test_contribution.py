@@ -11,12 +11,12 @@ from eha_core.diagnosis.result import Diagnosis, FittedValue
 from eha_core.report.account import account
 from eha_core.report.claims import residual_in_words
 from eha_core.report.contribution import contribution, effect_table, ladder_picture, step_table
-from eha_core.report.evidence import rung
 from eha_core.report.finding import headline, identified_parameters, warnings
 from eha_core.report.html import page
 from eha_core.report.picture import Bars, Cells, Upright
+from eha_core.report.rivals_picture import rung
 from eha_core.report.stages import report_stages
-from eha_core.report.summary import summarise
+from eha_core.report.summary_tables import summarise
 
 
 def bars_of(diagnosis: Diagnosis) -> Bars:

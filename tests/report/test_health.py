@@ -14,7 +14,7 @@ from eha_core.report.first_screen import pictures, residual_picture
 from eha_core.report.health import excluded, fault_lines
 from eha_core.report.picture import Band, Line, Spans
 from eha_core.report.stages import read
-from eha_core.report.summary import summarise
+from eha_core.report.summary_tables import summarise
 
 FROZEN = Fault("position", "frozen", 2.0, 3.0, "frozen at 0.1 m", "see why the sensor repeats its value")
 HOLE = Fault("voltage_command", "hole", 4.0, 4.5, "no sample for 0.5 s", "record it without interruption")

@@ -20,13 +20,13 @@ import eha_core
 from eha_core.diagnosis.result import Diagnosis, Pictures, ProbableSet
 from eha_core.quantities import quantity
 from eha_core.report.document import as_json
-from eha_core.report.evidence import evidence_picture
 from eha_core.report.figures import write_figures
 from eha_core.report.first_screen import law_panel, law_picture, pictures
 from eha_core.report.html import page
 from eha_core.report.laws.law import Axis, Law
 from eha_core.report.picture import LONGEST_LINE, Bars, Line, Upright
 from eha_core.report.provenance import with_provenance
+from eha_core.report.rivals_picture import evidence_picture
 from eha_core.report.stages import report_stages
 from eha_core.report.wording import words
 

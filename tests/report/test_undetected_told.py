@@ -11,7 +11,7 @@ from eha_core.report.account import account
 from eha_core.report.document import document
 from eha_core.report.finding import supporting
 from eha_core.report.stages.show import stage
-from eha_core.report.summary import summarise
+from eha_core.report.summary_tables import summarise
 from eha_core.report.undetected import not_missing, undetected_tables
 
 FOUND = Undetected(

@@ -16,7 +16,7 @@ from eha_core.workers import Workers
 
 if TYPE_CHECKING:
     from eha_core.exam.scoring import Mark
-    from eha_core.exam.summary import Summary
+    from eha_core.exam.shares import Summary
 
 OWN = "eha diagnose"
 DIAGNOSE = "{python} -m eha_core.cli diagnose {recording} {nominal} --json {answer} --jobs 1"
@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _run_pooled(arguments)
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
     from eha_core.exam.run_exam import Exam, report_lost, run_exam
-    from eha_core.exam.summary import summarise
+    from eha_core.exam.shares import summarise
 
     if arguments.cases < 1 or arguments.jobs < 1:
         raise EhaError(f"--cases {arguments.cases} --jobs {arguments.jobs}: give 1 or more of each")
@@ -102,8 +102,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_pooled(arguments: argparse.Namespace) -> int:
     """Score several runs of one exam together; --require is the required share of correct cases."""
+    from eha_core.exam.shares import summarise
     from eha_core.exam.sittings import read_sittings
-    from eha_core.exam.summary import summarise
 
     marks, shared = read_sittings(arguments.pool)
     summaries = [summarise(tool, marks[tool]) for tool in marks]

@@ -18,6 +18,7 @@ from eha_core.diagnosis.experiment.discrimination import RATE
 from eha_core.diagnosis.experiment.limits import Limits
 from eha_core.diagnosis.explained import explained, predictions
 from eha_core.diagnosis.fitted_values import changed_values, fitted_parameters, named_effects
+from eha_core.diagnosis.in_words import summary
 from eha_core.diagnosis.ladder import correlation, ladder
 from eha_core.diagnosis.law import UNITS as UNITS_OF_LAWS
 from eha_core.diagnosis.law import express, weak_law
@@ -35,7 +36,6 @@ from eha_core.diagnosis.result import (
     UnknownLaw,
 )
 from eha_core.diagnosis.search.comparison import Entry
-from eha_core.diagnosis.summary import summary
 from eha_core.diagnosis.supported import one_sided, supported
 from eha_core.diagnosis.undetected import undetected
 from eha_core.diagnosis.verdict import Decision, contenders, whiteness

@@ -7,7 +7,7 @@ from html import escape
 from importlib.resources import files
 
 from eha_core.exam.scoring import OUTCOMES, Mark, Proportion
-from eha_core.exam.summary import Row, Summary, Target
+from eha_core.exam.shares import Row, Summary, Target
 from eha_core.exam.tables import HEAD
 from eha_core.exam.tiers import MEANINGS
 

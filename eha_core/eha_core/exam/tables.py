@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
 from eha_core.exam.scoring import Mark
+from eha_core.exam.shares import Summary
 from eha_core.exam.shipped import Shown
 from eha_core.exam.sittings import SCHEMA
-from eha_core.exam.summary import Summary
 from eha_core.exam.tiers import MEANINGS
 
 HEAD = ("cases", "right", "abstained", "wrong", "failed", "right site", "CPU s, median", "CPU s, longest")

@@ -12,10 +12,10 @@ from eha_core.quantities import quantity, scale_for
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged
 from eha_core.report.contribution import ladder_picture
-from eha_core.report.evidence import evidence_picture
 from eha_core.report.health import Intervals, drawn_line, excluded, shaded
 from eha_core.report.laws import Law, laws
 from eha_core.report.picture import LABELS, Band, Dots, Group, Line, Mark, Panel, Picture, Ribbon
+from eha_core.report.rivals_picture import evidence_picture
 from eha_core.report.series import spread
 from eha_core.report.stage import adds_physics
 from eha_core.report.wording import capital, channel_title

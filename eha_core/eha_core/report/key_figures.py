@@ -13,7 +13,7 @@ from eha_core.effects import effect_title
 from eha_core.quantities import quantity, short
 from eha_core.recording import CHANNEL_KINDS
 from eha_core.report.claims import judged, representative_channel, residual_headline, residual_in_words
-from eha_core.report.evidence import behind_in_words, named, rung
+from eha_core.report.rivals_picture import behind_in_words, named, rung
 from eha_core.report.wording import channel_title, listed
 
 

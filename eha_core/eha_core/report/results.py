@@ -15,7 +15,7 @@ from eha_core.report.first_screen import law_picture, residual_picture
 from eha_core.report.picture import Picture
 from eha_core.report.stages import report_stages
 from eha_core.report.stages.model import correlations
-from eha_core.report.summary import Summary, summarise
+from eha_core.report.summary_tables import Summary, summarise
 
 if TYPE_CHECKING:
     from eha_core.report.figures import Drawn

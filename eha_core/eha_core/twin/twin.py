@@ -14,7 +14,7 @@ from eha_core.health.noise import residual_noise
 from eha_core.plant import Plant, Trajectory
 from eha_core.realtime import NANOSECONDS
 from eha_core.twin.comparison import DRIFT, Comparison, Settings
-from eha_core.twin.evidence import Detector, log_e_value
+from eha_core.twin.e_detector import Detector, log_e_value
 from eha_core.twin.excerpt import Excerpt, held_changes
 from eha_core.twin.measured_state import State, corrected_state, measured_state
 from eha_core.twin.samples import Array, Samples, nanoseconds

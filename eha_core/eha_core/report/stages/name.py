@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from eha_core.diagnosis.criteria import CERTAINTY, ENOUGH
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.report.evidence import IN_FULL, evidence_picture, named, rung
 from eha_core.report.finding import counted, names_listed
+from eha_core.report.rivals_picture import IN_FULL, evidence_picture, named, rung
 from eha_core.report.stage import Stage, Table, adds_physics
 from eha_core.report.wording import listed, probable
 

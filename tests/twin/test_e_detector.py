@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from eha_core.twin.evidence import CLIPPED, TIMES_LARGER, Detector, log_e_value
+from eha_core.twin.e_detector import CLIPPED, TIMES_LARGER, Detector, log_e_value
 
 
 @pytest.mark.parametrize("deviation", [0.3, 1.0, 1.5])

@@ -8,9 +8,9 @@ import pytest
 from made import explanation
 
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.in_words import common_kind, summary
 from eha_core.diagnosis.result import CommonScale, Explained, NamedEffect
 from eha_core.diagnosis.search.comparison import Entry
-from eha_core.diagnosis.summary import common_kind, summary
 from eha_core.diagnosis.verdict import Decision
 from eha_core.effects import effects
 
