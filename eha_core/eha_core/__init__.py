@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from eha_core.plant import simulate_many
     from eha_core.recording.recording import Recording
     from eha_core.report.results import Results
-    from eha_core.studies import budget, curves, design_test, detect
+    from eha_core.studies import budget, curves, design_test, detect, steps
 
 _HOMES = {
     "EhaError": "errors",
@@ -40,6 +40,7 @@ _HOMES = {
     "signal_shapes": "api",
     "simulate": "api",
     "simulate_many": "plant",
+    "steps": "studies",
 }
 
 __all__ = [
@@ -59,6 +60,7 @@ __all__ = [
     "signal_shapes",
     "simulate",
     "simulate_many",
+    "steps",
 ]
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from eha_core.error_budget import Budget, Rig, Task
     from eha_core.report.results import Results
     from eha_core.signals import Signal
+    from eha_core.step_tests import StepTests
     from eha_core.valve_curves import ValveCurves
 
 Array = NDArray[np.float64]
@@ -243,3 +244,33 @@ def curves(
     selection = Selection(command, response, units or {})
     conditions = Conditions(pressure_drop, supply_pressure, rated_current, rated_voltage)
     return fit_curves(curves_of(files, selection), conditions)
+
+
+def steps(
+    files: Sequence[str | Path | Mapping[str, ArrayLike]],
+    *,
+    command: str | None = None,
+    motion: str | None = None,
+    time: str | None = None,
+    units: Mapping[str, str] | None = None,
+    topics: str | Path | None = None,
+) -> StepTests:
+    """Read short step tests of a machine's valve together: dead zone, gain, delay, saturation and end stops.
+
+    Args:
+        files: tables, recordings of messages, or columns by name: the command steps from neutral to a level and back.
+        command, motion, time: columns, of messages channels; those that are not named are recognised.
+        units: by column, its unit, where its name states none, as {"boom": "deg"}.
+        topics: a topics file for recordings of messages.
+
+    Returns:
+        The figures of each step and of each direction with 95 % intervals, in the units of the first file;
+        `eha_core.report.steps` presents them.
+
+    Raises:
+        RecordingError: a file cannot be read.
+        EhaError: a column or its unit is missing, or no file has a step.
+    """
+    from eha_core.step_tests import Selection, read_steps, records_of
+
+    return read_steps(records_of(files, Selection(command, motion, time, units or {}, topics)))
