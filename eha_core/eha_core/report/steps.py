@@ -25,7 +25,7 @@ SCHEMA = "eha.steps/1"
 _WIDTH = 100
 _LABELS = {
     "dead_zone": "dead zone", "gain": "gain", "delay": "delay", "end_stop": "end stop", "speed": "speed",
-    "rise": "time constant", "stopping": "delay of stopping",
+    "rise": "time constant", "stopping": "delay of stopping", "level": "motion or none",
 }  # fmt: skip
 _SIDES = {1: "positive commands", -1: "negative commands"}
 
@@ -79,7 +79,7 @@ def _table(tests: StepTests) -> list[str]:
 def _cells(tests: StepTests, number: int, step: Step) -> list[str]:
     level = quantity(step.level, tests.command_unit)
     if not step.moved:
-        return [str(number), step.source, level, "no motion", "", "", "", ""]
+        return [str(number), step.source, level, "open" if "level" in step.open else "no motion", "", "", "", ""]
     stopped = "" if step.stopped_after is None else f"after {quantity(step.stopped_after, 's')}"
     if step.stopped_at is not None:
         stopped = with_deviation(step.stopped_at.value, step.stopped_at.reach, tests.motion_unit)
@@ -152,13 +152,17 @@ def _bracket(tests: StepTests, direction: Direction) -> str:
     still, moving = (
         None if level is None else quantity(level, tests.command_unit) for level in (direction.still, direction.moving)
     )
+    # three digits of a limit would say too much
+    unseen = "" if direction.unseen is None else f", or below {quantity(direction.unseen, tests.speed_unit, 1)}"
+    if still is None and moving is None:
+        return "open"
     if still is None:
         return f"at {moving} or below"
     if moving is None:
-        return f"above {still}"
+        return f"not up to {still} (no motion{unseen})"
     if (direction.still or 0.0) > (direction.moving or 0.0):
         return f"not clear: {moving} moved, {still} did not"
-    return f"between {still} (no motion) and {moving} (motion)"
+    return f"between {still} (no motion{unseen}) and {moving} (motion)"
 
 
 def _row(label: str, text: str) -> str:

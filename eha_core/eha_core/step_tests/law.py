@@ -23,7 +23,7 @@ STARTS = 200
 
 _DELAYS = 0.9 * np.linspace(0.0, 1.0, 40) ** 2
 _LAGS = np.array([0.003, 0.01, 0.03, 0.1, 0.3])
-_STOPS = np.linspace(0.05, 0.99, 48)
+_STOPS = np.linspace(0.05, 0.99, 24)
 """Initial values, in parts of the step's length."""
 
 _SHORTEST = 1e-9  # s; keeps a quotient finite
@@ -47,6 +47,11 @@ class Fit:
         deviation = float(np.sqrt(max(self.covariance[place, place], 0.0)))
         return Estimate(float(self.values[place]), float(student.ppf(0.975, self.freedom)) * deviation)
 
+    def again(self, slopes: Array, curve: Array, motion: Array) -> Fit:
+        """A linear law of the same motion with other columns."""
+        values: Array = np.asarray(np.linalg.lstsq(slopes, motion, rcond=None)[0], dtype=np.float64)
+        return _fit(values, slopes, curve, motion, 0.0)
+
 
 def at_rest(time: Array, is_velocity: bool) -> Array:
     """The columns of the motion at rest: a constant, and of a position the drift."""
@@ -60,11 +65,11 @@ def shape(time: Array, delay: float, lag: float, is_velocity: bool) -> Array:
     return risen if is_velocity else since - lag * risen
 
 
-def fit_rest(time: Array, motion: Array, is_velocity: bool) -> Fit:
+def fit_rest(time: Array, motion: Array, is_velocity: bool, least: float) -> Fit:
     """The motion at rest."""
     columns = at_rest(time, is_velocity)
     values: Array = np.asarray(np.linalg.lstsq(columns, motion, rcond=None)[0], dtype=np.float64)
-    return _fit(values, columns, columns @ values, motion, 0.0)
+    return _fit(values, columns, columns @ values, motion, least)
 
 
 def fit_step(time: Array, motion: Array, is_velocity: bool, least: float) -> Fit:

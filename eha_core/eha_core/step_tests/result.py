@@ -79,7 +79,8 @@ class Step:
         drift: speed before the step; of a velocity its offset [motion unit per s, or motion unit].
         places: position at rest before and after the step [motion unit]; of a velocity zeros.
         resolution: how well the instant of the command's change is known [s].
-        open: by figure, why it is open and what to record.
+        unseen: of a step without motion, the speed below which a motion would not have been seen.
+        open: by figure, why it is open and what to record; "level" where it is not clear whether it moved.
         drawn: instants [s since the change], the motion and the fitted law.
     """
 
@@ -98,6 +99,7 @@ class Step:
     drift: Estimate
     places: tuple[float, float]
     resolution: float
+    unseen: float | None = None
     open: dict[str, str] = field(default_factory=dict)
     drawn: tuple[Array, Array, Array] | None = None
 
@@ -118,6 +120,7 @@ class Direction:
         steps: number of steps.
         levels: number of different levels.
         still: largest level without motion; None where every step moved.
+        unseen: the speed below which no motion would have been seen there.
         moving: smallest level with motion; None where none did.
         dead_zone: level at which the line of speed over level begins [command unit].
         gain: slope of that line [speed unit per command unit].
@@ -134,6 +137,7 @@ class Direction:
     steps: int
     levels: int
     still: float | None = None
+    unseen: float | None = None
     moving: float | None = None
     dead_zone: Estimate | None = None
     gain: Estimate | None = None

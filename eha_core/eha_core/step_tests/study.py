@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from eha_core.errors import EhaError
 from eha_core.step_tests.commanded import commanded_steps
-from eha_core.step_tests.one_step import read_step
+from eha_core.step_tests.one_step import least_variance, read_step
 from eha_core.step_tests.result import Record, Step, StepTests
 from eha_core.step_tests.together import directions_of
 
@@ -19,12 +19,13 @@ def read_steps(records: Sequence[Record]) -> StepTests:
     """
     steps: list[Step] = []
     remarks: list[str] = []
+    least = least_variance(records)
     for record in records:
         remarks += [f"{record.source}: {remark}" for remark in record.remarks]
         found, said = commanded_steps(record)
         remarks += said
         for one in found:
-            step = read_step(record, one)
+            step = read_step(record, one, least)
             if isinstance(step, str):
                 remarks.append(f"{record.source}, at {one.on:.2f} s: {step}")
             else:

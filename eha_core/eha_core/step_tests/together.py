@@ -79,11 +79,14 @@ def _direction(sign: int, steps: list[Step], stop: Estimate | None, why_no_stop:
     groups = _groups(np.array([abs(step.level) for step in steps]))
     still = [abs(step.level) for step in counted if not step.moved]
     moving = [abs(step.level) for step in counted if step.moved]
-    found = Direction(sign, len(steps), int(groups.max()) + 1, max(still, default=None), min(moving, default=None),
-                      end_stop=stop)  # fmt: skip
+    unseen = [step.unseen for step in counted if step.unseen is not None and abs(step.level) == max(still)]
+    found = Direction(sign, len(steps), int(groups.max()) + 1, max(still, default=None), min(unseen, default=None),
+                      min(moving, default=None), end_stop=stop)  # fmt: skip
     reasons, remarks = ({} if stop else {"end_stop": why_no_stop}), []
     if not moving:
-        reasons |= dict.fromkeys(("dead_zone", "gain", "delay"), "no step moved anything; step to larger levels")
+        unclear = [step.open["level"] for step in steps if "level" in step.open]
+        reason = "no step moved anything; step to larger levels" if still or not unclear else unclear[0]
+        reasons |= dict.fromkeys(("dead_zone", "gain", "delay"), reason)
         return replace(found, open=reasons)
     if found.still is None:
         remarks.append("every step moved: below the smallest level nothing is known; step to smaller levels until"
@@ -182,6 +185,8 @@ def _with_dead_zone(found: Direction, line: Line) -> Direction:
     below, above = found.still or 0.0, found.moving or np.inf
     if found.still is not None and found.still > above:  # neither end of the bracket is sure
         below, above = 0.0, max(found.still, above)
+    if abs(start + gain * below) - line.of(0.0, [1.0, below]).reach <= (found.unseen or 0.0):
+        below = 0.0  # by the line it may have moved there, too slowly to be seen
     if high < below or low > above:
         reason = (
             "the line of speed over level begins outside of what the single steps show, so it is bent where motion"
