@@ -117,6 +117,13 @@ def test_two_steps_show_no_scatter() -> None:
     assert found.dead_zone is None and "scatter" in found.open["dead_zone"]
 
 
+def test_a_line_is_not_extended_far_to_the_dead_zone() -> None:
+    random = np.random.default_rng(42)
+    found = positive([table(level, random) for level in (40.0, 50.0, 60.0)])
+    assert holds(found.gain, GAIN)
+    assert found.dead_zone is None and "step to smaller levels" in found.open["dead_zone"]
+
+
 def test_no_motion_at_all() -> None:
     random = np.random.default_rng(39)
     found = positive([table(level, random) for level in (5.0, 10.0, 15.0)])
@@ -128,14 +135,14 @@ def test_both_directions_of_one_file() -> None:
     random = np.random.default_rng(40)
     time = np.arange(0.0, 16.0, 0.01)
     command, place = np.zeros(time.size), np.zeros(time.size)
-    for number, level in enumerate((20.0, -30.0, 40.0, -50.0, 30.0, -40.0)):
+    for number, level in enumerate((20.0, -25.0, 40.0, -50.0, 30.0, -40.0)):
         on = 1.0 + 2.5 * number
         part = table(level, random, noise=0.0, start=0.0, length=17.0, on=on, off=on + 1.0)
         command[(time >= on) & (time < on + 1.0)] = level
         place += np.interp(time, part["time"], part["boom angle [deg]"])
     place += random.normal(0.0, 0.05, time.size)
     found = read([{"time": time, "duty [%]": command, "angle [deg]": place}])
-    assert [step.level for step in found.steps] == [20.0, -30.0, 40.0, -50.0, 30.0, -40.0]
+    assert [step.level for step in found.steps] == [20.0, -25.0, 40.0, -50.0, 30.0, -40.0]
     for direction in found.directions:
         assert holds(direction.gain, direction.sign * GAIN) and holds(direction.dead_zone, DEAD_ZONE)
 

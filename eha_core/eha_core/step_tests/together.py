@@ -17,6 +17,10 @@ SAME_LEVEL = 0.02
 SAME_PLACE = 0.01
 """Share of the whole travel by which steps that stop at one place may differ (assumed)."""
 
+FARTHEST = 0.5
+"""Share of the span of a line's levels by which it may be extended to the dead zone: where a valve begins to open, its
+curve is often not straight (assumed)."""
+
 FEWEST = 3
 """Fewest steps that show a line and how far they scatter about it."""
 
@@ -151,7 +155,7 @@ def _with_line(found: Direction, steps: list[Step]) -> Direction:
     found = replace(found, gain=gain)
     if shown.limit is not None:
         found = _with_limit(found, line, shown.limit)
-    return _with_dead_zone(found, line)
+    return _with_dead_zone(found, line, levels)
 
 
 def _too_few(levels: Array, speeds: list[Estimate]) -> str:
@@ -176,7 +180,7 @@ def _with_limit(found: Direction, line: Line, limit: Estimate) -> Direction:
     return replace(found, saturation=limit, knee=Estimate(level, float(np.hypot(of_line, limit.reach / gain))))
 
 
-def _with_dead_zone(found: Direction, line: Line) -> Direction:
+def _with_dead_zone(found: Direction, line: Line, levels: Array) -> Direction:
     """The level at which the line begins, where it does not contradict the steps without motion."""
     start, gain = line.values
     level = float(-start / gain)
@@ -193,4 +197,7 @@ def _with_dead_zone(found: Direction, line: Line) -> Direction:
             " begins; step to more levels there"
         )
         return _without_line(replace(found, gain=None, saturation=None, knee=None), reason)
+    if float(np.min(levels)) - level > FARTHEST * float(np.ptp(levels)):
+        reason = "the smallest level with a steady speed is far from where the line begins; step to smaller levels"
+        return replace(found, open=found.open | {"dead_zone": reason})
     return replace(found, dead_zone=zone)
