@@ -119,3 +119,11 @@ def test_a_motion_ahead_of_its_command_is_said() -> None:
 def test_a_record_that_ends_with_the_command_leaves_the_stopping_open() -> None:
     step = only(table(50.0, np.random.default_rng(21), off=9.0))
     assert step.speed is not None and "record on" in step.open["stopping"]
+
+
+def test_a_short_way_to_the_stop_makes_no_speed_too_sure() -> None:
+    random = np.random.default_rng(22)
+    found = [only(table(50.0, random, speed=10.0, stop=random.uniform(1.0, 5.0))).speed for _ in range(60)]
+    told = [speed for speed in found if speed is not None]
+    assert 10 < len(told) < 50
+    assert np.mean([holds(speed, 10.0) for speed in told]) >= 0.90

@@ -95,12 +95,12 @@ def _step(record: Record, away: Array, noise: float, places: tuple[int, int, int
     time, level = record.time, float(np.median(away[first:last]))
     near = np.abs(away[first:last] - level) <= FLAT * abs(level) + OUTSIDE_NOISE * noise
     length = float(time[last - 1] - time[first])
-    if not near.any() or np.mean(near) < MOSTLY:
+    places_near = np.flatnonzero(near)
+    if not near.any() or np.mean(near[places_near[0] : places_near[-1] + 1]) < MOSTLY:
         return "the command is not constant between its change and its going back; step it from neutral to one level"
-    risen = first + int(np.argmax(near))
-    if time[risen] - time[first] > FLAT * length:
-        return "the command rises slowly; step it"
-    falls = first + int(np.flatnonzero(near)[-1])
+    risen, falls = first + int(places_near[0]), first + int(places_near[-1])
+    if max(time[risen] - time[first], time[last - 1] - time[falls]) > FLAT * length:
+        return "the command changes slowly; step it"
     on, resolution = _instant(record, first, risen)
     goes_back = last < time.size
     off = _instant(record, falls + 1, last)[0] if goes_back else float(time[-1])

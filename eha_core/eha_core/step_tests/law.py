@@ -11,12 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
+from scipy.stats import chi2
 from scipy.stats import t as student
 
 from eha_core.step_tests.result import Array, Estimate
 
 MOST_ALIKE = 0.99
 """Largest correlation of neighbouring residuals that is reckoned with: one sample in 200 then counts (assumed)."""
+
+SURE = 0.999
+"""Probability with which a speed's interval holds what a slower rise would make of it: with 95 %, most of the steps
+that pass as just steady would be those whose time constant is found too small by chance (assumed)."""
 
 STARTS = 200
 """Samples on which initial values are sought (assumed)."""
@@ -122,34 +127,50 @@ def fit_stop(time: Array, motion: Array, is_velocity: bool, least: float) -> Fit
     return _fit(found.x, scale * found.jac, scale * found.fun + motion, motion, least)
 
 
-def slowest(time: Array, motion: Array, is_velocity: bool, fit: Fit) -> float:
-    """The largest time constant that the motion does not exclude with 95 % [s], whatever delay and speed go with it.
+def slowest(time: Array, motion: Array, is_velocity: bool, fit: Fit, sure: float) -> tuple[float, float]:
+    """The largest time constant that the motion does not exclude so surely [s], and the speed that goes with it.
 
     Where noise hides the rise, squares are far from parabolic in it, and its interval by least squares is wrong.
     """
     length, step = float(time[-1]), float(np.median(np.diff(time)))
     basis = np.linalg.qr(at_rest(time, is_velocity))[0]
-    most = fit.squares + 3.84 * fit.variance * fit.inflation  # chi-squared of one degree of freedom
+    most = fit.squares + float(chi2.ppf(sure, 1)) * fit.variance * fit.inflation
     total = float(fit.values[-2] + fit.values[-1])
     everywhere = length * np.linspace(0.0, 0.9, 40)
     for lag in length * np.geomspace(1.0, 0.002, 40):
         near = total - lag + np.linspace(-1.0, 1.0, 41) * max(0.3 * lag, 2.0 * step)
         shapes = np.array([shape(time, delay, lag, is_velocity) for delay in (*everywhere, *near)])
-        if np.min(_squares(shapes, basis, motion)) <= most:
-            return float(lag)
-    return 0.0
+        squares = _squares(shapes, basis, motion)
+        if np.min(squares) <= most:
+            columns = np.column_stack([basis, shapes[int(np.argmin(squares))]])
+            return float(lag), float(np.linalg.lstsq(columns, motion, rcond=None)[0][-1])
+    return 0.0, float(fit.values[-3])
 
 
-def timed(time: Array, motion: Array, is_velocity: bool, fit: Fit) -> tuple[Estimate, Estimate]:
-    """Delay and time constant [s] of a fitted step, which stand in for each other where samples are few."""
-    delay, rise = fit.estimate(-2), fit.estimate(-1)
+@dataclass(frozen=True)
+class Figures:
+    """Delay [s], time constant [s], speed, and the largest time constant that is possible [s]."""
+
+    delay: Estimate
+    rise: Estimate
+    speed: Estimate
+    slowest: float
+
+
+def figures(time: Array, motion: Array, is_velocity: bool, fit: Fit) -> Figures:
+    """The figures of a fitted step, which stand in for each other where samples are few."""
+    delay, rise, speed = fit.estimate(-2), fit.estimate(-1), fit.estimate(-3)
     if rise.reach < 0.5 * rise.value:
-        return delay, rise
-    most = max(slowest(time, motion, is_velocity, fit) - rise.value, min(rise.value, rise.reach))
+        return Figures(delay, rise, speed, rise.value + rise.reach)
+    lag, _ = slowest(time, motion, is_velocity, fit, 0.95)
+    most = max(lag - rise.value, min(rise.value, rise.reach))
+    _, other = slowest(time, motion, is_velocity, fit, SURE)
+    speed = Estimate(speed.value, max(speed.reach, abs(other - speed.value)))
     # the sum of both is what the later motion shows
     along = fit.covariance[-2:, -2:].sum()
     total = float(student.ppf(0.975, fit.freedom)) * float(np.sqrt(max(along, 0.0)))
-    return Estimate(delay.value, float(np.hypot(most, total))), Estimate(rise.value, most)
+    delay, rise = Estimate(delay.value, float(np.hypot(most, total))), Estimate(rise.value, most)
+    return Figures(delay, rise, speed, rise.value + most)
 
 
 def stopped(time: Array, delay: float, lag: float, stop: float, is_velocity: bool) -> Array:

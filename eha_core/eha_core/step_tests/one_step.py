@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from eha_core.step_tests.commanded import FEWEST, Commanded
-from eha_core.step_tests.law import Fit, at_rest, fit_rest, fit_step, fit_stop, timed
+from eha_core.step_tests.law import Fit, at_rest, figures, fit_rest, fit_step, fit_stop
 from eha_core.step_tests.moved import DECISIVE, STOPPED, Part, is_settled, moves, with_stop, without_motion
 from eha_core.step_tests.result import Array, Estimate, Record, Step
 
@@ -77,13 +77,14 @@ def _open(step: Step, on: Part, figures: Sequence[str], reason: str) -> Step:
 
 def _with_rise(step: Step, on: Part, fit: Fit, resolution: float) -> Step:
     """The step with delay, time constant and speed, as far as its length shows them."""
-    delay, rise = timed(on.time, on.motion, on.is_velocity, fit)
-    delay, speed = _blurred(delay, resolution), _with_change(fit.estimate(-3), on, delay.value + STEADY * rise.value)
+    found = figures(on.time, on.motion, on.is_velocity, fit)
+    rise, delay = found.rise, _blurred(found.delay, resolution)
+    speed = _with_change(found.speed, on, delay.value + STEADY * rise.value)
     open_now: dict[str, str] = {}
     left = float(on.time[-1]) - delay.value
     ends = "the stop" if step.stopped_after is not None else "the end of the command"
     cure = "begin farther from the stop" if step.stopped_after is not None else "hold the command longer"
-    if left < STEADY * (rise.value + rise.reach):
+    if left < STEADY * found.slowest:
         reason = f"the speed may still have been rising at {ends}; {cure}"
         open_now |= {"speed": reason, "rise": reason}
     if delay.value < -delay.reach:
@@ -117,7 +118,7 @@ def _with_stopping(step: Step, whole: Part, commanded: Commanded, least: float) 
             fit = fit_step(tail.time, tail.motion, tail.is_velocity, least)
             before = float(fit.values[0 if tail.is_velocity else 1])
             after = before + float(fit.values[-3])
-            stopping, _ = timed(tail.time, tail.motion, tail.is_velocity, fit)
+            stopping = figures(tail.time, tail.motion, tail.is_velocity, fit).delay
             if stopping.reach > HIDDEN * length:
                 reason = "the noise hides it; record with less noise"
             elif abs(after - step.drift.value) <= STOPPED * abs(before) and stopping.value > -stopping.reach:

@@ -28,18 +28,16 @@ FEWEST = 3
 def directions_of(steps: Sequence[Step], is_velocity: bool) -> tuple[list[Step], list[Direction]]:
     """The steps with what only their neighbours show, and each direction's figures."""
     travel = _travel(steps)
-    found, directions = [], []
+    known, directions = list(steps), []
     for sign in (1, -1):
-        mine = [step for step in steps if step.sign == sign]
-        if mine:
-            mine, stop, reason = _end_stop(mine, travel, is_velocity)
-            directions.append(_direction(sign, mine, stop, reason))
-            found += mine
-    return sorted(found, key=lambda step: steps.index(_original(step, steps))), directions
-
-
-def _original(step: Step, steps: Sequence[Step]) -> Step:
-    return next(one for one in steps if (one.source, one.start) == (step.source, step.start))
+        places = [place for place, step in enumerate(steps) if step.sign == sign]
+        if not places:
+            continue
+        mine, stop, reason = _end_stop([steps[place] for place in places], travel, is_velocity)
+        directions.append(_direction(sign, mine, stop, reason))
+        for place, step in zip(places, mine, strict=True):
+            known[place] = step
+    return known, directions
 
 
 def _travel(steps: Sequence[Step]) -> float:
