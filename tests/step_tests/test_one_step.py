@@ -127,3 +127,10 @@ def test_a_short_way_to_the_stop_makes_no_speed_too_sure() -> None:
     told = [speed for speed in found if speed is not None]
     assert 10 < len(told) < 50
     assert np.mean([holds(speed, 10.0) for speed in told]) >= 0.90
+
+
+def test_a_record_that_begins_in_the_midst_of_a_step_shows_nothing() -> None:
+    columns = table(50.0, np.random.default_rng(23), speed=10.0)
+    late = {name: values[150:] for name, values in columns.items()}
+    step = only(late)
+    assert step.speed is None and "begin at neutral" in step.open["level"]

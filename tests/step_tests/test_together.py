@@ -152,3 +152,17 @@ def test_a_neutral_that_is_not_zero() -> None:
     files = [table(level, random) for level in LEVELS]
     shifted = [{**columns, "duty [%]": 50.0 + columns["duty [%]"]} for columns in files]
     assert positive(shifted) == positive(files)
+
+
+def test_a_measured_current_that_lags_and_a_polarity_that_is_turned() -> None:
+    random = np.random.default_rng(43)
+    files = []
+    for level in LEVELS:
+        columns = table(level, random, noise=0.05)
+        time = columns["time"]
+        risen, fallen = (1.0 - np.exp(-np.maximum(time - at, 0.0) / 0.03) for at in (1.0, 3.0))
+        current = 4.0 + 10.0 * level * (risen - fallen) + random.normal(0.0, 2.0, time.size)
+        files.append({"time": time, "current [mA]": current, "angle [deg]": 200.0 - columns["boom angle [deg]"]})
+    found = positive(files)
+    assert holds(found.gain, -0.1 * GAIN) and holds(found.dead_zone, 10.0 * DEAD_ZONE)
+    assert found.delay is not None and found.delay.reach > 0.02  # the current takes that long to change

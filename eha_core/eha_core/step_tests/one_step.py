@@ -15,6 +15,10 @@ from eha_core.step_tests.result import Array, Estimate, Record, Step
 STEADY = 3.0
 """Time constants after which a speed counts as steady: 95 % of it are reached."""
 
+AT_REST = 0.5
+"""Share of a step's speed that the drift before it may have; with more, the record began in the midst of a motion
+(assumed)."""
+
 HIDDEN = 0.25
 """Share of the time that a motion lasts by which a delay may be unsure and still say something (assumed)."""
 
@@ -46,7 +50,7 @@ def read_step(record: Record, commanded: Commanded, least: float) -> Step | str:
     if not moves(on, min(fit, halted, key=lambda one: one.squares), step):
         is_clear, unseen = without_motion(on, still, step)
         step = _open(replace(step, unseen=unseen), on, _FIGURES, "nothing moved beyond the noise")
-        reason = "whether it moved is not clear; hold the command longer"
+        reason = "whether it moved is not clear; begin at neutral and at rest, and hold the command longer"
         return step if is_clear else _open(step, on, ("level", *_FIGURES), reason)
     step = with_stop(replace(step, moved=True), on, fit, halted)
     if step.stopped_after is not None:
@@ -56,6 +60,9 @@ def read_step(record: Record, commanded: Commanded, least: float) -> Step | str:
             reason = "the motion stopped too soon after it began; begin farther from the stop"
             return _open(step, on, _FIGURES, reason)
         fit = fit_step(on.time, on.motion, on.is_velocity, least)
+    if abs(step.drift.value) > AT_REST * abs(float(fit.values[-3])):
+        reason = "the machine moved before the step about as fast as after it; begin at neutral and at rest"
+        return _open(step, on, ("level", *_FIGURES), reason)
     step = _with_rise(step, on, fit, commanded.resolution)
     return _with_stopping(step, whole, commanded, least)
 
