@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from eha_core.cli._paths import require_file, require_folder, write_json
+from eha_core.errors import EhaError
 
 
 def check_outputs(arguments: argparse.Namespace, folder: Path) -> None:
@@ -32,3 +33,11 @@ def present(
     print(table)
     print(f"\nWritten: {', '.join(map(str, written))}")
     return 0
+
+
+def units_of(words: list[str], example: str) -> dict[str, str]:
+    """The unit of each column, of the arguments of --unit. Raises EhaError for one that is not COLUMN=UNIT."""
+    for word in words:
+        if "=" not in word:
+            raise EhaError(f"--unit {word!r} is not COLUMN=UNIT; write for example --unit {example}")
+    return {name: unit for name, _, unit in (word.rpartition("=") for word in words)}

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from eha_core.cli._paths import require_recordings
-from eha_core.cli._study import check_outputs, present
+from eha_core.cli._study import check_outputs, present, units_of
 from eha_core.errors import EhaError
 from eha_core.rig import Datum, quantity
 
@@ -61,13 +61,6 @@ def run(arguments: argparse.Namespace) -> int:
 
     found = curves(
         arguments.files, command=arguments.current, flow=arguments.flow, load_pressure=arguments.load_pressure,
-        leakage=arguments.leakage, units=_units(arguments.unit), **conditions,
+        leakage=arguments.leakage, units=units_of(arguments.unit, "Q=l/min"), **conditions,
     )  # fmt: skip
     return present(arguments, _FOLDER, account(found), as_json(found), lambda folder: write_curves(found, folder))
-
-
-def _units(words: list[str]) -> dict[str, str]:
-    for word in words:
-        if "=" not in word:
-            raise EhaError(f"--unit {word!r} is not COLUMN=UNIT; write for example --unit Q=l/min")
-    return {name: unit for name, _, unit in (word.rpartition("=") for word in words)}

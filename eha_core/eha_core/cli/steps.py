@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 
 from eha_core.cli._paths import require_recordings
-from eha_core.cli._study import check_outputs, present
-from eha_core.errors import EhaError
+from eha_core.cli._study import check_outputs, present, units_of
 
 _FOLDER = Path("out/steps")
 
@@ -39,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the verb."""
     require_recordings(arguments.files)
     check_outputs(arguments, _FOLDER)
-    units = _units(arguments.unit)
+    units = units_of(arguments.unit, "boom=deg")
     # loads an optimiser: bad input should be reported at once
     from eha_core.report.steps import account, as_json, write_steps
     from eha_core.studies import steps
@@ -49,10 +48,3 @@ def run(arguments: argparse.Namespace) -> int:
         topics=arguments.topics,
     )  # fmt: skip
     return present(arguments, _FOLDER, account(found), as_json(found), lambda folder: write_steps(found, folder))
-
-
-def _units(words: list[str]) -> dict[str, str]:
-    for word in words:
-        if "=" not in word:
-            raise EhaError(f"--unit {word!r} is not COLUMN=UNIT; write for example --unit boom=deg")
-    return {name: unit for name, _, unit in (word.rpartition("=") for word in words)}
