@@ -9,10 +9,9 @@ from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effect
 from eha_core.identification import fit as fitting
 from eha_core.identification.fit import fit
-from eha_core.identification.free_parameters import coordinates, free_nominal_parameters
 from eha_core.identification.observation import observe
 from eha_core.identification.parallel import side_by_side
-from eha_core.identification.problem import gradient, linearise, objective_of, simulate, whole
+from eha_core.identification.problem import whole
 from eha_core.identification.segments import coarser, cut
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
@@ -77,47 +76,3 @@ def test_dampings_tried_at_once_lead_where_one_after_the_other_does(monkeypatch)
     (*one, in_turn), (*two, at_once) = ends
     assert one == two
     assert in_turn > one[3] + 2 and at_once > in_turn
-
-
-def counted_fit(monkeypatch, further: int):
-    """A fit of a recording with other parameters, at most so many further steps by one set of derivatives; and how
-    often these were computed."""
-    asked = []
-    linearise = fitting.linearise
-    with monkeypatch.context() as patched:
-        patched.setattr(fitting, "FURTHER_STEPS", further)
-        patched.setattr(fitting, "linearise", lambda *given: asked.append(given) or linearise(*given))
-        values = nominal_values()
-        shooting = cut(observe(recorded(OTHER, duration=4.0)), values)
-        free = free_nominal_parameters(values, shooting.drive, 0.05)
-        found = fit(whole(shooting), values, free, iterations=20)
-    return found, len(asked)
-
-
-def test_further_steps_by_the_same_derivatives_lead_as_low_with_fewer_of_them(monkeypatch):
-    alone, often = counted_fit(monkeypatch, further=0)
-    found, asked = counted_fit(monkeypatch, further=fitting.FURTHER_STEPS)
-    assert asked < often
-    assert found.ending is fitting.Ending.CONVERGED
-    assert found.objective < alone.objective + fitting.SETTLED
-    for name, value in OTHER.items():
-        assert abs(found.values[name] - value) < 4.0 * found.deviation(name)
-
-
-def test_the_gradient_is_the_slope_of_the_objective():
-    values = nominal_values()
-    shooting = cut(observe(recorded(OTHER, duration=4.0)), values)
-    problem = fitting.exact(whole(shooting))
-    free = free_nominal_parameters(values, shooting.drive, 0.05)
-    q, states = coordinates(free, values), shooting.initial_states
-    linear = linearise(problem, values, free, q, states, np.full(len(free), 1e-5))
-    slope = gradient(problem, free, q, states, linear)
-
-    def objective(change: float, place: int) -> float:
-        there = q.copy()
-        there[place] += change
-        return objective_of(problem, free, there, states, *simulate(shooting, values, free, there, states))
-
-    for place in range(len(free)):
-        central = (objective(1e-5, place) - objective(-1e-5, place)) / 2e-5
-        assert -2.0 * slope[place] == pytest.approx(central, rel=0.02, abs=0.02 * np.max(np.abs(slope[: len(free)])))

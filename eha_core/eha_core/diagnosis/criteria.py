@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from math import log
 
-from eha_core.identification import fit
-
-FAR_FROM_NOISE = fit.NEAR_ENOUGH
-"""Chi^2 a sample beyond which a fit's residual says little of the noise."""
+FAR_FROM_NOISE = 5.0
+"""Chi^2 a sample beyond which a fit's parameter values mean little, and its residual says little of the noise. Assumed;
+a residual of twice the noise's size beside the noise."""
 
 NEAR_NOISE = 1.03
 """Chi^2 a sample below which a set is at the noise: what is proposed must be significant, and a search ends if the

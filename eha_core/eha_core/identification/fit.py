@@ -18,9 +18,7 @@ from eha_core.identification.numbers import Array
 from eha_core.identification.parallel import each, threads
 from eha_core.identification.per_recording import base_name, in_each, is_one_of
 from eha_core.identification.problem import (
-    Linearised,
     Problem,
-    gradient,
     linearise,
     normal_equations,
     objective_of,
@@ -40,19 +38,6 @@ HOPE = 4.0
 
 TRIALS = 10
 """Most dampings that an iteration tries; the last is 2e16 times the first, which gives a negligible step."""
-
-
-FAITHFUL = 0.75
-"""Share of what the derivatives promise of a step which it gains at least where they are believed: the damping falls
-much then (assumed)."""
-
-NEAR_ENOUGH = 5.0
-"""Chi^2 a sample below which further steps go by derivatives that are believed. Beyond it parameter values mean little,
-and what the data hardly determine would be bent to whatever the model is missing. Assumed; a residual of twice the
-noise's size beside the noise."""
-
-FURTHER_STEPS = 3
-"""Most such steps by one set of derivatives (assumed)."""
 
 
 class Ending(Enum):
@@ -146,74 +131,40 @@ def fit(
     """
     shooting = problem.shooting
     free, values = in_each(free, values, shooting.per_recording, len(shooting.first_windows))
+    states = (shooting.initial_states if states is None else states).copy()
     q = coordinates(free, values)
-    at = _point(problem, values, free, q, (shooting.initial_states if states is None else states).copy())
     resolution = np.array([parameter.resolution for parameter in free])
     steps = np.maximum(1e-3, resolution)
+    rows, ends = simulate(shooting, values, free, q, states)
+    objective = objective_of(problem, free, q, states, rows, ends)
     damping, ending, done, little = 1e-6, Ending.ITERATIONS, 0, 0
     normal = _unknowing(len(free), shooting.windows)
     for done in range(1, iterations + 1):
-        linear = linearise(problem, values, free, at.q, at.states, steps, (at.rows, at.ends))
-        normal, downhill = normal_equations(problem, free, at.q, at.states, linear)
-        found = _descend(problem, values, free, at, normal, downhill, damping)
+        linear = linearise(problem, values, free, q, states, steps, (rows, ends))
+        normal, gradient = normal_equations(problem, free, q, states, linear)
+        found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), normal, gradient, damping)
         if found is None and problem.slope_step > shooting.step_size:
             problem = exact(problem)
             continue
         if found is None:
             ending = Ending.NO_DESCENT
             break
-        before = at
-        at, move, damping = found
-        ratio = (before.objective - at.objective) / max(_promised(normal, downhill, move), 1e-300)
-        damping = max(damping * (0.05 if ratio > FAITHFUL else 0.5 if ratio > 0.25 else 4.0), 1e-10)
-        at_end = False
-        if ratio > FAITHFUL and at.objective < NEAR_ENOUGH * problem.count():
-            at, at_end = _further(problem, values, free, at, linear, normal, damping)
-        gain = before.objective - at.objective
+        new, move, damping = found
+        gain = objective - new.objective
+        q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
+        ratio = gain / max(float(move @ (2.0 * gradient - normal.times(move))), 1e-300)
+        damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
         spread = np.sqrt(1.0 / np.maximum(np.diag(normal.parameters), 1e-12))
         steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
-        little = little + 1 if gain < max(SETTLED, WORTH * (at.objective - problem.count())) else 0
-        if gain < SETTLED or little == in_a_row or (at_end and done > 1):
+        little = little + 1 if gain < max(SETTLED, WORTH * (objective - problem.count())) else 0
+        if gain < SETTLED or little == in_a_row:
             ending = Ending.CONVERGED
             break
-        if done > 2 and at.objective - HOPE * gain > give_up_above:
+        if done > 2 and objective - HOPE * gain > give_up_above:
             ending = Ending.HOPELESS
             break
-    ending = ending if np.isfinite(at.objective) else Ending.DIVERGED
-    return _finish(problem, values, free, at.q, at.states, at.rows, at.objective, normal, ending, done)
-
-
-def _further(
-    problem: Problem, values: Mapping[str, float], free: Sequence[FreeParameter], at: _Point, linear: Linearised,
-    normal: NormalMatrix, damping: float,
-) -> tuple[_Point, bool]:  # fmt: skip
-    """Further steps by derivatives that have kept their promise, as long as they keep it: a step costs a simulation,
-    its derivatives as many as there are columns (V. E. Shamanskii, Ukr. Math. J. 19, 1967). Also whether they promise
-    next to nothing more."""
-    shooting = problem.shooting
-    for _ in range(FURTHER_STEPS):
-        rows = shooting.sample(at.rows)
-        left = (sampling.values - model for sampling, model in zip(shooting.samplings, rows, strict=True))
-        linear = replace(linear, residual=problem.flat(left), ends=at.ends)
-        downhill = gradient(problem, free, at.q, at.states, linear)
-        move = _step(normal, downhill, damping, free, at.q)
-        if move is None:
-            return at, False
-        promised = _promised(normal, downhill, move)
-        if promised < SETTLED:
-            return at, True
-        new = _point(problem, values, free, *_moved(problem, free, at.q, at.states, move))
-        gain = at.objective - new.objective
-        if gain > 0.0:
-            at = new
-        if not gain > FAITHFUL * promised:
-            break
-    return at, False
-
-
-def _promised(normal: NormalMatrix, gradient: Array, move: Array) -> float:
-    """What a move gains by the derivatives."""
-    return float(move @ (2.0 * gradient - normal.times(move)))
+    ending = ending if np.isfinite(objective) else Ending.DIVERGED
+    return _finish(problem, values, free, q, states, rows, objective, normal, ending, done)
 
 
 def _unknowing(parameters: int, windows: int) -> NormalMatrix:
@@ -259,13 +210,6 @@ class _Point:
     objective: float
 
 
-def _point(
-    problem: Problem, values: Mapping[str, float], free: Sequence[FreeParameter], q: Array, states: Array
-) -> _Point:
-    rows, ends = simulate(problem.shooting, values, free, q, states)
-    return _Point(q, states, rows, ends, objective_of(problem, free, q, states, rows, ends))
-
-
 def _descend(
     problem: Problem,
     values: Mapping[str, float],
@@ -284,8 +228,10 @@ def _descend(
         move = _step(normal, gradient, damping, free, at.q)
         if move is None:
             return None
-        new = _point(problem, values, free, *_moved(problem, free, at.q, at.states, move))
-        return (new, move, damping) if new.objective < at.objective else None
+        q, states = _moved(problem, free, at.q, at.states, move)
+        rows, ends = simulate(problem.shooting, values, free, q, states)
+        objective = objective_of(problem, free, q, states, rows, ends)
+        return (_Point(q, states, rows, ends, objective), move, damping) if objective < at.objective else None
 
     dampings, at_once = _growing(damping), threads()
     for first in range(0, TRIALS, at_once):

@@ -251,49 +251,29 @@ def normal_equations(
     shooting, used = problem.shooting, problem.used()
     windows, size = shooting.windows, shooting.free_states
     own, shared = np.zeros((windows, STATE_SIZE, STATE_SIZE)), np.zeros((windows, STATE_SIZE, len(free)))
-    following = np.zeros((windows - 1, STATE_SIZE, STATE_SIZE))
+    following, towards = np.zeros((windows - 1, STATE_SIZE, STATE_SIZE)), np.zeros((windows, STATE_SIZE))
     bounds = np.searchsorted(linear.window, np.arange(windows + 1))
     for window in np.flatnonzero(used):
         piece = slice(bounds[window], bounds[window + 1])
         by_state = linear.by_state[piece]
         own[window, :size, :size] = by_state.T @ by_state
         shared[window, :size] = by_state.T @ linear.by_parameter[piece]
+        towards[window, :size] = by_state.T @ linear.residual[piece]
     links, weight = problem.links(), 1.0 / LINK[:size]
-    by_parameter, by_start = _defects_by(linear, links, weight)
+    by_parameter = linear.ends_by_parameter[links, :size] * weight[:, None]
+    by_start = np.swapaxes(linear.ends_by_state[links, :size] * weight[:, None], 1, 2)
+    gap = (linear.ends[links] - states[links + 1])[:, :size] * weight
     own[links, :size, :size] += by_start @ np.swapaxes(by_start, 1, 2)
     own[links + 1, :size, :size] += np.diag(weight**2)
     following[links, :size, :size] = -by_start * weight
     shared[links, :size] += by_start @ by_parameter
     shared[links + 1, :size] -= by_parameter * weight[:, None]
-    prior = np.array([1.0 / parameter.prior_deviation**2 for parameter in free])
-    own += np.diag(1.0 / STATE_PRIOR**2)
-    flat = by_parameter.reshape(len(links) * size, len(free))
-    parameters = linear.by_parameter.T @ linear.by_parameter + flat.T @ flat + np.diag(prior)
-    return NormalMatrix(parameters, shared, own, following), gradient(problem, free, q, states, linear)
-
-
-def gradient(problem: Problem, free: Sequence[FreeParameter], q: Array, states: Array, linear: Linearised) -> Array:
-    """J^T r over (q, states of every window), r being the residuals and defects in `linear`."""
-    shooting, size = problem.shooting, problem.shooting.free_states
-    towards = (shooting.initial_states - states) / STATE_PRIOR**2
-    bounds = np.searchsorted(linear.window, np.arange(shooting.windows + 1))
-    for window in np.flatnonzero(problem.used()):
-        piece = slice(bounds[window], bounds[window + 1])
-        towards[window, :size] += linear.by_state[piece].T @ linear.residual[piece]
-    links, weight = problem.links(), 1.0 / LINK[:size]
-    by_parameter, by_start = _defects_by(linear, links, weight)
-    gap = (linear.ends[links] - states[links + 1])[:, :size] * weight
     towards[links, :size] -= (by_start @ gap[:, :, None])[:, :, 0]
     towards[links + 1, :size] += gap * weight
     prior = np.array([1.0 / parameter.prior_deviation**2 for parameter in free])
+    own += np.diag(1.0 / STATE_PRIOR**2)
+    towards -= (states - shooting.initial_states) / STATE_PRIOR**2
     flat = by_parameter.reshape(gap.size, len(free))
-    by_q = linear.by_parameter.T @ linear.residual - flat.T @ gap.ravel() - prior * q
-    return np.concatenate([by_q, towards.ravel()])
-
-
-def _defects_by(linear: Linearised, links: Integers, weight: Array) -> tuple[Array, Array]:
-    """The weighted ends of the windows before a link by parameters (links, states, parameters), and by where the
-    windows began (links, beginning, end)."""
-    size = len(weight)
-    by_parameter = linear.ends_by_parameter[links, :size] * weight[:, None]
-    return by_parameter, np.swapaxes(linear.ends_by_state[links, :size] * weight[:, None], 1, 2)
+    parameters = linear.by_parameter.T @ linear.by_parameter + flat.T @ flat + np.diag(prior)
+    gradient = linear.by_parameter.T @ linear.residual - flat.T @ gap.ravel() - prior * q
+    return NormalMatrix(parameters, shared, own, following), np.concatenate([gradient, towards.ravel()])
