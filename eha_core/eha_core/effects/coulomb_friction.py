@@ -9,8 +9,8 @@ compensation", European Journal of Control 4 (1998).
 """
 
 from eha_core.compiled import inlined
-from eha_core.effects.declaration import ASSUMED, Effect
-from eha_core.parameter import Parameter
+from eha_core.effects.declaration import Effect
+from eha_core.effects.friction_rows import sliding_force
 
 EFFECT = Effect(
     site="force",
@@ -19,20 +19,7 @@ EFFECT = Effect(
     statement="the seals rub: {force:4} of dry friction opposes motion and holds the piston at rest",
     equation="M_p x_p'' = ... - force sign(x_p')",
     parameters=(
-        Parameter(
-            name="force",
-            symbol="F_c",
-            unit="N",
-            nominal=0.0,
-            lower=0.0,
-            upper=1e5,
-            meaning="dry friction force",
-            source=ASSUMED,
-            typical=200.0,
-            switches=True,
-            relative_to="force",
-            starts=(0.1, 0.4),
-        ),
+        sliding_force("dry friction force"),
     ),
 )
 

@@ -13,6 +13,7 @@ IEEE Transactions on Automatic Control 40 (1995).
 from eha_core.compiled import inlined
 from eha_core.decay import decayed
 from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.effects.friction_rows import STRIBECK_VELOCITY, break_away_force, sliding_force
 from eha_core.parameter import Parameter
 
 LEAST_FORCE = 1e-6
@@ -26,49 +27,9 @@ EFFECT = Effect(
     "behind a spring of {stiffness}",
     equation="F_f = stiffness z + damping z', z' = x_p' - stiffness |x_p'| z / g(x_p')",
     parameters=(
-        Parameter(
-            name="force",
-            symbol="F_c",
-            unit="N",
-            nominal=0.0,
-            lower=0.0,
-            upper=1e5,
-            meaning="friction in motion",
-            source=ASSUMED,
-            typical=200.0,
-            switches=True,
-            relative_to="force",
-            starts=(0.1, 0.4),
-        ),
-        Parameter(
-            name="static_force",
-            symbol="F_s",
-            unit="N",
-            nominal=0.0,
-            lower=0.0,
-            upper=1e5,
-            meaning="friction at break-away",
-            source=ASSUMED,
-            typical=300.0,
-            switches=True,
-            relative_to="force",
-            starts=(0.2, 0.6),
-            above="force",
-        ),
-        Parameter(
-            name="stribeck_velocity",
-            symbol="v_s",
-            unit="m/s",
-            nominal=0.01,
-            lower=1e-5,
-            upper=10.0,
-            meaning="speed over which friction falls",
-            source=ASSUMED,
-            typical=0.01,
-            logarithmic=True,
-            relative_to="speed",
-            starts=(0.2,),
-        ),
+        sliding_force("friction in motion"),
+        break_away_force("friction at break-away", typical=300.0),
+        STRIBECK_VELOCITY,
         Parameter(
             name="stiffness",
             symbol="sigma_0",

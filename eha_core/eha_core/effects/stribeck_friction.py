@@ -11,7 +11,8 @@ methods for the control of machines with friction", Automatica 30 (1994).
 
 from eha_core.compiled import inlined
 from eha_core.decay import decayed
-from eha_core.effects.declaration import ASSUMED, Effect
+from eha_core.effects.declaration import Effect
+from eha_core.effects.friction_rows import STRIBECK_VELOCITY, break_away_force, sliding_force
 from eha_core.parameter import Parameter
 
 EFFECT = Effect(
@@ -21,49 +22,9 @@ EFFECT = Effect(
     statement="the seals rub and stick: {static_force:4} to break away, {force:4} in motion past {stribeck_velocity}",
     equation="M_p x_p'' = ... - (force + (static_force - force) exp(-|x_p' / stribeck_velocity|^shape)) sign(x_p')",
     parameters=(
-        Parameter(
-            name="force",
-            symbol="F_c",
-            unit="N",
-            nominal=0.0,
-            lower=0.0,
-            upper=1e5,
-            meaning="dry friction in motion",
-            source=ASSUMED,
-            typical=200.0,
-            switches=True,
-            relative_to="force",
-            starts=(0.1, 0.4),
-        ),
-        Parameter(
-            name="static_force",
-            symbol="F_s",
-            unit="N",
-            nominal=0.0,
-            lower=0.0,
-            upper=1e5,
-            meaning="dry friction at rest",
-            source=ASSUMED,
-            typical=350.0,
-            switches=True,
-            relative_to="force",
-            starts=(0.2, 0.6),
-            above="force",
-        ),
-        Parameter(
-            name="stribeck_velocity",
-            symbol="v_s",
-            unit="m/s",
-            nominal=0.01,
-            lower=1e-5,
-            upper=10.0,
-            meaning="speed over which friction falls",
-            source=ASSUMED,
-            typical=0.01,
-            logarithmic=True,
-            relative_to="speed",
-            starts=(0.2,),
-        ),
+        sliding_force("dry friction in motion"),
+        break_away_force("dry friction at rest", typical=350.0),
+        STRIBECK_VELOCITY,
         Parameter(
             name="shape",
             symbol="delta",
