@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from eha_core.errors import EhaError, remedy
+from eha_core.chosen_columns import required, the_only, unit_among
+from eha_core.errors import EhaError
 from eha_core.recording.column_names import Meaning, meaning_of, words_of
 from eha_core.step_tests.result import Array
-from eha_core.unit_names import UNITS, Unit, unit_named
+from eha_core.unit_names import Unit
 
 COMMAND_UNITS = ("%", "V", "A", "Pa")
 """SI units of a command, the likelier first: a measured current only follows the command."""
@@ -55,32 +56,11 @@ class Columns:
 
     def require(self, name: str, option: str) -> str:
         """The column of that name. Raises EhaError where there is none."""
-        if name not in self.units:
-            cure = remedy(name, self.units, f"it has {', '.join(self.units)}")
-            raise EhaError(f"{self.source}: has no column {name!r} for {option}; {cure}")
-        return name
+        return required(self.source, self.units, name, option)
 
     def unit(self, name: str, allowed: Sequence[str]) -> Unit:
         """The unit of a column. Raises EhaError where it is not known, or of another quantity."""
-        unit, cure = self.units[name], f"give --unit '{name}={_EXAMPLES[allowed[0]]}'"
-        if unit is None:
-            raise EhaError(f"{self.source}: column {name!r} has no unit; {cure}")
-        if unit.si not in allowed:
-            raise EhaError(
-                f"{self.source}: column {name!r} is in {unit.si}, not in {' or '.join(allowed)}; choose another column,"
-                f" or {cure}"
-            )
-        return unit
-
-
-def stated_units(units: Mapping[str, str]) -> dict[str, Unit]:
-    """The units of --unit. Raises EhaError where one is none."""
-    found = {}
-    for name, text in units.items():
-        if (unit := unit_named(text)) is None:
-            raise EhaError(f"--unit {name}={text}: {text} is no unit; {remedy(text, UNITS, 'write for example deg')}")
-        found[name] = unit
-    return found
+        return unit_among(self.source, name, self.units[name], allowed, _EXAMPLES[allowed[0]])
 
 
 def time_column(names: Sequence[str]) -> str | None:
@@ -144,11 +124,7 @@ def _without_unit(columns: Columns, names: Iterable[str]) -> list[str]:
 def _only(columns: Columns, ranked: Iterable[list[str]], what: str, option: str) -> str:
     """The column of the first rank that has one."""
     for names in ranked:
-        if len(names) > 1:
-            raise EhaError(
-                f"{columns.source}: {' and '.join(names)} may be the {what}; choose one with {option} COLUMN"
-            )
-        if names:
-            return names[0]
+        if (name := the_only(columns.source, names, what, option)) is not None:
+            return name
     have = ", ".join(columns.units) or "none"
     raise EhaError(f"{columns.source}: no column is a {what}; choose one with {option} COLUMN; it has {have}")

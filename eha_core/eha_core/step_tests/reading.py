@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eha_core.chosen_columns import stated_units
 from eha_core.errors import EhaError, RecordingError
 from eha_core.recording import CHANNEL_KINDS, ChannelRule, read_recording
 from eha_core.recording.stated_units import unit_of_name
@@ -21,7 +22,6 @@ from eha_core.step_tests.columns import (
     Selection,
     command_column,
     motion_column,
-    stated_units,
     time_column,
 )
 from eha_core.step_tests.result import Array, Record
@@ -43,7 +43,7 @@ def records_of(files: Sequence[File], selection: Selection) -> list[Record]:
         RecordingError: a file cannot be read.
         EhaError: a column, its unit or the time is missing, several may be meant, or files have different quantities.
     """
-    units = stated_units(selection.units)
+    units = stated_units(selection.units, "deg")
     given = [_columns(file, selection, units) for file in files]
     for name in units:
         if not any(name in columns.units for columns in given):

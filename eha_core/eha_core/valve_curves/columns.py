@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eha_core.errors import EhaError, RecordingError, remedy
+from eha_core.chosen_columns import required, stated_units, the_only, unit_among
+from eha_core.errors import EhaError, RecordingError
 from eha_core.recording.column_names import words_of
 from eha_core.recording.name_words import LETTERS, OBJECTS, QUANTITIES, SIDES
 from eha_core.recording.stated_units import unit_of_name
 from eha_core.tables import Table, read_table
-from eha_core.unit_names import UNITS, Unit, unit_named
+from eha_core.unit_names import Unit, unit_named
 from eha_core.valve_curves.result import FLOW, LEAKAGE, PRESSURE, RESPONSE_UNITS, Array, Curve
 
 _LEAKAGE_WORDS = frozenset(("leak", "leakage", "leckage", "leckoel", "leckstrom", "fuite", "fuga"))
@@ -47,12 +48,8 @@ class _Columns:
         names = tuple(table.columns)
         stated = {name: table.units.get(name) or unit_of_name(name, names) for name in names}
         self.units: dict[str, Unit | None] = {name: unit_named(text) for name, text in stated.items()}
-        for name, text in selection.units.items():
-            if name in self.units:
-                if (unit := unit_named(text)) is None:
-                    cure = remedy(text, UNITS, "write for example l/min")
-                    raise EhaError(f"--unit {name}={text}: {text} is no unit; {cure}")
-                self.units[name] = unit
+        given = {name: text for name, text in selection.units.items() if name in self.units}
+        self.units |= stated_units(given, "l/min")
 
     def of_unit(self, si: str) -> list[str]:
         return [name for name, unit in self.units.items() if unit is not None and unit.si == si]
@@ -63,27 +60,15 @@ class _Columns:
 
     def require(self, name: str, option: str) -> str:
         """The column of that name."""
-        if name not in self.table.columns:
-            found = remedy(name, self.table.columns, f"it has {', '.join(self.table.columns)}")
-            raise EhaError(f"{self.source}: has no column {name!r} for {option}; {found}")
-        return name
+        return required(self.source, self.table.columns, name, option)
 
     def one(self, names: list[str], what: str, option: str) -> str | None:
         """The only one of some columns; None where there is none."""
-        if len(names) > 1:
-            raise EhaError(f"{self.source}: {' and '.join(names)} may be the {what}; choose one with {option} COLUMN")
-        return names[0] if names else None
+        return the_only(self.source, names, what, option)
 
     def values(self, name: str, allowed: Sequence[str]) -> Array:
         """A column in SI, or in %."""
-        unit, cure = self.units[name], f"give --unit '{name}={_EXAMPLES[allowed[0]]}'"
-        if unit is None:
-            raise EhaError(f"{self.source}: column {name!r} has no unit; {cure}")
-        if unit.si not in allowed:
-            raise EhaError(
-                f"{self.source}: column {name!r} is in {unit.si}, not in {' or '.join(allowed)}; choose another column,"
-                f" or {cure}"
-            )
+        unit = unit_among(self.source, name, self.units[name], allowed, _EXAMPLES[allowed[0]])
         return np.asarray(self.table.columns[name], dtype=np.float64) * unit.scale
 
 
