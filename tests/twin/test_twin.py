@@ -70,6 +70,15 @@ def test_leakage_turned_up_is_raised_within_two_seconds_in_the_chambers() -> Non
         assert comparison.ratios["force balance"] < 2.0
 
 
+@pytest.mark.parametrize("before_the_end", np.arange(0.05, 0.5, 0.05))
+def test_a_leak_that_begins_late_in_a_window_is_the_chambers_from_the_first(before_the_end: float) -> None:
+    """The position is off by many times its noise before the chambers' equations are sure."""
+    end = next(comparisons(rig(2.0), Twin()))[1].end / NANOSECONDS
+    leak = (end + 2.0 - before_the_end, "internal_leakage", 5e-11)
+    first = next(one for _, one in comparisons(rig(6.0, changes=[leak]), Twin()) if one.departs)
+    assert set(first.departs) <= CHAMBERS
+
+
 def test_dry_friction_is_raised_in_the_force_balance_alone() -> None:
     found = beside(rig(4.0, parameters={"coulomb_friction.force": 100.0}), Twin())
     assert [list(comparison.departs) for _, comparison in found] == [["force balance"]] * 3

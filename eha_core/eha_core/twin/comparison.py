@@ -46,7 +46,7 @@ class Comparison:
         noises: standard deviation of the noise of each of these channels [SI].
         ratios: for each equation that could be examined, and for DRIFT, the RMS of its residual over its noise.
         departs: what departs beyond the threshold, the most first, and from which stamp on, through all windows
-            since [ns]. DRIFT is among them only where no equation is.
+            since [ns]. DRIFT is among them only where no equation is suspicious.
         unsound: the channels that are FROZEN or STALE, and since which stamp [ns]; nothing is compared with them.
     """
 

@@ -228,7 +228,9 @@ class Twin:
         ratios = {name: _rms(residual) for name, residual in residuals.items() if np.any(np.isfinite(residual))}
         self._note(residuals, stamps)
         alarmed = [name for name, detector in self._detectors.items() if detector.is_alarmed and name in ratios]
-        departing = [name for name in EQUATIONS if name in alarmed] or alarmed
+        departing = [name for name in alarmed if name in EQUATIONS]
+        if not any(name in ratios and self._detectors[name].is_suspicious for name in EQUATIONS):
+            departing = alarmed  # else the next window tells which equation the position's error comes from
         departing.sort(key=lambda name: -ratios[name])
         return Comparison(
             start,
