@@ -7,12 +7,11 @@ from made import recorded
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effect
-from eha_core.identification import fit as fitting
-from eha_core.identification.fit import fit
+from eha_core.identification.fit import TRIALS, fit
 from eha_core.identification.observation import observe
-from eha_core.identification.parallel import side_by_side
 from eha_core.identification.problem import whole
 from eha_core.identification.segments import coarser, cut
+from eha_core.identification.shooting import SLOPE_STEP, Shooting
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 
@@ -59,20 +58,24 @@ def test_a_fit_goes_on_where_bounds_cut_its_moves_short():
     assert calibration.fitted.objective < 0.1 * calibration.nominal.objective
 
 
-def test_dampings_tried_at_once_lead_where_one_after_the_other_does(monkeypatch):
-    """Of those that lead lower the least is taken, whichever thread is done first."""
+def test_dampings_in_lock_step_lead_where_one_after_the_other_does(monkeypatch):
+    """Of those that lead lower the least is taken; some iterations of this fit need more than one."""
     shooting = cut(observe(recorded({"valve_deadband.half_width": 3e-4}, duration=4.0)), nominal_values())
     begun = nominal_values() | {"valve_deadband.half_width": 1e-4, "valve_deadband.rounding": 5e-5}
     free = with_effects((), [effect("valve_deadband")], begun)
-    trials: list[int] = []
-    simulate = fitting.simulate
-    monkeypatch.setattr(fitting, "simulate", lambda *given: trials.append(1) or simulate(*given))
-    ends = []
-    for jobs in (1, 2):
-        trials.clear()
-        with side_by_side(jobs):
-            ends.append(fit(whole(shooting), begun, free))
-        ends[-1] = (ends[-1].q.tobytes(), ends[-1].states.tobytes(), ends[-1].ending, ends[-1].iterations, len(trials))
-    (*one, in_turn), (*two, at_once) = ends
-    assert one == two
-    assert in_turn > one[3] + 2 and at_once > in_turn
+    together, one_by_one = Shooting.simulate_many, []
+
+    def in_turn(shooting, sets):
+        if shooting.step_size == SLOPE_STEP:  # derivatives
+            return together(shooting, sets)
+        one_by_one.append(len(sets))
+        results = [shooting.simulate(*one) for one in sets]
+        return tuple(np.stack(arrays, axis=-1) for arrays in zip(*results, strict=True))
+
+    at_once = fit(whole(shooting), begun, free)
+    monkeypatch.setattr(Shooting, "simulate_many", in_turn)
+    after_the_other = fit(whole(shooting), begun, free)
+    assert one_by_one and set(one_by_one) == {TRIALS}
+    assert (at_once.ending, at_once.iterations) == (after_the_other.ending, after_the_other.iterations)
+    assert at_once.q.tobytes() == after_the_other.q.tobytes()
+    assert at_once.states.tobytes() == after_the_other.states.tobytes()

@@ -15,7 +15,6 @@ from scipy.linalg import LinAlgError
 from eha_core.identification.free_parameters import LATE, FreeParameter, coordinates, values_at
 from eha_core.identification.normal_matrix import NormalMatrix
 from eha_core.identification.numbers import Array
-from eha_core.identification.parallel import each, threads
 from eha_core.identification.per_recording import base_name, in_each, is_one_of
 from eha_core.identification.problem import (
     Problem,
@@ -27,6 +26,7 @@ from eha_core.identification.problem import (
 )
 from eha_core.identification.shooting import STATE_SIZE, Shooting
 from eha_core.parameters import catalogue
+from eha_core.plant.lane_rows import REGISTER
 
 SETTLED = 0.5
 """Chi^2; an iteration that gains less ends the fit."""
@@ -35,9 +35,12 @@ WORTH = 2e-4
 """Share of the excess chi^2; an iteration that gains less ends the fit of a model far from the noise."""
 
 HOPE = 4.0
+"""Times its last gain that a fit may still gain: gains that halve add up to one more, and some do not halve
+(assumed)."""
 
-TRIALS = 10
-"""Most dampings that an iteration tries; the last is 2e16 times the first, which gives a negligible step."""
+TRIALS = REGISTER
+"""Dampings that an iteration tries where its own leads no lower, in lock-step; the last is 2e13 times the first, which
+gives a negligible step."""
 
 
 class Ending(Enum):
@@ -221,32 +224,40 @@ def _descend(
 ) -> tuple[_Point, Array, float] | None:
     """The first point with a lower objective as the damping grows, its step and that damping; None without one.
 
-    As many dampings as there are threads are tried in parallel: half of the iterations need more than one.
+    Where the damping given does not lead lower, TRIALS larger ones are simulated in lock-step. The lowest of them is not
+    taken: along a curved valley it is a short step, and so is the next.
     """
-
-    def tried(damping: float) -> tuple[_Point, Array, float] | None:
-        move = _step(normal, gradient, damping, free, at.q)
-        if move is None:
-            return None
-        q, states = _moved(problem, free, at.q, at.states, move)
-        rows, ends = simulate(problem.shooting, values, free, q, states)
-        objective = objective_of(problem, free, q, states, rows, ends)
-        return (_Point(q, states, rows, ends, objective), move, damping) if objective < at.objective else None
-
-    dampings, at_once = _growing(damping), threads()
-    for first in range(0, TRIALS, at_once):
-        for lower in each(tried, dampings[first : first + at_once]):
-            if lower is not None:
-                return lower
+    first, *larger = _growing(damping)
+    for dampings in ([first], larger):
+        steps = [(size, move) for size in dampings if (move := _step(normal, gradient, size, free, at.q)) is not None]
+        points = _points(problem, values, free, [_moved(problem, free, at.q, at.states, move) for _, move in steps])
+        for point, (size, move) in zip(points, steps, strict=True):
+            if point.objective < at.objective:
+                return point, move, size
     return None
 
 
 def _growing(damping: float) -> list[float]:
     """The dampings that an iteration tries, with a factor between them that doubles each time."""
     dampings = [damping]
-    for trial in range(TRIALS - 1):
+    for trial in range(TRIALS):
         dampings.append(max(dampings[-1] * 4.0 * 2.0**trial, 1e-8))
     return dampings
+
+
+def _points(
+    problem: Problem, values: Mapping[str, float], free: Sequence[FreeParameter], places: Sequence[tuple[Array, Array]]
+) -> list[_Point]:
+    """The objective at several coordinates and states: of one by itself, of several in lock-step."""
+    shooting, found = problem.shooting, []
+    if len(places) > 1:
+        rows, ends = shooting.simulate_many([(values_at(values, free, q), states) for q, states in places])
+        simulated = [(rows[:, :, lane], ends[:, :, lane]) for lane in range(len(places))]
+    else:
+        simulated = [simulate(shooting, values, free, q, states) for q, states in places]
+    for (q, states), (rows, ends) in zip(places, simulated, strict=True):
+        found.append(_Point(q, states, rows, ends, objective_of(problem, free, q, states, rows, ends)))
+    return found
 
 
 def _step(
