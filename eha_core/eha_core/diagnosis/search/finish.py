@@ -111,11 +111,10 @@ def _without(pool: Pool, hypothesis: Hypothesis, member: Member, at: Fit, needed
     off = neutral(member.effect)
     values = {name: off.get(base_name(name), value) for name, value in at.values.items()}
     free = tuple(parameter for parameter in at.free if base_name(parameter.name) not in off)
-    simpler = pool.try_set("without a member", rest, values, at.states, FURTHER, free, 1, at.objective + needed)
-    if simpler.objective - at.objective > needed:
-        pool.go_on("without a member", rest, CONVERGED, 2, give_up_above=at.objective + needed)
+    pool.try_set("without a member", rest, values, at.states, CONVERGED, free, 2, at.objective + needed)
     if pool.found[rest].objective - at.objective > needed:
-        shift_instants(pool, rest)  # what acts together with the member may begin elsewhere without it
+        # what acts together with the member may begin elsewhere without it
+        shift_instants(pool, rest, at.objective + needed)
     return pool.found[rest]
 
 

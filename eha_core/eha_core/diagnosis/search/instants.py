@@ -12,6 +12,7 @@ from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.pool import REACH, Pool
 from eha_core.diagnosis.search.quadratic import Derivatives, QuadraticModel, derivatives, with_columns
+from eha_core.identification.fit import HOPE
 from eha_core.identification.per_recording import base_name
 from eha_core.plant.lane_rows import LANES
 
@@ -24,8 +25,9 @@ TO_THE_STEP = 4
 objective has a valley at each break-away."""
 
 
-def shift_instants(pool: Pool, hypothesis: Hypothesis) -> None:
-    """Fit a set on from other instants where one of those leaves less once all else has adapted to it."""
+def shift_instants(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) -> None:
+    """Fit a set on from other instants where one of those leaves less once all else has adapted to it, unless HOPE
+    times what is predicted of that would not bring the objective below `give_up_above`."""
     at, about = pool.found[hypothesis], None
     instants = [parameter.name for parameter in at.free if parameter.resolution]
     for reach, name in product([REACH * FINER**k for k in range(TO_THE_STEP)], instants):
@@ -37,7 +39,8 @@ def shift_instants(pool: Pool, hypothesis: Hypothesis) -> None:
         present = [option for option in model.options if option.present]
         places = [(*present, option) for option in model.options if not option.present]
         left = [model.empty - model.gain(place)[0] for place in places]
-        if left and min(left) < at.objective:
+        gain = at.objective - min(left, default=np.inf)
+        if gain > 0.0 and at.objective - HOPE * gain < give_up_above:
             values, states = model.start(places[int(np.argmin(left))])
             pool.try_set("other instants", hypothesis, values, states, CONVERGED, give_up_above=at.objective)
 
