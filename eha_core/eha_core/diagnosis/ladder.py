@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
-from eha_core.diagnosis.criteria import CONVERGED
+from eha_core.diagnosis.criteria import FURTHER
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import Member, without_effect
 from eha_core.diagnosis.result import AUGMENTED, NOMINAL, RECALIBRATED, Correlation, Residual, Step
@@ -43,14 +43,14 @@ def ladder(evidence: Evidence, final: Fit) -> tuple[tuple[Step, ...], dict[str, 
 
 
 def _without(evidence: Evidence, winner: Entry, member: Member) -> Fit:
-    """The set without one member, fitted to its end: the search's fit may have given up when it was far enough off."""
+    """The set without one member, fitted further: the search's fit may have given up when it was far enough off."""
     known = evidence.comparison.smaller.get(winner.hypothesis.without(member))
     if known is not None:
         values, free, states = known.values, known.free, known.states
     else:
         values, free = without_effect(winner.fit, member.effect)
         states = winner.fit.states
-    return fit(evidence.calibration.problem, values, free, states, iterations=CONVERGED)
+    return fit(evidence.calibration.problem, values, free, states, iterations=FURTHER)
 
 
 def _scales(evidence: Evidence) -> list[float]:
