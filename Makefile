@@ -35,6 +35,7 @@ test: lint  ## lint, types, architecture and every test
 
 lint: env  ## style, types and the walls between the packages
 	$(RUN)/ruff check .
+	$(RUN)/ruff format --check .
 	$(RUN)/mypy $(TYPED)
 	$(RUN)/lint-imports --no-cache
 

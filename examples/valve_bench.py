@@ -1,6 +1,6 @@
 """Write a valve's flow, pressure gain and leakage curves as a test bench prints them, computed in closed form.
 
-    python examples/valve_bench.py out/bench
+python examples/valve_bench.py out/bench
 """
 
 from __future__ import annotations

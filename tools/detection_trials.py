@@ -72,9 +72,7 @@ def _rig_and_test(number: int, seed: int) -> tuple[dict[str, float], PlannedTest
     case = draw_case("null", number, seed)
     rig = Rig(case.family, case.plant)
     time = np.arange(round(case.duration * case.rate) + 1) / case.rate
-    reference = draw_reference(
-        case.shape, rig, time, case.amplitude, case.speed, np.random.default_rng([case.seed, 1])
-    )
+    reference = draw_reference(case.shape, rig, time, case.amplitude, case.speed, np.random.default_rng([case.seed, 1]))
     voltages = feedforward(rig, reference, case.rate)
     return dict(case.nominal), PlannedTest(time, voltages, case.duration, noise=case.noise, rate=case.rate)
 

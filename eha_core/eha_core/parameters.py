@@ -21,7 +21,7 @@ from eha_core.yaml_file import load_yaml
 def _row(
     name: str, symbol: str, unit: str, nominal: float, bounds: tuple[float, float], meaning: str,
     source: str = "Table 1", logarithmic: bool = True,
-) -> Parameter:
+) -> Parameter:  # fmt: skip
     lower, upper = bounds
     return Parameter(
         name=name, symbol=symbol, unit=unit, nominal=nominal, lower=lower, upper=upper, meaning=meaning, source=source,
@@ -55,21 +55,21 @@ NOMINAL: tuple[Parameter, ...] = (
          "assumed: the paper gives none"),
     _row("atmospheric_pressure", "P_atm", "Pa", 101325.0, (0.0, 2e5),
          "absolute pressure of the return line's reference", "standard atmosphere", logarithmic=False),
-)
+)  # fmt: skip
 
 ACTING: tuple[Parameter, ...] = (
     _row("effects_from", "t_from", "s", 0.0, (0.0, 1e9), "time from which the catalogue's effects act", "assumed",
          logarithmic=False),
     _row("effects_until", "t_until", "s", 1e9, (0.0, 1e9), "time from which they no longer act", "assumed",
          logarithmic=False),
-)
+)  # fmt: skip
 """The span of time in which whatever effects are switched on act: by their nominal values always."""
 
 _ACTS = (
     _row("acts_from", "t_from", "s", 0.0, (0.0, 1e9), "time from which the effect acts", "assumed", logarithmic=False),
     _row("acts_until", "t_until", "s", 1e9, (0.0, 1e9), "time from which it no longer acts", "assumed",
          logarithmic=False),
-)
+)  # fmt: skip
 
 
 def acting_rows(effect: Effect) -> dict[str, Parameter]:
@@ -153,7 +153,7 @@ NODE_ONLY = frozenset(
     {"use_sim_time", "step_size", "publish_rate", "clock_rate", "time_mode", "real_time_factor", "lockstep_patience",
      "command_timeout", "command_limit", "catch_up_limit", "initial_position", "start_paused", "frame_id",
      "diagnostics_rate", "qos_overrides", "start_type_description_service"}
-)
+)  # fmt: skip
 """Parameters of the simulator node that are none of the plant's; a parameters file may carry them."""
 
 

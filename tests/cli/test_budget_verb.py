@@ -18,9 +18,7 @@ QUICK = ["--reference", SINE, "--duration", "0.5", "--skip", "0.1"]
 
 def diagnosis(folder: Path) -> Path:
     """A diagnosis.json that `eha diagnose` wrote, of a rig with 300 N of friction."""
-    recording = eha.simulate(
-        "multisine:amplitude=0.1", 3.0, {"coulomb_friction.force": 300.0}, noise=1.0, rate=500.0
-    )
+    recording = eha.simulate("multisine:amplitude=0.1", 3.0, {"coulomb_friction.force": 300.0}, noise=1.0, rate=500.0)
     path = folder / "diagnosis.json"
     from eha_core.report.document import as_json as told
 

@@ -51,9 +51,7 @@ def test_this_machine_s_names_and_addresses_are_answered(served: Served, host: s
     assert served.wanted == [1e-9]
 
 
-def test_what_is_no_number_is_refused_and_nothing_is_printed(
-    served: Served, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_no_number_is_refused_and_nothing_is_printed(served: Served, capfd: pytest.CaptureFixture[str]) -> None:
     for body in (b"1" + b"0" * 900, b"[" * 999, b"{", b"true", b"NaN", b"-1", b"", b" " * 2000):
         assert served.ask("/internal_leakage", body) == 400, body
     request = "POST /internal_leakage HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"

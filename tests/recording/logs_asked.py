@@ -124,7 +124,10 @@ ASKED: dict[str, Log] = {
             [
                 stamped("%m/%d/%Y", dt.datetime(2026, 4, 5, 23, 59, 59, 800_000)),
                 stamped("%H:%M:%S.%L", dt.datetime(2026, 4, 5, 23, 59, 59, 800_000)),
-                U, X, PA, PB,
+                U,
+                X,
+                PA,
+                PB,
             ],
         ),
         {"time": {"column": "Time", "day_first": False}},

@@ -68,6 +68,5 @@ def test_a_residual_that_is_no_noise_is_told_in_place_of_sizes(friction: Diagnos
     bad = replace(friction, explained=left)
     assert undetected_tables(bad) == ()
     assert not_missing(bad) == (
-        "upper limits of further effects are not known, because the residual is up to 3 times the noise, in"
-        " position"
+        "upper limits of further effects are not known, because the residual is up to 3 times the noise, in position"
     )

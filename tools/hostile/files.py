@@ -195,9 +195,7 @@ def _in_its_own_process(
     return rows
 
 
-def _batch(
-    content: dict[str, bytes], folder: Path, seed: str, course: Course, done: int, answer: Connection
-) -> None:
+def _batch(content: dict[str, bytes], folder: Path, seed: str, course: Course, done: int, answer: Connection) -> None:
     chance = random.Random(seed)
     rows = {name: Row(name, 0) for name in READERS}
     count = 0

@@ -39,8 +39,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("--out", required=True, type=Path, metavar="FILE.fmu|DIR", help="the FMU, or the folder of the other forms")
     given = parser.add_mutually_exclusive_group().add_argument
     given("--nominal", type=Path, metavar="FILE", help="the plant: a parameters file in ROS 2's YAML form")
-    given("--from", dest="found", type=Path, metavar="diagnosis.json|fitted.yaml", help="the plant as a diagnosis found"
-        " it: either of the files that it wrote")
+    given(
+        "--from",
+        dest="found",
+        type=Path,
+        metavar="diagnosis.json|fitted.yaml",
+        help="the plant as a diagnosis found it: either of the files that it wrote",
+    )
     add("--fmi", type=int, choices=(2, 3), help="of an FMU: FMI's version (default 2, which more tools read)")
     add("--target", metavar="TRIPLE", help=f"of c: processor, system and C library, such as aarch64-linux-gnu or"
         f" x86_64-windows-gnu (default {_TARGET})")  # fmt: skip

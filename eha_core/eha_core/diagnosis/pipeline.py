@@ -27,9 +27,7 @@ from eha_core.recording import Recording
 from eha_core.weak_form.equation_residuals import EquationResidual, equation_residuals, smallest
 
 
-def examine(
-    recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None
-) -> Evidence:
+def examine(recordings: Sequence[Recording], model: NominalModel, progress: Progress = lambda _: None) -> Evidence:
     """Run the stages up to the decision. Raises RecordingError where a recording cannot be used."""
     model, observations, calibration = _calibrated(recordings, model, progress)
     shooting, fitted = calibration.shooting, calibration.fitted

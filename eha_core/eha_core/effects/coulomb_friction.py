@@ -18,9 +18,7 @@ EFFECT = Effect(
     approximate=True,
     statement="the seals rub: {force:4} of dry friction opposes motion and holds the piston at rest",
     equation="M_p x_p'' = ... - force sign(x_p')",
-    parameters=(
-        sliding_force("dry friction force"),
-    ),
+    parameters=(sliding_force("dry friction force"),),
 )
 
 

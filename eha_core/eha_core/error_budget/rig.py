@@ -147,9 +147,7 @@ def _of_effect(effect: Effect, fitted: Mapping[str, float], statements: Mapping[
     return Departure(effect.id, statements.get(effect.id, described), values, absent)
 
 
-def _uncertainty(
-    document: Mapping[str, Any], departures: Sequence[Departure]
-) -> tuple[dict[str, float], Array]:
+def _uncertainty(document: Mapping[str, Any], departures: Sequence[Departure]) -> tuple[dict[str, float], Array]:
     """The known standard deviations of the departures' values, and their correlation."""
     known = {row["name"]: row["std"] for row in document["parameters"]}
     for effect in document["effects"]:

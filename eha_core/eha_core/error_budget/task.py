@@ -46,9 +46,7 @@ class Task:
     def __post_init__(self) -> None:
         """Check the values, alone and in combination."""
         if self.controller and self.controller not in CONTROLLERS:
-            raise ParameterError(
-                f"there is no controller {self.controller!r}; {remedy(self.controller, CONTROLLERS)}"
-            )
+            raise ParameterError(f"there is no controller {self.controller!r}; {remedy(self.controller, CONTROLLERS)}")
         if not 0.0 <= self.skip < self.duration <= LONGEST:
             raise ParameterError(
                 f"duration = {self.duration:g} s and skip = {self.skip:g} s leave nothing to count;"
@@ -87,9 +85,7 @@ class Task:
             raise ParameterError(f"the reference begins at {start:g} m, outside the stroke of +-{stroke:g} m")
         period = self.steps * self.step_size
         controller = make_controller(self.controller, modelled, period, self.command_limit)
-        reached = follow_together(
-            controller, sets, self.signal, self.duration, period, self.step_size, composition
-        )
+        reached = follow_together(controller, sets, self.signal, self.duration, period, self.step_size, composition)
         wanted = np.asarray(self.signal.value(np.arange(reached.shape[1]) * period))
         return np.asarray((reached - wanted)[:, round(self.skip / period) :])
 

@@ -163,9 +163,7 @@ def _imitation(model: Doubted, starts: Sequence[int], changes: Array, shifts: Ar
     return _Imitation(changes, shifts, misfit)
 
 
-def _better(
-    model: Doubted, starts: Sequence[int], at: _Imitation, changes: Array, shifts: Array
-) -> _Imitation | None:
+def _better(model: Doubted, starts: Sequence[int], at: _Imitation, changes: Array, shifts: Array) -> _Imitation | None:
     """The imitation at the largest share of a step that leaves so much less."""
     for share in SHARES:
         try:

@@ -44,9 +44,7 @@ def kernel_text() -> str:
     states, memories, values, acting, columns = len(AT), MEMORY, len(step_rows()), len(effects()), len(COLUMNS)
     numbers, flags = types.CPointer(types.double), types.CPointer(types.boolean)
     count, number = types.int64, types.double
-    signature = types.void(
-        numbers, numbers, numbers, count, numbers, flags, numbers, numbers, count, number, numbers
-    )
+    signature = types.void(numbers, numbers, numbers, count, numbers, flags, numbers, numbers, count, number, numbers)
 
     @njit(signature, **_OPTIONS)
     def kernel(state, memory, history, ring, parameters, active, propagator, voltages, steps, step_size, row):

@@ -69,10 +69,7 @@ def tables_text(model: ExportedModel) -> str:
     )  # fmt: skip
     lines += _table(
         "struct { short from, until; } ACTS[EHA_EFFECTS]",
-        (
-            f"{{{', '.join(str(numbers[name]) for name in effect.acting_names()) or '-1, -1'}}}"
-            for effect in effects()
-        ),
+        (f"{{{', '.join(str(numbers[name]) for name in effect.acting_names()) or '-1, -1'}}}" for effect in effects()),
     )
     lines += _table(
         "struct { short effect, state; } REMEMBERED[]",

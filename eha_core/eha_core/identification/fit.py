@@ -224,7 +224,7 @@ def _descend(
 ) -> tuple[_Point, Array, float] | None:
     """The first point with a lower objective as the damping grows, its step and that damping; None without one.
 
-    Where the damping given does not lead lower, TRIALS larger ones are simulated in lock-step. The lowest of them is not
+    Where the damping given leads no lower, TRIALS larger ones are simulated in lock-step. The lowest of them is not
     taken: along a curved valley it is a short step, and so is the next.
     """
     first, *larger = _growing(damping)

@@ -33,8 +33,7 @@ def held(free: Sequence[FreeParameter], values: Mapping[str, float]) -> tuple[Fr
     """The free parameters, with a narrower prior (HELD) for those of the plant that have their nominal values."""
     return tuple(
         replace(parameter, prior_deviation=HELD * parameter.prior_deviation)
-        if "." not in parameter.name
-        and values.get(parameter.name, parameter.reference) == parameter.reference
+        if "." not in parameter.name and values.get(parameter.name, parameter.reference) == parameter.reference
         else parameter
         for parameter in free
     )

@@ -58,15 +58,11 @@ def errors_held(observation: Observation, values: Mapping[str, float]) -> dict[s
     return {name: float(np.sqrt(np.mean(residual**2))) * sampling.noise for name, sampling, residual in triples}
 
 
-def long_record(
-    path: str, duration: float, stretches: Sequence[tuple[float, float]], judge: Judge
-) -> LongRecord:
+def long_record(path: str, duration: float, stretches: Sequence[tuple[float, float]], judge: Judge) -> LongRecord:
     """What the judged blocks say of a record."""
     departs = _departing(judge.blocks)
     said = _stated(duration, stretches, judge.blocks, departs)
-    return LongRecord(
-        path, duration, tuple(stretches), WINDOW, tuple(judge.blocks), judge.passed_over, departs, said
-    )
+    return LongRecord(path, duration, tuple(stretches), WINDOW, tuple(judge.blocks), judge.passed_over, departs, said)
 
 
 def _departing(blocks: Sequence[JudgedBlock]) -> tuple[tuple[float, float], ...]:

@@ -104,7 +104,10 @@ def _explained(motions: Sequence[Motion], law: Law, noise: float | None) -> Expl
 
 
 def _remarks(
-    recordings: Sequence[Recording], tests: Sequence[Recording], motions: Sequence[Motion], tested: Sequence[Motion],
+    recordings: Sequence[Recording],
+    tests: Sequence[Recording],
+    motions: Sequence[Motion],
+    tested: Sequence[Motion],
     law: Law,
 ) -> Iterator[str]:
     for recording in (*recordings, *tests):

@@ -79,8 +79,7 @@ def schedule_remarks(motions: Sequence[Motion], tests: Sequence[Motion], terms: 
     low, high = levels[0], levels[-1]
     margin = NEARLY * (high - low)
     return [
-        f"{test.name}: {name} is beyond {low:g} to {high:g}, where the law was found; its nearest values"
-        " were taken"
+        f"{test.name}: {name} is beyond {low:g} to {high:g}, where the law was found; its nearest values were taken"
         for test in tests
         if test.schedule is not None and np.any(np.abs(test.schedule - np.clip(test.schedule, low, high)) > margin)
     ]

@@ -55,9 +55,7 @@ def root_mean_square(values: Array) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def closed_form(
-    internal_leakage: float, reference_rms: float, parameters: Mapping[str, float] | None = None
-) -> float:
+def closed_form(internal_leakage: float, reference_rms: float, parameters: Mapping[str, float] | None = None) -> float:
     """Return the small-signal RMSE [m]: k / (1 + k) times the RMS of the leakage-free displacement [m].
 
     k = K_Lin B_s / A_p^2. Of the flow Q that the valve meters, A_p v moves the piston, and the pressure that overcomes

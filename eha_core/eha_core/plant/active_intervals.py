@@ -112,9 +112,7 @@ FIRST, LAST, EVERY, FIRST_ROW, LAST_ROW, BEGINS, ENDS = range(7)
 first row and the one after its last, and the windows that begin and end with it (-1: none)."""
 
 
-def stretches(
-    edges: Integers, every: int, instants: Sequence[int], apart: Sequence[int] = ()
-) -> list[Integers]:
+def stretches(edges: Integers, every: int, instants: Sequence[int], apart: Sequence[int] = ()) -> list[Integers]:
     """Windows in a row, of which the first begins with step `edges[0]` of the record and the last ends before
     `edges[-1]`, cut as `pieces` does where an effect begins or ceases to act.
 

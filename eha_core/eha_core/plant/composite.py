@@ -31,10 +31,27 @@ from eha_core.plant.lane_rows import LANES, PARAMETERS
 from eha_core.plant.parts import Source, parts
 
 SOURCES = (
-    "compiled.py", "curve.py", "decay.py", "parameters.py", "plant/vector.py", "plant/state.py", "plant/equations.py",
-    "plant/scheme.py", "plant/step.py", "plant/hooks.py", "plant/lane_rows.py", "plant/lane_hooks.py", "plant/lanes.py",
-    "plant/windows.py", "plant/active_intervals.py", "plant/composite.py", "plant/ring.py", "plant/source.py",
-    "plant/given.py", "plant/parts/sources/*.py", "effects/*.py",
+    "compiled.py",
+    "curve.py",
+    "decay.py",
+    "parameters.py",
+    "plant/vector.py",
+    "plant/state.py",
+    "plant/equations.py",
+    "plant/scheme.py",
+    "plant/step.py",
+    "plant/hooks.py",
+    "plant/lane_rows.py",
+    "plant/lane_hooks.py",
+    "plant/lanes.py",
+    "plant/windows.py",
+    "plant/active_intervals.py",
+    "plant/composite.py",
+    "plant/ring.py",
+    "plant/source.py",
+    "plant/given.py",
+    "plant/parts/sources/*.py",
+    "effects/*.py",
 )
 
 
@@ -262,9 +279,7 @@ def _package(given: bool) -> str:
 @cache
 def _announce() -> None:
     """A warning, so that it is seen where nobody has set up logging: a silence this long looks like a hang."""
-    logging.getLogger(__name__).warning(
-        "compiling the plant, once after an installation or an update: up to a minute"
-    )
+    logging.getLogger(__name__).warning("compiling the plant, once after an installation or an update: up to a minute")
 
 
 def _module(given: bool, name: str) -> ModuleType:

@@ -14,9 +14,7 @@ ONLY_IN_THE_STEP = "atmospheric_pressure"
 """The nominal parameter that equations (1) to (10) do not contain: the step boils the oil at zero absolute pressure."""
 
 
-def derivatives(
-    state: State | Sequence[float], voltage: float, parameters: Mapping[str, float] | None = None
-) -> State:
+def derivatives(state: State | Sequence[float], voltage: float, parameters: Mapping[str, float] | None = None) -> State:
     """The time derivative of the state by the nominal equations (1) to (10): each field in its unit per second.
 
     The equations hold between the stroke's ends and have none of the catalogue's effects. The current's saturation is

@@ -105,7 +105,7 @@ def rates(
     coil_resistance, coil_inductance, saturation_current, valve_damping_ratio, valve_natural_frequency, valve_gain,
     bulk_modulus, supply_pressure, return_pressure, spring_stiffness, actuator_displacement, piston_area,
     piston_area_b, moving_mass, damping_coefficient, internal_leakage, external_leakage, line_volume,
-):
+):  # fmt: skip
     """The time derivative of the state (its first seven arguments, see `state.State`) in the same order."""
     flow_a, flow_b, _, _ = orifices(
         spool_position, valve_gain, pressure_a, pressure_b, supply_pressure, return_pressure
@@ -114,7 +114,7 @@ def rates(
         flow_a, flow_b, internal_leakage_flow(internal_leakage, pressure_a, pressure_b),
         external_leakage_flow(external_leakage, pressure_a), external_leakage_flow(external_leakage, pressure_b),
         velocity, piston_area, piston_area_b,
-    )
+    )  # fmt: skip
     volume_a, volume_b = volumes(position, piston_area, piston_area_b, actuator_displacement, line_volume)
     hydraulic = hydraulic_force(piston_area, piston_area_b, pressure_a, pressure_b)
     return (

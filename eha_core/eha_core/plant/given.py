@@ -100,16 +100,14 @@ def through_line(
     )  # fmt: skip
     gain = rise / orifice_root(line_pressure - pressure)[1]
     line_yields = parameters[BULK_MODULUS] / volume
-    whole, at_once, _ = port_step(
-        tau, gain, line_pressure, pressure, given_in, fall, line_yields, yields, leaving
-    )
+    whole, at_once, _ = port_step(tau, gain, line_pressure, pressure, given_in, fall, line_yields, yields, leaving)
     first, middle, middle_pressure = port_step(
         0.5 * tau, gain, line_pressure, pressure, given_in, fall, line_yields, yields, leaving
     )
     second, in_two, _ = port_step(
         0.5 * tau, gain, middle, middle_pressure, given_in - fall * (middle - line_pressure), fall, line_yields, yields,
         leaving,
-    )
+    )  # fmt: skip
     through = first + second - whole
     line_pressure = max(-parameters[ATMOSPHERIC_PRESSURE], 2.0 * in_two - at_once)
     if extending:

@@ -64,7 +64,7 @@ def supply(supply_pressure, return_pressure, supply_flow, return_flow, memory, s
 def chamber(
     area_b, bulk_a, bulk_change_a, bulk_b, bulk_change_b, cross_flow, cross_slope, leakage_a, leakage_b,
     position, pressure_a, pressure_b, atmospheric_pressure, parameters, active,
-):
+):  # fmt: skip
     """What the continuity equations of the chambers are made of."""
     return area_b, bulk_a, bulk_change_a, bulk_b, bulk_change_b, cross_flow, cross_slope, leakage_a, leakage_b
 
@@ -73,7 +73,7 @@ def chamber(
 def force(
     force, damping, stiffness, dry_friction,
     position, velocity, pressure_a, pressure_b, memory, step_size, parameters, active,
-):
+):  # fmt: skip
     """Forces on the piston beside pressure and spring."""
     return force, damping, stiffness, dry_friction
 

@@ -199,9 +199,7 @@ def piston(block, lanes, active, step_size):
 def piston_friction(block, lanes, step_size):
     """F_f of equation (10) over the step that `piston` has just taken."""
     for lane in range(lanes):
-        driving = driving_force(
-            block[at.HYDRAULIC_FORCE + lane], block[at.SPRING + lane], block[at.POSITION + lane]
-        )
+        driving = driving_force(block[at.HYDRAULIC_FORCE + lane], block[at.SPRING + lane], block[at.POSITION + lane])
         block[at.FRICTION_FORCE + lane] = friction_force(
             step_size, block[at.VELOCITY_BEFORE + lane], block[at.VELOCITY + lane], driving, block[at.DAMPING + lane],
             block[at.STIFFNESS + lane], block[at.OIL_STIFFNESS + lane], block[at.MASS + lane], block[at.SPRING + lane],

@@ -142,9 +142,7 @@ def _jacobian(point: State, drift: State, values: Mapping[str, float]) -> Array:
     """The derivative of the equations in the state, row by row."""
     gain_a, gain_b, fall_a, rise_b = _flow_slopes(point, values)
     area_a, area_b = values["piston_area"], values["piston_area_b"]
-    volume_a, volume_b = volumes(
-        point.position, area_a, area_b, values["actuator_displacement"], values["line_volume"]
-    )
+    volume_a, volume_b = volumes(point.position, area_a, area_b, values["actuator_displacement"], values["line_volume"])
     leak, outside = values["internal_leakage"], values["external_leakage"]
     mass, frequency = values["moving_mass"], values["valve_natural_frequency"]
     square, drag = frequency**2, 2.0 * values["valve_damping_ratio"] * frequency

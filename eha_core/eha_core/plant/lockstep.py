@@ -153,9 +153,7 @@ class LockStep:
         ends = np.empty_like(starting)
         kernel = compiled_windows()
         for stretch in stretches(windows.edges, every, self._instants):
-            kernel.begin_lanes(
-                stretch[0], self.step_size, starting, shown, leaking, slots, self._block, self.lanes
-            )
+            kernel.begin_lanes(stretch[0], self.step_size, starting, shown, leaking, slots, self._block, self.lanes)
             self._act(int(stretch[0, FIRST]))
             if len(inputs) == 1:
                 kernel.advance_lanes(

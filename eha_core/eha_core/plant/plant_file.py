@@ -92,5 +92,3 @@ def composition_of(section: Mapping[str, object]) -> Composition:
     if unknown:
         raise ParameterError(f"plant.{unknown[0]} is unknown; {remedy(unknown[0], PAPER_PARTS)}")
     return compose(**{name: str(value) for name, value in section.items()})
-
-

@@ -45,9 +45,7 @@ def spool_step(position, velocity, target, new_target, propagator):
 @inlined
 def port_flows(opening, gain, conductance, pressure_a, pressure_b, supply_pressure, return_pressure):
     """Equation (3), the laminar flow of the lands beside it, and what the supply gives and the return line takes."""
-    flow_a, flow_b, fall_a, rise_b = orifices(
-        opening, gain, pressure_a, pressure_b, supply_pressure, return_pressure
-    )
+    flow_a, flow_b, fall_a, rise_b = orifices(opening, gain, pressure_a, pressure_b, supply_pressure, return_pressure)
     drawn, returned = (flow_a, flow_b) if opening >= 0.0 else (-flow_b, -flow_a)
     if conductance > 0.0:
         flow_a += conductance * (supply_pressure + return_pressure - 2.0 * pressure_a)

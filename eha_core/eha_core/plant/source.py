@@ -40,16 +40,14 @@ def spool_of(given, position, velocity, target, new_target, propagator, paramete
 @inlined
 def ports(given, opening, gain, conductance, pressure_a, pressure_b, supply_pressure, return_pressure, parameters):
     """Equation (3): see `scheme.port_flows`."""
-    return contribution(
-        opening, gain, conductance, 0.0, 0.0, pressure_a, pressure_b, supply_pressure, return_pressure
-    )
+    return contribution(opening, gain, conductance, 0.0, 0.0, pressure_a, pressure_b, supply_pressure, return_pressure)
 
 
 @inlined
 def fed(
     tau, given, flows, chambers, spool_position, position, velocity, pressure_a, pressure_b, supply_pressure,
     return_pressure, parameters,
-):
+):  # fmt: skip
     """The ports' flows and the supply's pressure over the time tau: a servo valve's supply holds its pressure."""
     return flows, supply_pressure
 

@@ -63,14 +63,14 @@ def chambers_of(bulk, internal_leakage, outside, position, pressure_a, pressure_
         parameters[PISTON_AREA_B], bulk, 0.0, bulk, 0.0,
         internal_leakage_flow(internal_leakage, pressure_a, pressure_b), internal_leakage, outside, outside,
         position, pressure_a, pressure_b, parameters[ATMOSPHERIC_PRESSURE], parameters, active,
-    )
+    )  # fmt: skip
 
 
 @inlined
 def oil_half_step(
     tau, given, spool_position, position, velocity, pressure_a, pressure_b, supply_pressure, return_pressure,
     internal_leakage, parameters, active,
-):
+):  # fmt: skip
     """Equations (4) to (9) over the time tau with the piston moving steadily through `position`.
 
     Returns both pressures and the supply's, the flows out of the supply and into the return line, area B in force, and
@@ -79,25 +79,25 @@ def oil_half_step(
     chambers = chambers_of(
         parameters[BULK_MODULUS], internal_leakage, parameters[EXTERNAL_LEAKAGE], position, pressure_a, pressure_b,
         parameters, active,
-    )
+    )  # fmt: skip
     flows = ports_of(
         given, spool_position, pressure_a, pressure_b, supply_pressure, return_pressure, parameters, active
     )
     flows, supply_pressure = fed(
         tau, given, flows, chambers, spool_position, position, velocity, pressure_a, pressure_b, supply_pressure,
         return_pressure, parameters,
-    )
+    )  # fmt: skip
     pressure_a, pressure_b, stiffness = oil_step(
         tau, flows, chambers, position, velocity, pressure_a, pressure_b, parameters[PISTON_AREA],
         parameters[ACTUATOR_DISPLACEMENT], parameters[LINE_VOLUME], parameters[ATMOSPHERIC_PRESSURE],
-    )
+    )  # fmt: skip
     return pressure_a, pressure_b, supply_pressure, flows[4], flows[5], chambers[0], stiffness
 
 
 @inlined
 def piston_step(
     step_size, position, velocity, pressure_a, pressure_b, area_b, oil_stiffness, damping, memory, parameters, active,
-):
+):  # fmt: skip
     """Equation (10) over one step at a held position. Returns the velocity, the hydraulic force and F_f of (10)."""
     resistance = force(
         0.0, damping, 0.0, 0.0, position, velocity, pressure_a, pressure_b, memory, step_size, parameters, active
@@ -108,17 +108,13 @@ def piston_step(
     new = velocity_step(
         step_size, position, velocity, driving, resistance, oil_stiffness, mass, spring,
         parameters[ACTUATOR_DISPLACEMENT],
-    )
-    friction = friction_force(
-        step_size, velocity, new, driving, damping, resistance[2], oil_stiffness, mass, spring
-    )
+    )  # fmt: skip
+    friction = friction_force(step_size, velocity, new, driving, damping, resistance[2], oil_stiffness, mass, spring)
     return new, hydraulic, friction
 
 
 @inlined
-def valve_step(
-    voltage, given, target, spool_position, spool_velocity, current, propagator, memory, parameters, active
-):
+def valve_step(voltage, given, target, spool_position, spool_velocity, current, propagator, memory, parameters, active):
     """Equations (1) and (2) over one step under a held input: exact but for the current's saturation.
 
     Returns the current, what the spool follows, where the spool is as the step begins, and its state at the end.
@@ -148,7 +144,7 @@ def write_row(row, given, state, hydraulic, friction, leakage, seen, parameters,
     _, _, _, _, _, cross, _, leak_a, leak_b = chambers_of(
         parameters[BULK_MODULUS], leakage, parameters[EXTERNAL_LEAKAGE], state[AT.position], pressure_a, pressure_b,
         parameters, active,
-    )
+    )  # fmt: skip
     row[COLUMN.voltage] = voltage_of(given)
     row[COLUMN.current : COLUMN.flow_a] = state[AT.current :]
     row[COLUMN.flow_a], row[COLUMN.flow_b], row[COLUMN.internal_leakage_flow] = flow_a, flow_b, cross
@@ -186,14 +182,14 @@ def kept(state):
         state[AT.time], state[AT.target], state[AT.supply_pressure], state[AT.return_pressure], state[AT.current],
         state[AT.spool_position], state[AT.spool_velocity], state[AT.position], state[AT.velocity],
         state[AT.pressure_a], state[AT.pressure_b],
-    )
+    )  # fmt: skip
 
 
 @inlined
 def keep(
     state, time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity, position, velocity,
     pressure_a, pressure_b,
-):
+):  # fmt: skip
     """Put everything that `Places` lists in its place."""
     state[AT.time], state[AT.target] = time, target
     state[AT.supply_pressure], state[AT.return_pressure] = supply_pressure, return_pressure
@@ -215,7 +211,7 @@ def advance(state, memory, history, parameters, active, propagator, inputs, step
     (
         time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity, position, velocity,
         pressure_a, pressure_b,
-    ) = kept(state)
+    ) = kept(state)  # fmt: skip
     memory, history = unowned(memory), unowned(history)
     newest, ring = int(history[-1]), history.shape[0] - 1
     stroke, tau = parameters[ACTUATOR_DISPLACEMENT], 0.5 * step_size
@@ -234,21 +230,21 @@ def advance(state, memory, history, parameters, active, propagator, inputs, step
         pressure_a, pressure_b, supply_pressure, _, _, area_b, stiffness = oil_half_step(
             tau, given, 0.75 * before + 0.25 * spool_position, position + 0.5 * tau * moving, moving,
             pressure_a, pressure_b, supply_pressure, return_pressure, leakage, parameters, active,
-        )
+        )  # fmt: skip
         position += tau * moving
         velocity, hydraulic, friction = piston_step(
             step_size, position, velocity, pressure_a, pressure_b, area_b, stiffness, damping,
             memory, parameters, active,
-        )
+        )  # fmt: skip
         pressure_a, pressure_b, supply_pressure, supply_flow, return_flow, _, _ = oil_half_step(
             tau, given, 0.25 * before + 0.75 * spool_position, position + 0.5 * tau * velocity, velocity,
             pressure_a, pressure_b, supply_pressure, return_pressure, leakage, parameters, active,
-        )
+        )  # fmt: skip
         position, velocity = held_at_the_ends(position + tau * velocity, velocity, stroke)
         stated, return_pressure = supply(
             parameters[SUPPLY_PRESSURE], parameters[RETURN_PRESSURE], supply_flow, return_flow,
             memory, step_size, parameters, active,
-        )
+        )  # fmt: skip
         supply_pressure = supply_in_force(supply_pressure, stated, parameters)
         time += step_size
         seen = sensor(position, velocity, pressure_a, pressure_b, memory, step_size, parameters, active)
@@ -256,13 +252,13 @@ def advance(state, memory, history, parameters, active, propagator, inputs, step
             keep(
                 state, time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity,
                 position, velocity, pressure_a, pressure_b,
-            )
+            )  # fmt: skip
             write(rows[(index + 1) // every - 1], given, state, hydraulic, friction, leakage, seen, parameters, active)
     history[-1] = newest
     keep(
         state, time, target, supply_pressure, return_pressure, current, spool_position, spool_velocity,
         position, velocity, pressure_a, pressure_b,
-    )
+    )  # fmt: skip
 
 
 @compiled

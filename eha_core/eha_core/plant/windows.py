@@ -55,7 +55,7 @@ def end(piece, state, ends):
 @compiled
 def advance(
     pieces, starts, shown, slots, ends, state, memory, history, parameters, active, propagator, inputs, step_size, rows,
-):
+):  # fmt: skip
     """`step.advance` through windows; fills `ends`."""
     for number in range(len(pieces)):
         if number:
@@ -63,14 +63,14 @@ def advance(
         step.advance(
             state, memory, history, parameters, active, propagator, of_steps(pieces[number], inputs), step_size,
             pieces[number, EVERY], of_rows(pieces[number], rows),
-        )
+        )  # fmt: skip
         end(pieces[number], state, ends)
 
 
 @compiled
 def advance_driven(
     pieces, starts, shown, slots, ends, state, memory, parameters, active, pressures_a, pressures_b, step_size, rows,
-):
+):  # fmt: skip
     """The same of `step.advance_driven`."""
     for number in range(len(pieces)):
         if number:
@@ -78,7 +78,7 @@ def advance_driven(
         step.advance_driven(
             state, memory, parameters, active, of_steps(pieces[number], pressures_a),
             of_steps(pieces[number], pressures_b), step_size, pieces[number, EVERY], of_rows(pieces[number], rows),
-        )
+        )  # fmt: skip
         end(pieces[number], state, ends)
 
 
@@ -115,7 +115,7 @@ def end_lanes(piece, block, lanes, ends):
 @compiled
 def advance_lanes(
     pieces, starts, shown, leaking, slots, ends, block, lanes, history, active, voltages, step_size, rows,
-):
+):  # fmt: skip
     """`lanes.advance` through windows."""
     for number in range(len(pieces)):
         if number:
@@ -123,14 +123,14 @@ def advance_lanes(
         lock_step.advance(
             block, lanes, history, active, of_steps(pieces[number], voltages), step_size, pieces[number, EVERY],
             of_rows(pieces[number], rows),
-        )
+        )  # fmt: skip
         end_lanes(pieces[number], block, lanes, ends)
 
 
 @compiled
 def advance_lanes_driven(
     pieces, starts, shown, leaking, slots, ends, block, lanes, active, pressures_a, pressures_b, step_size, rows,
-):
+):  # fmt: skip
     """The same of `lanes.advance_driven`."""
     for number in range(len(pieces)):
         if number:
@@ -138,5 +138,5 @@ def advance_lanes_driven(
         lock_step.advance_driven(
             block, lanes, active, of_steps(pieces[number], pressures_a), of_steps(pieces[number], pressures_b),
             step_size, pieces[number, EVERY], of_rows(pieces[number], rows),
-        )
+        )  # fmt: skip
         end_lanes(pieces[number], block, lanes, ends)

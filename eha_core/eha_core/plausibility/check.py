@@ -21,9 +21,7 @@ CLOSER = 1.0
 to be reported alone: a valve's gain may be off by 2, and inches for cm is a factor of 2.5."""
 
 
-def check(
-    recording: Recording, nominal: Mapping[str, float], composition: Composition = PAPER
-) -> Finding | None:
+def check(recording: Recording, nominal: Mapping[str, float], composition: Composition = PAPER) -> Finding | None:
     """The mistake that was made in a recording; None where it is sound, or no single mistake explains it.
 
     A recording is suspected only if it certainly violates a relation that holds for every actuator of the nominal kind,
@@ -78,7 +76,10 @@ def admit(
 
 
 def _cured(
-    found: Mapping[str, Relation], recording: Recording, possible: Iterable[Suspect], nominal: Mapping[str, float],
+    found: Mapping[str, Relation],
+    recording: Recording,
+    possible: Iterable[Suspect],
+    nominal: Mapping[str, float],
     composition: Composition,
 ) -> list[tuple[float, Suspect]]:
     """The mistakes whose correction makes every check pass, each with the corrected recording's total distance."""

@@ -27,8 +27,8 @@ def copies(recording: Recording) -> Suspect | None:
         if channel.unit != other.unit:
             continue
         difference = channel.values - np.interp(channel.time, other.time, other.values)
-        identical = (
-            float(np.ptp(difference)) + abs(float(np.mean(difference))) <= IDENTICAL * float(np.ptp(channel.values))
+        identical = float(np.ptp(difference)) + abs(float(np.mean(difference))) <= IDENTICAL * float(
+            np.ptp(channel.values)
         )
         if identical and np.ptp(channel.values) > 0.0:
             return _recorded_twice(channel.name, other.name)

@@ -65,6 +65,7 @@ def on_grid(recording: Recording) -> Signals | None:
         return values
 
     raw = {name: np.interp(time, channel.time, channel.values) for name, channel in recording.channels.items()}
+
     def speed_of(position: FloatArray) -> FloatArray:
         return np.asarray(np.gradient(smooth(position, 1), step))
 

@@ -131,9 +131,7 @@ def _residuals(diagnosis: Diagnosis, name: str) -> Group:
     )
 
 
-def _residual(
-    time: Array, residual: Array, role: str, unit: str, noise: float, title: str, spans: Intervals
-) -> Panel:
+def _residual(time: Array, residual: Array, role: str, unit: str, noise: float, title: str, spans: Intervals) -> Panel:
     scale = scale_for(unit, float(np.abs(residual).max()))
     x, y = drawn_line(time, residual / scale.factor, spans, 1500)
     band = Band(-2.0 * noise / scale.factor, 2.0 * noise / scale.factor, "noise (2 standard deviations)")

@@ -222,9 +222,7 @@ def _deviation(command: Array, residual: Array) -> float:
     return max(abs(float(np.mean(residual[bands == band]))) for band in np.unique(bands))
 
 
-def _values(
-    curve: Curve, names: list[str], fitted: Regression, largest: float, full: float
-) -> dict[str, Value]:
+def _values(curve: Curve, names: list[str], fitted: Regression, largest: float, full: float) -> dict[str, Value]:
     def value(name: str, quantity: Callable[[dict[str, float]], float], unit: str) -> Value:
         return Value(name, *fitted.of(lambda values: quantity(dict(zip(names, values, strict=True)))), unit)
 

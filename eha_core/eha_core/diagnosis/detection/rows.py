@@ -73,9 +73,7 @@ def _size_of(trial: Trial) -> tuple[str, Parameter]:
     return name, next(row for row in trial.column.effect.parameters if name == f"{trial.column.effect.id}.{row.name}")
 
 
-def leak_flows(
-    at: FittedModel, changes: Sequence[Mapping[str, float]], begin: float = 0.0
-) -> list[float | None]:
+def leak_flows(at: FittedModel, changes: Sequence[Mapping[str, float]], begin: float = 0.0) -> list[float | None]:
     """The root mean square [m^3/s], from `begin` [s] on, of the largest change of LEAKS for each of these changes of
     values; None of those that are not a leak's."""
     shooting = at.pool.problem.shooting

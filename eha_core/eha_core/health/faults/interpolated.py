@@ -37,7 +37,7 @@ def find(signal: Signal) -> Found | None:
         here[begin:end] = True
         here[corners[first : last + 1]] = False
         if interval == round(interval):
-            here[begin:end:round(interval)] = False  # a sample, too, where the corner is too flat to be seen
+            here[begin : end : round(interval)] = False  # a sample, too, where the corner is too flat to be seen
         rate = 1.0 / (interval * signal.period)
         faults.append(
             Fault(

@@ -107,9 +107,7 @@ def correlations(diagnosis: Diagnosis) -> Picture | None:
         "Correlation of the fitted parameters' errors. Near 1 or -1, this recording identifies only a combination of"
         " the two, and either may be wrong with the other."
     )
-    return Picture(
-        "5-model-correlation", (Group((panel,)),), title="What is identified only together", caption=caption
-    )
+    return Picture("5-model-correlation", (Group((panel,)),), title="What is identified only together", caption=caption)
 
 
 def _strong_correlations(diagnosis: Diagnosis) -> tuple[str, ...]:
