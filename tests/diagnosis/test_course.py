@@ -150,4 +150,4 @@ def test_friction_is_released_where_what_is_left_may_be_its_own():
         hypothesis = rig.set_of("constant_load") if load else NOTHING
         values = {**nominal_values(), **held.values, "constant_load.force": load}
         rig.pool.found = {hypothesis: fit(rig.pool.problem, values, (), iterations=12)}
-        assert is_due_to(Friction(True, held, (held,)), rig.pool) == due
+        assert is_due_to(Friction(False, held, (held,)), rig.pool) == due

@@ -20,7 +20,7 @@ def asked(*recordings, effects=EVERY):
 
 def test_clear_friction_is_held_and_every_form_begins_as_large():
     found = asked(recorded({"coulomb_friction.force": 250.0, "valve_deadband.half_width": 1e-4}, duration=6.0))
-    assert found.known and found.held == found.forms[0]
+    assert not found.excluded and found.held == found.forms[0]
     begun = {start.effect.id: start.values for start in found.forms}
     assert begun.keys() == FORMS
     assert begun["coulomb_friction"]["coulomb_friction.force"] == pytest.approx(250.0, rel=0.03)
@@ -33,16 +33,22 @@ def test_clear_friction_is_held_and_every_form_begins_as_large():
         assert all(rows[name].lower <= value <= rows[name].upper for name, value in start.values.items())
 
 
-def test_where_there_is_none_it_is_known_and_nothing_is_held():
+def test_where_there_is_none_it_is_excluded_and_nothing_is_held():
     found = asked(recorded({"valve_deadband.half_width": 1e-4}, duration=6.0))
-    assert found.known and found.held is None and found.forms == ()
+    assert found.excluded and found.held is None and found.forms == ()
 
 
-def test_without_pressures_it_is_not_known_unless_another_recording_tells_it():
+def test_what_rubs_in_a_part_of_the_recording_is_not_excluded():
+    planted = {"coulomb_friction.force": 250.0, "coulomb_friction.acts_from": 2.5, "coulomb_friction.acts_until": 4.0}
+    found = asked(recorded(planted, duration=8.0))
+    assert not found.excluded and found.held is None
+
+
+def test_without_pressures_it_is_not_excluded_and_not_held_unless_another_recording_tells_it():
     planted = {"coulomb_friction.force": 250.0}
     blind = recorded(planted, duration=4.0, channels=("voltage_command", "position"))
     found = asked(blind)
-    assert not found.known and found.held is None
+    assert not found.excluded and found.held is None
     assert asked(blind, recorded(planted, duration=6.0, seed=2)).held is not None
 
 

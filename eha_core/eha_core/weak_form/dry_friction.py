@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from math import exp, log
+from math import exp, inf, log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,20 +80,23 @@ class _Form:
         return {} if not self.effect else None
 
 
-def dry_friction(observation: Observation, values: Mapping[str, float]) -> tuple[DryFriction, ...]:
-    """The forms of dry friction compatible with the force balance of a recording, the most probable first; one of them
-    is no friction. Empty without position or a pressure, or where there are too few test functions between reversals.
+def dry_friction(
+    observation: Observation, values: Mapping[str, float], within: tuple[float, float] = (0.0, inf)
+) -> tuple[DryFriction, ...]:
+    """The forms of dry friction compatible with the force balance of a recording between two times [s], the most
+    probable first; one of them is no friction. Empty without position or a pressure, or where there are too few test
+    functions between reversals.
     """
     measured = [observation.channel(name) for name in ("position", "pressure_a", "pressure_b")]
     if any(channel is None for channel in measured):
         return ()
     channels = [channel for channel in measured if channel is not None]
-    usual, shorter = (_over_a_span(span, observation.duration, channels, values) for span in SPANS)
+    usual, shorter = (_over_a_span(span, observation.duration, channels, values, within) for span in SPANS)
     return shorter[0] if shorter[1] < LESS * usual[1] else usual[0]
 
 
 def _over_a_span(
-    span: float, duration: float, channels: Sequence[Measured], values: Mapping[str, float]
+    span: float, duration: float, channels: Sequence[Measured], values: Mapping[str, float], within: tuple[float, float]
 ) -> tuple[tuple[DryFriction, ...], float]:
     """The forms compatible with the force balance, with speeds smoothed over a span [s], and the residual variance of
     the most probable one [N^2], including the cost of its terms; empty and infinity with too few test functions."""
@@ -101,9 +104,11 @@ def _over_a_span(
     grid = make_grid(duration, spacing, channels, HALF_WIDTH)
     x, a, b = (np.interp(grid.time, channel.time, channel.values) for channel in channels)
     velocity = np.interp(grid.time, channels[0].time, smooth(channels[0], 1, span))
+    centres = grid.centres()
     between = _between_reversals(grid, velocity, channels[0].noise, spacing, span)
+    between &= (centres >= within[0]) & (centres < within[1])
     if np.count_nonzero(between) < FEWEST:
-        return (), np.inf
+        return (), inf
     area = values["piston_area"]
     left = grid.average(area * a - values["piston_area_b"] * b)[between]
     own = [
@@ -124,9 +129,6 @@ def _over_a_span(
         criterion, found = _regressed(columns, left, len(own), len(extra), form, area)
         if found is not None and (form.effect not in best or criterion < best[form.effect][0]):
             best[form.effect] = criterion, DryFriction(form.effect, found, 0.0)
-    if best["coulomb_friction"][0] > best[""][0] - CLEAR if "coulomb_friction" in best else True:
-        # friction proportional to the load is also a term of the balance's left side: alone it is no evidence
-        best.pop("load_friction", None)
     ranked = sorted(best.values(), key=lambda item: item[0])
     least = ranked[0][0]
     forms = tuple(DryFriction(found.form, found.values, criterion - least) for criterion, found in ranked)

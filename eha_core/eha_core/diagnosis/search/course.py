@@ -146,15 +146,12 @@ def begun(problem: Problem, nominal: Mapping[str, float], friction: Friction, ma
 
 
 def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, laws: bool) -> Pool:
-    """Sets over the windows of a pool: the friction of the force balance alone, then held while what is large beside it
-    is found, then free; then, where asked, laws in no catalogue."""
+    """Sets over the windows of a pool: without friction where the force balance excludes it; where it shows some, that
+    alone, then held while what is large beside it is found, then free; and where asked, laws in no catalogue."""
     base = NOTHING
     if friction.held is None:
-        others = [column for column in material.columns if not (friction.known and column.effect.kind)]
-        _search(_on_the_way(pool, others, material), begin)
-        if friction.known and not laws and not at_the_noise(pool):
-            # the whole record's balance hides what acts in a part; beside laws friction is offered anyway
-            _search(_on_the_way(pool, material.columns, material), begin)
+        columns = [column for column in material.columns if not (friction.excluded and column.effect.kind)]
+        _search(_on_the_way(pool, columns, material), begin)
     else:
         base = NOTHING.with_effects([friction.held.effect])
         pool = _around_friction(pool, begin, friction, material)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from math import inf
 
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.hypothesis import neutral
@@ -16,6 +18,13 @@ KIND = "dry friction"
 
 KNOWN, MOST_OFF = 0.1, 0.5
 """Share of a value of the force balance by which it is moved to see what it does, and by which it may be off."""
+
+MENTIONED = 2.0
+"""Difference of the information criterion up to which evidence is not worth more than a bare mention (R. E. Kass and A.
+E. Raftery, "Bayes factors", Journal of the American Statistical Association 90, 1995)."""
+
+PARTS = 3
+"""Parts of a recording that are asked for friction by themselves, if the whole shows none (assumed)."""
 
 ABOVE = 1.2
 """Share of the friction in motion that a law begins with at rest where the balance shows none higher (assumed)."""
@@ -34,12 +43,13 @@ class Friction:
     """What the force balance says of dry friction.
 
     Attributes:
-        known: whether it could be asked. Without both pressures, or hardly any motion between reversals, it could not.
+        excluded: whether there is none in it. Without both pressures, or hardly any motion between reversals, it cannot
+            say that.
         held: the form that it shows clearly; None for none.
         forms: every form as it would begin, the one that is held first.
     """
 
-    known: bool
+    excluded: bool
     held: FrictionStart | None
     forms: tuple[FrictionStart, ...]
 
@@ -53,10 +63,10 @@ def friction_of(
         found = [form for form in dry_friction(observation, values) if not form.form or form.form in offered]
         if not found:
             continue
-        none = next((form.clear for form in found if not form.form), 2.0 * CLEAR)
-        frictions = [form for form in found if form.form]
-        if not frictions or none < CLEAR:
-            return Friction(True, None, ())
+        frictions = _of_evidence(found)
+        if not frictions or _over_none(found, frictions) < CLEAR:
+            excluded = _over_none(found, found) < -MENTIONED and not _in_a_part(observation, values)
+            return Friction(excluded, None, ())
         starts = [FrictionStart(offered[form.form], _begun(offered[form.form], form, scales)) for form in frictions]
         sliding = next((form for form in frictions if form.form == "stribeck_friction"), frictions[0])
         known = {form.form for form in frictions}
@@ -65,8 +75,29 @@ def friction_of(
             for name, effect in offered.items()
             if name not in known
         ]
-        return Friction(True, starts[0], tuple(starts))
+        return Friction(False, starts[0], tuple(starts))
     return Friction(False, None, ())
+
+
+def _over_none(found: Sequence[DryFriction], frictions: Sequence[DryFriction]) -> float:
+    """By how much the criterion of the best of some forms is below that of no friction."""
+    none = next(form.clear for form in found if not form.form)
+    return none - min((form.clear for form in frictions if form.form), default=inf)
+
+
+def _of_evidence(found: Sequence[DryFriction]) -> list[DryFriction]:
+    """The forms that may be evidence of friction: one in proportion to the load is also a term of the balance's left
+    side, and by itself it is none."""
+    steady = [form for form in found if form.form == "coulomb_friction"]
+    alone = _over_none(found, steady) < CLEAR
+    return [form for form in found if form.form and not (alone and form.form == "load_friction")]
+
+
+def _in_a_part(observation: Observation, values: Mapping[str, float]) -> bool:
+    """Whether a part of the recording shows friction clearly: the balance of the whole hides what acts for a while."""
+    edges = [observation.duration * k / PARTS for k in range(PARTS + 1)]
+    parts = [dry_friction(observation, values, within) for within in pairwise(edges)]
+    return any(found and _over_none(found, _of_evidence(found)) >= CLEAR for found in parts)
 
 
 def friction_columns(friction: Friction) -> tuple[Column, ...]:
