@@ -71,7 +71,7 @@ def calibrate(
     free = free_nominal_parameters(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
     given = fit(whole(shooting), nominal, (), None if begun is None else begun.states, iterations=5)
     if begun is None:
-        # states that are far off make derivatives useless, and so do states that are bent to a model that is
+        # derivatives lead nowhere about states that are far off, or that are bent to a model which is
         states = given.states if given.data < FAR_FROM_NOISE * given.count else None
         first = fit_in_stages(whole(shooting), nominal, free, states)
     else:
