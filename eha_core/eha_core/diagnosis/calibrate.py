@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import ENOUGH, FAR_FROM_NOISE, NEAR_NOISE, NOTICEABLE, RELEVANT
+from eha_core.diagnosis.criteria import ENOUGH, NEAR_NOISE, NOTICEABLE, RELEVANT
 from eha_core.health.noise import residual_noise
 from eha_core.identification.colour import colour_of
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
@@ -69,17 +69,14 @@ def calibrate(
     ]
     farthest = max(float(np.max(np.abs(values))) for values in positions)
     free = free_nominal_parameters(nominal, shooting.drive, farthest, model.unknown, shooting.composition)
-    given = fit(whole(shooting), nominal, (), None if begun is None else begun.states, iterations=5)
     if begun is None:
-        # derivatives lead nowhere about states that are far off, or that are bent to a model which is
-        states = given.states if given.data < FAR_FROM_NOISE * given.count else None
-        first = fit_in_stages(whole(shooting), nominal, free, states)
+        first = fit_in_stages(whole(shooting), nominal, free)
     else:
         first = fit(whole(shooting), begun.values, free, begun.states, iterations=8)
     shooting = with_noise(shooting, corrected_noise(shooting, first, filtered_channels(observations)))
     problem = whole(shooting)
     fitted = fit(problem, first.values, free, first.states, iterations=8)
-    at_nominal_values = fit(problem, nominal, (), given.states, iterations=5)
+    at_nominal_values = fit(problem, nominal, (), fitted.states, iterations=5)
     rate = min(sum(len(channel.values) for channel in seen.measured) / seen.duration for seen in observations)
     lengths = [max(length, SAMPLES_A_WINDOW / rate) for length in SHORT]
     shorter = tuple(cut_together(observations, nominal, STEPS[0], length, model.per_recording) for length in lengths)
