@@ -42,7 +42,7 @@ MOST_TERMS = 3
 CLEAR = 10.0
 """Reduction of the information criterion required of dry friction: very strong evidence by the usual scale."""
 
-STRIBECK_SPEEDS = np.geomspace(0.02, 1.5, 20)
+STRIBECK_SPEEDS: tuple[float, ...] = tuple(np.geomspace(0.02, 1.5, 20).tolist())
 """Stribeck velocities that are tried, in standard deviations of the speed."""
 
 MOST_OF_LOAD = 0.5
@@ -81,22 +81,31 @@ class _Form:
 
 
 def dry_friction(
-    observation: Observation, values: Mapping[str, float], within: tuple[float, float] = (0.0, inf)
+    observation: Observation,
+    values: Mapping[str, float],
+    within: tuple[float, float] = (0.0, inf),
+    speeds: Sequence[float] = STRIBECK_SPEEDS,
 ) -> tuple[DryFriction, ...]:
     """The forms of dry friction compatible with the force balance of a recording between two times [s], the most
     probable first; one of them is no friction. Empty without position or a pressure, or where there are too few test
-    functions between reversals.
+    functions between reversals. `speeds`: the Stribeck velocities to try, in standard deviations of the speed; without
+    any, that form is not tried.
     """
     measured = [observation.channel(name) for name in ("position", "pressure_a", "pressure_b")]
     if any(channel is None for channel in measured):
         return ()
     channels = [channel for channel in measured if channel is not None]
-    usual, shorter = (_over_a_span(span, observation.duration, channels, values, within) for span in SPANS)
+    usual, shorter = (_over_a_span(span, observation.duration, channels, values, within, speeds) for span in SPANS)
     return shorter[0] if shorter[1] < LESS * usual[1] else usual[0]
 
 
 def _over_a_span(
-    span: float, duration: float, channels: Sequence[Measured], values: Mapping[str, float], within: tuple[float, float]
+    span: float,
+    duration: float,
+    channels: Sequence[Measured],
+    values: Mapping[str, float],
+    within: tuple[float, float],
+    speeds: Sequence[float],
 ) -> tuple[tuple[DryFriction, ...], float]:
     """The forms compatible with the force balance, with speeds smoothed over a span [s], and the residual variance of
     the most probable one [N^2], including the cost of its terms; empty and infinity with too few test functions."""
@@ -124,7 +133,7 @@ def _over_a_span(
     ]  # fmt: skip
     fixed = np.column_stack([*own, *extra])[between]
     best: dict[str, tuple[float, DryFriction]] = {}
-    for form in _forms(grid, velocity, a - b):
+    for form in _forms(grid, velocity, a - b, speeds):
         columns = np.column_stack([fixed, *(column[between, None] for column in form.columns)])
         criterion, found = _regressed(columns, left, len(own), len(extra), form, area)
         if found is not None and (form.effect not in best or criterion < best[form.effect][0]):
@@ -145,14 +154,14 @@ def _between_reversals(grid: Grid, velocity: Array, noise: float, spacing: float
     return np.asarray(moving[grid.gap_free])
 
 
-def _forms(grid: Grid, velocity: Array, difference: Array) -> Iterator[_Form]:
+def _forms(grid: Grid, velocity: Array, difference: Array, speeds: Sequence[float]) -> Iterator[_Form]:
     """No friction, and each form with the regression columns of its values."""
     sign = np.sign(velocity)
     steady = grid.average(sign)
     yield _Form("", ())
     yield _Form("coulomb_friction", (steady,))
     yield _Form("load_friction", (grid.average(np.abs(difference) * sign),))
-    for share in STRIBECK_SPEEDS:
+    for share in speeds:
         speed = float(share * np.std(velocity))
         yield _Form("stribeck_friction", (steady, grid.average(sign * np.exp(-((velocity / speed) ** 2)))), speed)
 

@@ -96,7 +96,7 @@ def _of_evidence(found: Sequence[DryFriction]) -> list[DryFriction]:
 def _in_a_part(observation: Observation, values: Mapping[str, float]) -> bool:
     """Whether a part of the recording shows friction clearly: the balance of the whole hides what acts for a while."""
     edges = [observation.duration * k / PARTS for k in range(PARTS + 1)]
-    parts = [dry_friction(observation, values, within) for within in pairwise(edges)]
+    parts = [dry_friction(observation, values, within, speeds=()) for within in pairwise(edges)]
     return any(found and _over_none(found, _of_evidence(found)) >= CLEAR for found in parts)
 
 
