@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration, at_step, filtered_channels, is_at_noise, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, FURTHER, NEAR_NOISE, OF_FRICTION, UNFITTED
+from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, FURTHER, OF_FRICTION, UNFITTED
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.search.best_sets import objective_without, one_more
 from eha_core.diagnosis.search.columns import Column, columns_of, law_columns
@@ -166,10 +166,8 @@ def _around_friction(pool: Pool, begin: Fit, friction: Friction, material: Mater
     other forms where more than noise is left."""
     held, *others = friction.forms
     at, alone = pool.found[NOTHING], pool.fresh()
-    alone.try_set(
-        "friction free", NOTHING.with_effects([held.effect]), at.values, at.states, ALONE, in_a_row=2,
-        give_up_above=NEAR_NOISE * pool.problem.count(),
-    )  # fmt: skip
+    # never given up: sets with that friction begin where it ends, at the noise or not
+    alone.try_set("friction free", NOTHING.with_effects([held.effect]), at.values, at.states, ALONE, in_a_row=2)
     if at_the_noise(alone):
         return alone
     columns = [column for column in material.columns if not column.effect.kind]
