@@ -146,8 +146,9 @@ def fit(
         linear = linearise(problem, values, free, q, states, steps, (rows, ends))
         normal, gradient = normal_equations(problem, free, q, states, linear)
         found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), normal, gradient, damping)
-        if found is None and problem.slope_step > shooting.step_size:
-            problem = exact(problem)
+        little_gained = found is None or objective - found[0].objective < SETTLED
+        if little_gained and problem.slope_step > shooting.step_size and _promised(normal, gradient) > HOPE * SETTLED:
+            problem = exact(problem)  # what derivatives promise and no step gives, they do not know
             continue
         if found is None:
             ending = Ending.NO_DESCENT
@@ -168,6 +169,14 @@ def fit(
             break
     ending = ending if np.isfinite(objective) else Ending.DIVERGED
     return _finish(problem, values, free, q, states, rows, objective, normal, ending, done)
+
+
+def _promised(normal: NormalMatrix, gradient: Array) -> float:
+    """What the full step is predicted to gain, bounds aside."""
+    try:
+        return float(gradient @ normal.eliminate(1e-10).solve(gradient))
+    except (LinAlgError, ValueError):
+        return np.inf
 
 
 def _unknowing(parameters: int, windows: int) -> NormalMatrix:
