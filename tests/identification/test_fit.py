@@ -58,6 +58,12 @@ def test_a_fit_goes_on_where_bounds_cut_its_moves_short():
     assert calibration.fitted.objective < 0.1 * calibration.nominal.objective
 
 
+def test_a_fit_does_not_end_where_only_its_derivatives_are_wrong():
+    """Coil, spool and oil move a little there: with coarse derivatives no step led lower, at twice the bulk modulus."""
+    calibration = calibrate([observe(recorded({}, duration=4.0))], NominalModel(nominal_values()), 2e-4)
+    assert calibration.fitted.values["bulk_modulus"] < 1.5 * nominal_values()["bulk_modulus"]
+
+
 def test_dampings_in_lock_step_lead_where_one_after_the_other_does(monkeypatch):
     """Of those that lead lower the least is taken; some iterations of this fit need more than one."""
     shooting = cut(observe(recorded({"valve_deadband.half_width": 3e-4}, duration=4.0)), nominal_values())
