@@ -169,9 +169,9 @@ OF_SIZE, TRIED, TRIED_AT_THE_NOISE = 4, 16, 4
 The true set of a development rig was fifth of its size by prediction, and at the noise after two iterations."""
 
 AT_FIRST, FURTHER, TO_THE_END, CONVERGED = 2, 8, 12, 20
-"""Iterations of a fit that shows whether a set is worth more; of one that goes on from nearly the same set, or over
-other windows; of a leader's; and of what is compared at the end. A fit ends before where an iteration gains too
-little."""
+"""Iterations of a glance at a rival's own parameters; of a fit that goes on from nearly the same set, or over other
+windows; of a proposal's and a leader's; and of what is compared at the end. A fit ends before where an iteration gains
+too little, and a proposal's where it cannot lead any more."""
 
 FITTED, ADDED = 6, 2
 """Proposals that are fitted, those that begin lowest; sets near the best that are compared with it; and of proposals

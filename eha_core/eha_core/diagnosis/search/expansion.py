@@ -10,7 +10,6 @@ import numpy as np
 from eha_core.diagnosis.calibrate import is_at_noise
 from eha_core.diagnosis.criteria import (
     ADDED,
-    AT_FIRST,
     EXPANSIONS_LATER,
     FITTED,
     IDLE,
@@ -108,7 +107,11 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     for start in _starts(pool, base, model):
         if near is not None and not _contends(start, near, pool.found[near]):
             continue  # what is larger is proposed from there, if it is needed
-        result = pool.try_set(step, start.hypothesis, start.values, start.states, AT_FIRST)
+        # a fit goes on while it may come below the best; of instants, which move in small steps, its gain says little
+        best = np.inf if start.hypothesis.limited else pool.found[leader(pool)].objective
+        result = pool.try_set(
+            step, start.hypothesis, start.values, start.states, TO_THE_END, give_up_above=best
+        )  # fmt: skip
         tried += 1
         if is_at_noise(result):  # a fit that has not converged would not be white
             pool.go_on(step, start.hypothesis, TO_THE_END, 2)
