@@ -19,7 +19,7 @@ MUTANTS_SEED := 1
 MUTANTS_MINUTES := 20
 # What the diagnosis scored in the small exam when its answers last changed: raise it with the score.
 EXAM_MARK := 0.9
-TYPED := eha_core/eha_core eha_sim_node/eha_sim_node rclpy_dds/rclpy_dds tools
+TYPED := eha_core/eha_core eha_exam/eha_exam eha_sim_node/eha_sim_node rclpy_dds/rclpy_dds tools
 
 .DEFAULT_GOAL := help
 .PHONY: help env test lint demo demo-realtime controllers contract bench docs wheels exam hostile mutants

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from eha_core.exam.cases import draw_case
-from eha_core.exam.concealed import draw_effect
-from eha_core.exam.files import write_case
-from eha_core.exam.measuring import measure, simulate_case
+from eha_exam.cases import draw_case
+from eha_exam.concealed import draw_effect
+from eha_exam.files import write_case
+from eha_exam.measuring import measure, simulate_case
 
 SEED = 31
 CONCEALED = ("coulomb_friction", "valve_deadband", "supply_pressure_droop", "constant_load", "external_leakage")

@@ -30,7 +30,7 @@ def _row(name: str, missing: str) -> Row:
     with tempfile.TemporaryDirectory() as folder:
         out, answer = Path(folder) / "report", Path(folder) / "answer.json"
         ours = timed([sys.executable, "-m", "eha_core.cli", "diagnose", path, "--out", str(out)])
-        peer = timed([sys.executable, "-m", "eha_core.exam.peers", PEER, path, str(answer)])
+        peer = timed([sys.executable, "-m", "eha_exam.peers", PEER, path, str(answer)])
         found, theirs = _named(out / "diagnosis.json"), _named(answer)
     ahead = "the peer is ahead, " if peer.cpu < ours.cpu else ""
     factor = max(peer.cpu, ours.cpu) / min(peer.cpu, ours.cpu)

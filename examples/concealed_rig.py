@@ -23,7 +23,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
-from eha_core.exam.truth import SteppedTruth
+from eha_exam.truth import SteppedTruth
 from eha_interfaces.srv import Step
 
 NAME = "eha_rig"

@@ -28,13 +28,13 @@ from eha_core.diagnosis.detection.responses import FittedModel
 from eha_core.diagnosis.detection.sizes import Trial, smallest, trials
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.diagnosis.hypothesis import neutral
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.excitation import draw_reference, feedforward
-from eha_core.exam.plants import Rig
 from eha_core.identification.fit import exact, fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import Problem
 from eha_core.nominal import nominal_of
+from eha_exam.drawing import draw_case
+from eha_exam.excitation import draw_reference, feedforward
+from eha_exam.plants import Rig
 from tools.trial_rows import try_rigs
 
 PROBABILITIES = (0.02, 0.98)

@@ -25,16 +25,16 @@ from typing import Any
 
 from eha_core.api import known_model
 from eha_core.diagnosis.pipeline import diagnose_together
-from eha_core.exam import cases
-from eha_core.exam.case import Case
-from eha_core.exam.drawing import LOAD, draw_case
-from eha_core.exam.files import answer_text, further_name, read_answer, recording_name, write_case, write_per_recording
-from eha_core.exam.measuring import measure, simulate_case
-from eha_core.exam.scoring import Answer, mark
-from eha_core.exam.second import with_other_loads
 from eha_core.recording import read_recording
 from eha_core.report.document import document
 from eha_core.workers import Workers
+from eha_exam import cases
+from eha_exam.case import Case
+from eha_exam.drawing import LOAD, draw_case
+from eha_exam.files import answer_text, further_name, read_answer, recording_name, write_case, write_per_recording
+from eha_exam.measuring import measure, simulate_case
+from eha_exam.scoring import Answer, mark
+from eha_exam.second import with_other_loads
 
 LIMIT = 240.0
 """CPU seconds after which an answer counts as none."""

@@ -20,12 +20,12 @@ from eha_core.detectability.design import SHARES, kinds
 from eha_core.detectability.margins import Margins
 from eha_core.diagnosis.experiment.limits import Limits, limits_of
 from eha_core.errors import EhaError
-from eha_core.exam.case import POSITION_NOISE, PRESSURE_NOISE, Array, Case
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.plants import Rig
-from eha_core.exam.truth.simulate import COLUMNS, SteppedTruth
 from eha_core.investigation import Watch
 from eha_core.nominal import nominal_of
+from eha_exam.case import POSITION_NOISE, PRESSURE_NOISE, Array, Case
+from eha_exam.drawing import draw_case
+from eha_exam.plants import Rig
+from eha_exam.truth.simulate import COLUMNS, SteppedTruth
 from tools.trial_rows import try_rigs
 
 TIERS = ("null_parameters", "single", "pair", "three", "rig")

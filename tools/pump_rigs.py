@@ -16,11 +16,11 @@ from time import monotonic
 import numpy as np
 
 import eha_core as eha
-from eha_core.exam.truth.record import Effect
-from eha_core.exam.truth.simulate import COLUMNS, SteppedTruth
 from eha_core.identification.numbers import Array
 from eha_core.nominal import nominal_of
 from eha_core.plant import compose
+from eha_exam.truth.record import Effect
+from eha_exam.truth.simulate import COLUMNS, SteppedTruth
 
 RATE, SECONDS = 500.0, 16.0
 VOLTS, AMPERES = 10.0, 0.02

@@ -23,15 +23,15 @@ from eha_core.control.interface import Controller, Measurement, Target
 from eha_core.diagnosis.pipeline import diagnose_together
 from eha_core.error_budget import Budget, Rig, Task, error_budget, rig_from_document
 from eha_core.errors import EhaError
-from eha_core.exam.case import Case
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.files import recording_name, write_case
-from eha_core.exam.measuring import measure, simulate_case
-from eha_core.exam.truth.record import Effect
-from eha_core.exam.truth.simulate import COLUMNS, SteppedTruth
 from eha_core.recording import read_recording
 from eha_core.report.document import document
 from eha_core.signals import make_signal
+from eha_exam.case import Case
+from eha_exam.drawing import draw_case
+from eha_exam.files import recording_name, write_case
+from eha_exam.measuring import measure, simulate_case
+from eha_exam.truth.record import Effect
+from eha_exam.truth.simulate import COLUMNS, SteppedTruth
 from tools.trial_rows import try_rigs
 
 POSITION = COLUMNS.index("position")

@@ -17,11 +17,11 @@ import numpy as np
 from eha_core.detectability.design import kinds
 from eha_core.detectability.margins import Margins
 from eha_core.diagnosis.experiment.limits import limits_of
-from eha_core.exam.drawing import draw_case
 from eha_core.nominal import nominal_of
 from eha_core.recording.simulated import Experiment, Simulated, simulate
 from eha_core.twin import Comparison, Settings, Twin
 from eha_core.twin.samples import nanoseconds
+from eha_exam.drawing import draw_case
 from tools.trial_rows import try_rigs
 
 PIECES, SECONDS = 18, 20.0

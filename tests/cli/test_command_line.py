@@ -12,7 +12,7 @@ import pytest
 
 import eha_core
 from eha_core.cli import main, verbs
-from eha_core.exam.tiers import MEANINGS
+from eha_exam.tiers import MEANINGS
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from eha_core.diagnosis.experiment.limits import Limits
-from eha_core.exam.drawing import draw_case
+from eha_exam.drawing import draw_case
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tools import limit_trials

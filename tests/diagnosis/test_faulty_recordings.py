@@ -13,13 +13,13 @@ import pytest
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.errors import RecordingError
-from eha_core.exam.drawing import draw_case
 from eha_core.identification.observation import observe
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.plausibility import admit
 from eha_core.recording import Recording, read_recording
 from eha_core.report.document import document
+from eha_exam.drawing import draw_case
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))

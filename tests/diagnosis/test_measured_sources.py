@@ -12,11 +12,11 @@ import pytest
 
 import eha_core as eha
 from eha_core.errors import RecordingError
-from eha_core.exam.truth import simulate_truth
 from eha_core.identification.observation import observe
 from eha_core.identification.segments import cut
 from eha_core.nominal import nominal_of
 from eha_core.plant import Plant, compose, dump_plant, load_plant
+from eha_exam.truth import simulate_truth
 
 ROD = {"piston_area": 1.2e-3, "piston_area_b": 7.8e-4, "moving_mass": 30.0, "internal_leakage": 2e-12}
 FRICTION = 150.0

@@ -11,12 +11,12 @@ from made import recorded
 
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.result import Diagnosis
-from eha_core.exam.case import Case
-from eha_core.exam.concealed import draw_effect
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.measuring import measure, simulate_case
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
+from eha_exam.case import Case
+from eha_exam.concealed import draw_effect
+from eha_exam.drawing import draw_case
+from eha_exam.measuring import measure, simulate_case
 
 UNITS = {"voltage_command": "V", "position": "m", "pressure_a": "Pa", "pressure_b": "Pa"}
 

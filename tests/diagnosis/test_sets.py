@@ -7,10 +7,10 @@ import pytest
 
 from eha_core.diagnosis import diagnose
 from eha_core.diagnosis.verdict import coherence
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.measuring import measure, simulate_case
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
+from eha_exam.drawing import draw_case
+from eha_exam.measuring import measure, simulate_case
 
 
 def diagnosed(number, seed, names, noise):

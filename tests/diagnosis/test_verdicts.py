@@ -9,12 +9,12 @@ from made import LAWS, recorded
 
 from eha_core.cli import main
 from eha_core.diagnosis import diagnose
-from eha_core.exam.cases import draw_case
-from eha_core.exam.measuring import measure, simulate_case
 from eha_core.identification.observation import observe, with_sufficient_stroke
 from eha_core.nominal import NominalModel
 from eha_core.parameters import load_parameters, nominal_values
 from eha_core.recording import Channel, Recording
+from eha_exam.cases import draw_case
+from eha_exam.measuring import measure, simulate_case
 
 
 def diagnosed(parameters, **how):

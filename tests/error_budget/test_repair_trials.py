@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from eha_core.error_budget import rig_from_changes
-from eha_core.exam.drawing import draw_case
 from eha_core.nominal import nominal_of
+from eha_exam.drawing import draw_case
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tools import repair_trials

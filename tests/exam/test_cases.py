@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from eha_core.errors import EhaError
-from eha_core.exam.case import Case
-from eha_core.exam.cases import make_case
-from eha_core.exam.concealed import DRAWS, SITES, draw_effect, scaled
-from eha_core.exam.drawing import WORN_RIG, draw_case
-from eha_core.exam.excitation import SHAPES, draw_reference
-from eha_core.exam.measuring import measure, simulate_case
-from eha_core.exam.oracle import consult, seen_beside_the_others
-from eha_core.exam.plants import FAMILIES, UNCERTAIN, draw_rig
-from eha_core.exam.truth import effect_parameters
+from eha_exam.case import Case
+from eha_exam.cases import make_case
+from eha_exam.concealed import DRAWS, SITES, draw_effect, scaled
+from eha_exam.drawing import WORN_RIG, draw_case
+from eha_exam.excitation import SHAPES, draw_reference
+from eha_exam.measuring import measure, simulate_case
+from eha_exam.oracle import consult, seen_beside_the_others
+from eha_exam.plants import FAMILIES, UNCERTAIN, draw_rig
+from eha_exam.truth import effect_parameters
 
 
 def short(tier: str, number: int, **changes: object) -> Case:

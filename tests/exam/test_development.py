@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.files import read_answer, recording_name
-from eha_core.exam.measuring import measure, simulate_case
 from eha_core.recording import read_recording
+from eha_exam.drawing import draw_case
+from eha_exam.files import read_answer, recording_name
+from eha_exam.measuring import measure, simulate_case
 from tools.development import answer, brought, in_turn, make_development_case, paired
 
 

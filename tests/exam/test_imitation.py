@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.imitation import SHIFTS, Doubted, as_soft, left_by_the_best, length
-from eha_core.exam.measuring import simulate_case
-from eha_core.exam.oracle import NAMES, consult, seen_beside_the_others
+from eha_exam.drawing import draw_case
+from eha_exam.imitation import SHIFTS, Doubted, as_soft, left_by_the_best, length
+from eha_exam.measuring import simulate_case
+from eha_exam.oracle import NAMES, consult, seen_beside_the_others
 
 READS_SHORT = ("position_sensor_scale", {"ratio": -0.09})
 FIRST = 500

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from eha_core.exam.page import as_html
-from eha_core.exam.scoring import Mark, Proportion
-from eha_core.exam.shares import Target, summarise
+from eha_exam.page import as_html
+from eha_exam.scoring import Mark, Proportion
+from eha_exam.shares import Target, summarise
 
 
 def marked(number: int, named: str, noise: float = 1.0, tier: str = "single") -> Mark:

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eha_core.exam.case import Case
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.files import write_case
-from eha_core.exam.measuring import measure, simulate_case
-from eha_core.exam.peers.__main__ import main
-from eha_core.exam.peers.equations import equations, read_signals
-from eha_core.exam.peers.methods import diagnose
 from eha_core.parameters import nominal_values
+from eha_exam.case import Case
+from eha_exam.drawing import draw_case
+from eha_exam.files import write_case
+from eha_exam.measuring import measure, simulate_case
+from eha_exam.peers.__main__ import main
+from eha_exam.peers.equations import equations, read_signals
+from eha_exam.peers.methods import diagnose
 
 
 def recording(folder: Path, *effects: tuple[str, dict[str, float | str]]) -> tuple[Case, Path]:

@@ -11,13 +11,13 @@ import sys
 import pytest
 
 from eha_core.errors import EhaError
-from eha_core.exam.files import read_answer
-from eha_core.exam.page import as_html
-from eha_core.exam.run_exam import Exam, open_answers, run_exam, run_tool
-from eha_core.exam.shares import summarise
-from eha_core.exam.tables import as_json, as_markdown
 from eha_core.recording import read_recording
 from eha_core.workers import Workers
+from eha_exam.files import read_answer
+from eha_exam.page import as_html
+from eha_exam.run_exam import Exam, open_answers, run_exam, run_tool
+from eha_exam.shares import summarise
+from eha_exam.tables import as_json, as_markdown
 
 SILENT = """
 import json, sys
@@ -154,7 +154,7 @@ def test_a_tool_is_charged_for_what_it_starts_and_not_for_what_ends_meanwhile() 
 
 
 def test_a_tool_that_takes_too_long_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eha_core.exam.run_exam.LONGEST", 1.0)
+    monkeypatch.setattr("eha_exam.run_exam.LONGEST", 1.0)
     answer = run_tool([sys.executable, "-c", "import time; time.sleep(600.0)"])
     assert (answer.status, answer.message) == (-1, "took longer than 1 s")
 

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from eha_core.exam.case import Case
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.outside import curve_agreement
-from eha_core.exam.reliability import reliability
-from eha_core.exam.scoring import Answer, Proportion, mark, wilson
-from eha_core.exam.shares import confusion, summarise
-from eha_core.exam.tiers import MEANINGS, SHARES, plan
+from eha_exam.case import Case
+from eha_exam.drawing import draw_case
+from eha_exam.outside import curve_agreement
+from eha_exam.reliability import reliability
+from eha_exam.scoring import Answer, Proportion, mark, wilson
+from eha_exam.shares import confusion, summarise
+from eha_exam.tiers import MEANINGS, SHARES, plan
 
 
 def single(**changes: Any) -> Case:

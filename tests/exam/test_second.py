@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from eha_core.errors import EhaError
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.second import prescribed_voltage, second_recording
+from eha_exam.drawing import draw_case
+from eha_exam.second import prescribed_voltage, second_recording
 
 SINE = {"mode": "voltage", "signal": "sine", "sine.amplitude": 0.05, "sine.frequency": 2.0}
 

@@ -10,10 +10,10 @@ import pytest
 
 from eha_core.cli import main
 from eha_core.errors import EhaError
-from eha_core.exam.scoring import Mark
-from eha_core.exam.shares import summarise
-from eha_core.exam.sittings import read_sittings
-from eha_core.exam.tables import as_json
+from eha_exam.scoring import Mark
+from eha_exam.shares import summarise
+from eha_exam.sittings import read_sittings
+from eha_exam.tables import as_json
 
 ABOUT = {"seed": 9, "commit": "abc1234"}
 

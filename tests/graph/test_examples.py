@@ -16,9 +16,9 @@ from mcap.reader import make_reader
 from sensor_msgs.msg import JointState
 
 from eha_core.cli import main
-from eha_core.exam.truth import simulate_truth
 from eha_core.plant import Plant
 from eha_core.recording import read_recording
+from eha_exam.truth import simulate_truth
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 sys.path.insert(0, str(EXAMPLES))

@@ -9,14 +9,14 @@ from made import recorded
 from eha_core.diagnosis.calibrate import SAMPLES_A_WINDOW, Calibration, calibrate
 from eha_core.diagnosis.effect_parameters import with_effects
 from eha_core.effects import effects
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.measuring import measure, simulate_case
 from eha_core.identification.fit import Ending, fit
 from eha_core.identification.observation import observe
 from eha_core.identification.short_windows import HELD, SHORT, held
 from eha_core.nominal import NominalModel
 from eha_core.parameters import nominal_values
 from eha_core.recording import Channel, Recording
+from eha_exam.drawing import draw_case
+from eha_exam.measuring import measure, simulate_case
 
 LAW = next(effect for effect in effects() if effect.id == "stribeck_friction")
 UNITS = {"voltage_command": "V", "position": "m", "pressure_a": "Pa", "pressure_b": "Pa"}

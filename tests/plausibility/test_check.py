@@ -11,12 +11,12 @@ import pytest
 import yaml
 
 from eha_core.errors import RecordingError
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.measuring import measure
-from eha_core.exam.second import with_other_loads
 from eha_core.plausibility import admit, check
 from eha_core.plausibility.relations import relations
 from eha_core.recording import Recording
+from eha_exam.drawing import draw_case
+from eha_exam.measuring import measure
+from eha_exam.second import with_other_loads
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tools.hostile import wrong_recordings as wrong

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.measuring import measure, simulate_case
 from eha_core.parameters import nominal_values
 from eha_core.plausibility import check
 from eha_core.plausibility.relations import OPPOSED, relations
+from eha_exam.drawing import draw_case
+from eha_exam.measuring import measure, simulate_case
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tools.hostile import wrong_recordings as wrong

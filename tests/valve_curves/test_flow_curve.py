@@ -9,8 +9,8 @@ from scipy.signal import lfilter
 
 import eha_core as eha
 from eha_core.errors import EhaError
-from eha_core.exam.truth import simulate_truth
 from eha_core.valve_curves import Value
+from eha_exam.truth import simulate_truth
 
 RIG = {"ratio": 0.1, "offset": 3e-4, "overlap": 5e-4, "half_width": 2e-4}
 TRUE = {"null_shift": -3e-4, "flow_gain_positive": 2e-2, "flow_gain_negative": 1.8e-2, "asymmetry": 0.1,

@@ -9,11 +9,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from eha_core.diagnosis import diagnose_together
 from eha_core.errors import EhaError
-from eha_core.exam.case import Case
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.scoring import accepted
 from eha_core.nominal import NominalModel
 from eha_core.plausibility import admit
+from eha_exam.case import Case
+from eha_exam.drawing import draw_case
+from eha_exam.scoring import accepted
 from tools.hostile.extent import Extent
 from tools.hostile.faulty_recordings import FAULTS, FaultKind, faulty
 from tools.hostile.row import Row

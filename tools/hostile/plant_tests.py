@@ -6,14 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from eha_core.exam.case import POSITION_NOISE, Case
-from eha_core.exam.excitation import draw_reference, feedforward
-from eha_core.exam.measuring import GENTLER, LOWEST_PRESSURE, STROKE_USED
-from eha_core.exam.plants import Rig
-from eha_core.exam.truth import PositionController
 from eha_core.parameters import catalogue, nominal_values
 from eha_core.plant import Plant
 from eha_core.recording.recording import FloatArray
+from eha_exam.case import POSITION_NOISE, Case
+from eha_exam.excitation import draw_reference, feedforward
+from eha_exam.measuring import GENTLER, LOWEST_PRESSURE, STROKE_USED
+from eha_exam.plants import Rig
+from eha_exam.truth import PositionController
 
 STEP = 1e-4
 """s, of the plant."""

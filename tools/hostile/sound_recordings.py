@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.exam.case import Case
-from eha_core.exam.concealed import draw_effect
-from eha_core.exam.drawing import LOAD, draw_case
-from eha_core.exam.measuring import measure, simulate_case
-from eha_core.exam.second import with_other_loads
-from eha_core.exam.tiers import plan
 from eha_core.parameters import nominal_values
 from eha_core.recording import Recording
+from eha_exam.case import Case
+from eha_exam.concealed import draw_effect
+from eha_exam.drawing import LOAD, draw_case
+from eha_exam.measuring import measure, simulate_case
+from eha_exam.second import with_other_loads
+from eha_exam.tiers import plan
 from tools.hostile.plant_tests import is_of_the_catalogue, run_on_plant
 from tools.hostile.wrong_recordings import SUBSETS, Arrays, as_recording, with_velocity
 

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from eha_core.exam.case import Case
-from eha_core.exam.drawing import draw_case
-from eha_core.exam.measuring import measure, simulate_case
-from eha_core.exam.tiers import plan
 from eha_core.parameters import nominal_values
 from eha_core.recording import CHANNEL_KINDS, Channel, Recording
 from eha_core.recording.channel_rules import DEFAULT_RULES
 from eha_core.recording.reader import STANDARD_ATMOSPHERE
 from eha_core.recording.recording import FloatArray
+from eha_exam.case import Case
+from eha_exam.drawing import draw_case
+from eha_exam.measuring import measure, simulate_case
+from eha_exam.tiers import plan
 
 VELOCITY_NOISE = 1e-3
 """m/s, standard deviation at noise 1x, as `eha simulate --noise 1` adds."""

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eha_core.errors import EhaError
-from eha_core.exam.peers import PEERS
-from eha_core.exam.tiers import MEANINGS
 from eha_core.workers import Workers
+from eha_exam.peers import PEERS
+from eha_exam.tiers import MEANINGS
 
 if TYPE_CHECKING:
-    from eha_core.exam.scoring import Mark
-    from eha_core.exam.shares import Summary
+    from eha_exam.scoring import Mark
+    from eha_exam.shares import Summary
 
 OWN = "eha diagnose"
 DIAGNOSE = "{python} -m eha_core.cli diagnose {recording} {nominal} --json {answer} --jobs 1"
@@ -84,8 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.pool is not None:
         return _run_pooled(arguments)
     # The truth's integrator and compiler load slowly; no other verb should wait for them.
-    from eha_core.exam.run_exam import Exam, report_lost, run_exam
-    from eha_core.exam.shares import summarise
+    from eha_exam.run_exam import Exam, report_lost, run_exam
+    from eha_exam.shares import summarise
 
     if arguments.cases < 1 or arguments.jobs < 1:
         raise EhaError(f"--cases {arguments.cases} --jobs {arguments.jobs}: give 1 or more of each")
@@ -102,8 +102,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_pooled(arguments: argparse.Namespace) -> int:
     """Score several runs of one exam together; --require is the required share of correct cases."""
-    from eha_core.exam.shares import summarise
-    from eha_core.exam.sittings import read_sittings
+    from eha_exam.shares import summarise
+    from eha_exam.sittings import read_sittings
 
     marks, shared = read_sittings(arguments.pool)
     summaries = [summarise(tool, marks[tool]) for tool in marks]
@@ -120,8 +120,8 @@ def _tell(
     reports: Mapping[str, str] | None = None,
 ) -> int:
     """Write the tables, print the shares, and compare them with --require."""
-    from eha_core.exam.page import as_html
-    from eha_core.exam.tables import as_json, as_markdown
+    from eha_exam.page import as_html
+    from eha_exam.tables import as_json, as_markdown
 
     command = " ".join(["eha", "exam", *sys.argv[2:]])
     about = {"command": command, **about, "plants and recordings": "simulated by the exam's own truth"}
@@ -139,7 +139,7 @@ def _tell(
 
 def _run_real(arguments: argparse.Namespace) -> int:
     """Test the measured rigs; --require is the required share of questions that are met."""
-    from eha_core.exam.real import as_markdown, hold
+    from eha_core.known_answers.real import as_markdown, hold
 
     folder = arguments.out / "real"
     questions = hold(arguments.real, folder, lambda line: print(line, file=sys.stderr, flush=True))
@@ -151,12 +151,11 @@ def _run_real(arguments: argparse.Namespace) -> int:
 
 def _run_bags(arguments: argparse.Namespace) -> int:
     """Diagnose the project's own recordings; --require is the required share of correct answers."""
-    from eha_core.exam.shipped import show_bags
-    from eha_core.exam.tables import shipped_as_markdown
+    from eha_core.known_answers.shipped import as_markdown, show_bags
 
     shown = show_bags(arguments.bags, _show)
     right = [one.right for one in shown]
-    return _tell_table(arguments, arguments.out / "bags", shipped_as_markdown(shown), right, "recordings are right")
+    return _tell_table(arguments, arguments.out / "bags", as_markdown(shown), right, "recordings are right")
 
 
 def _tell_table(arguments: argparse.Namespace, folder: Path, table: str, right: Sequence[bool], what: str) -> int:

@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lsim
 
 from eha_core.errors import EhaError
-from eha_core.exam.truth import PositionController, resume_truth, simulate_truth
+from eha_exam.truth import PositionController, resume_truth, simulate_truth
 
 AREA = 645e-6
 SINE = 0.05 * np.sin(2.0 * np.pi * 1.0 * np.arange(2001) / 1000.0)

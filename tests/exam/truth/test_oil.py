@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson
 
-from eha_core.exam.truth import simulate_truth
-from eha_core.exam.truth.laws import stiffness_of_oil, valve_flows
-from eha_core.exam.truth.record import neutral_record, with_effect
+from eha_exam.truth import simulate_truth
+from eha_exam.truth.laws import stiffness_of_oil, valve_flows
+from eha_exam.truth.record import neutral_record, with_effect
 
 AREA, BULK, LINE, STROKE = 645e-6, 1.4e9, 1e-5, 0.1
 CLAMPED = ("coulomb_friction", {"force": 1e7})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from eha_core.exam.truth import simulate_truth
+from eha_exam.truth import simulate_truth
 
 RATE = 1000.0
 COMMAND = 0.06 * np.sin(2.0 * np.pi * 1.5 * np.arange(401) / RATE) + 0.02

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eha_core.exam.truth import SteppedTruth, simulate_truth
-from eha_core.exam.truth.simulate import COLUMNS
+from eha_exam.truth import SteppedTruth, simulate_truth
+from eha_exam.truth.simulate import COLUMNS
 
 EFFECTS = (
     ("coulomb_friction", {"force": 150.0}),

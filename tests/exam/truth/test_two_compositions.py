@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from eha_core.errors import EhaError
-from eha_core.exam.case import PRESSURE_NOISE
-from eha_core.exam.truth import resume_truth, simulate_truth
 from eha_core.plant import Plant, compose
+from eha_exam.case import PRESSURE_NOISE
+from eha_exam.truth import resume_truth, simulate_truth
 
 ROD = {"piston_area": 1.2e-3, "piston_area_b": 7.8e-4, "moving_mass": 30.0, "internal_leakage": 2e-12}
 FRICTION = {"force": 150.0}

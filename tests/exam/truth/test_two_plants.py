@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eha_core.exam.case import PRESSURE_NOISE
-from eha_core.exam.concealed import Setting, draw_effect
-from eha_core.exam.plants import Rig
-from eha_core.exam.truth import simulate_truth
-from eha_core.exam.truth.record import CATALOGUE, PLANT
 from eha_core.plant import Plant
+from eha_exam.case import PRESSURE_NOISE
+from eha_exam.concealed import Setting, draw_effect
+from eha_exam.plants import Rig
+from eha_exam.truth import simulate_truth
+from eha_exam.truth.record import CATALOGUE, PLANT
 
 TIME = np.arange(801) / 1000.0
 COMMAND = 0.1 * np.sin(2.0 * np.pi * TIME) + 0.03 * np.sin(2.0 * np.pi * 4.3 * TIME)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import TransferFunction, step
 
-from eha_core.exam.truth import simulate_truth
+from eha_exam.truth import simulate_truth
 
 RATE = 1000.0
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-import eha_core.exam.truth as truth_package
+import eha_exam.truth as truth_package
 from eha_core.effects import effects
-from eha_core.exam.concealed import SITES
-from eha_core.exam.truth.record import CATALOGUE
+from eha_exam.concealed import SITES
+from eha_exam.truth.record import CATALOGUE
 
 FOLDER = Path(truth_package.__file__).parent
-ALLOWED = ("numpy", "numba", "sksundae", "eha_core.errors", "eha_core.exam.truth")
+ALLOWED = ("numpy", "numba", "sksundae", "eha_core.errors", "eha_exam.truth")
 STANDARD = sys.stdlib_module_names - {"importlib"}
 
 
