@@ -27,10 +27,12 @@ def pins(name: str) -> dict[str, str]:
     return dict(row.split("==") for row in rows if row)
 
 
-def bounds() -> dict[str, Requirement]:
+def bounds(package: str) -> dict[str, Requirement]:
+    """What a package needs; the exam with its extra, which the environment has too."""
     settings = configparser.ConfigParser()
-    settings.read(ROOT / "eha_core" / "setup.cfg")
+    settings.read(ROOT / package / "setup.cfg")
     rows = settings["options"]["install_requires"].split("\n")
+    rows += settings["options.extras_require"].get("peers", "").split("\n")
     return {one.name: one for one in map(Requirement, filter(None, rows))}
 
 
@@ -39,13 +41,18 @@ def test_ros_machines_have_the_same_versions() -> None:
     assert {name for name in ros.keys() & runtime.keys() if ros[name] != runtime[name]} == OF_ANOTHER_NUMPY
 
 
-def test_the_package_allows_what_is_tested_and_nothing_older() -> None:
-    runtime, ros, allowed = pins("runtime.txt"), pins("ros2.txt"), bounds()
-    assert set(allowed) == set(runtime) - {"cyclonedds"}  # which is rclpy_dds's
-    for name, bound in allowed.items():
+def test_the_packages_allow_what_is_tested_and_nothing_older() -> None:
+    runtime, ros = pins("runtime.txt"), pins("ros2.txt")
+    library, exam = bounds("eha_core"), bounds("eha_exam")
+    assert set(library | exam) == set(runtime) - {"cyclonedds"}  # which is rclpy_dds's
+    for name, bound in (*library.items(), *exam.items()):
         assert bound.specifier.contains(runtime[name])
         if name in ros:
             assert [one.version for one in bound.specifier] == [ros[name]], name
+
+
+def test_the_library_does_not_bring_what_the_exam_alone_uses() -> None:
+    assert {"scikit-sundae", "scikit-learn"} <= set(bounds("eha_exam")) - set(bounds("eha_core"))
 
 
 def test_what_is_optional_allows_what_is_tested() -> None:
@@ -79,7 +86,7 @@ def test_continuous_integration_runs_every_python_by_the_makefile() -> None:
         assert {word for word in words[1:] if "=" not in word} <= targets, words
 
 
-@pytest.mark.parametrize("name", ["eha_core", "eha_sim_node", "rclpy_dds"])
+@pytest.mark.parametrize("name", ["eha_core", "eha_exam", "eha_sim_node", "rclpy_dds"])
 def test_python_packages_are_marked_as_typed(name: str) -> None:
     assert (ROOT / name / name / "py.typed").is_file()  # that wheels carry it is seen by `make wheels`
 

@@ -1,9 +1,9 @@
-"""Builds wheels of library, messages and `rclpy_dds`, installs them into a clean environment, and uses them there.
+"""Builds wheels of library, messages, exam and `rclpy_dds`, installs them into clean environments, and uses them there.
 
     python tools/check_wheels.py FOLDER
 
-Leaves the wheels in FOLDER. The environment holds the wheels and the pins of requirements/runtime.txt, and nothing of
-this checkout; what runs there runs outside of it.
+Leaves the wheels in FOLDER. One environment holds all wheels but the exam's, another the exam's alone, at the versions
+that requirements/runtime.txt pins, and nothing of this checkout; what runs there runs outside of it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGES = ("eha_core", "eha_interfaces", "rclpy_dds")
+PACKAGES = ("eha_core", "eha_exam", "eha_interfaces", "rclpy_dds")
+EXAMPLE = ROOT / "eha_exam" / "examples" / "dry_friction.py"
 LINES = """
 import eha_core as eha
 frame = eha.simulate("multisine:amplitude=0.12,seed=5", 4.0, {"coulomb_friction.force": 250.0}, noise=1.0).to_dict()
@@ -40,8 +41,10 @@ def main() -> int:
     folder.mkdir(parents=True)
     wheels = build(folder)
     check_contents(wheels)
-    python = install(folder / "environment", wheels)
-    use(python, folder / "elsewhere")
+    exam = [wheel for wheel in wheels if wheel.name.startswith("eha_exam")]
+    library = [wheel for wheel in wheels if wheel not in exam]
+    use(install(folder / "environment", library), folder / "elsewhere")
+    sit_an_exam(install(folder / "exam", exam), folder / "examined")
     print(f"wheels: {', '.join(wheel.name for wheel in wheels)} install and work")
     return 0
 
@@ -83,18 +86,40 @@ def install(folder: Path, wheels: list[Path]) -> Path:
 def use(python: Path, folder: Path) -> None:
     """Run what a user would, in a folder that knows nothing of the checkout."""
     folder.mkdir()
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    environment = outside()
     eha = str(python.parent / "eha")
     commands = (
         [eha, "--version"],
         [eha, "simulate", "--command", "sine:amplitude=0.02,frequency=1", "--duration", "2", "--out", "run.mcap"],
         [eha, "effects", "coulomb_friction"],
+        [eha, "exam", "--help"],
         [str(python), "-c", LINES],
     )
     for command in commands:
         subprocess.run(command, check=True, cwd=folder, env=environment)
     if not (folder / "report" / "report.html").is_file():
         raise SystemExit("the report was not written: the wheel lacks a file of its")
+    refused = subprocess.run([eha, "exam"], capture_output=True, text=True, check=False, cwd=folder, env=environment)
+    if refused.returncode == 0 or "pip install eha_exam" not in refused.stderr:
+        raise SystemExit(f"`eha exam` without the exam does not say what to install: {refused.stderr}")
+
+
+def outside() -> dict[str, str]:
+    """The environment's variables without those that would lead a Python to this checkout."""
+    return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+
+
+def sit_an_exam(python: Path, folder: Path) -> None:
+    """Have a method of forty lines sit a short exam where there is nothing of the library that is examined."""
+    folder.mkdir()
+    environment = outside() | {"EHA_CACHE_DIR": str(folder / "cache")}
+    absent = "import importlib.util as util, sys; sys.exit(util.find_spec('eha_core') is not None)"
+    subprocess.run([str(python), "-c", absent], check=True, cwd=folder, env=environment)
+    script = shutil.copy(EXAMPLE, folder)
+    command = [str(python.parent / "eha-exam"), "--cases", "3", "--tier", "null", "--seed", "1", "--out", "exam"]
+    method = f"dry friction={{python}} {script} {{recordings}} {{answers}}"
+    subprocess.run([*command, "--method", method, "--require", "1"], check=True, cwd=folder, env=environment)
+    print((folder / "exam" / "table.md").read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":

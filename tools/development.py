@@ -31,7 +31,7 @@ from eha_core.workers import Workers
 from eha_exam import cases
 from eha_exam.case import Case
 from eha_exam.drawing import LOAD, draw_case
-from eha_exam.files import answer_text, further_name, read_answer, recording_name, write_case, write_per_recording
+from eha_exam.files import answer_text, further_name, read_answer, recording_name, write_case, write_nominal
 from eha_exam.measuring import measure, simulate_case
 from eha_exam.scoring import Answer, mark
 from eha_exam.second import with_other_loads
@@ -66,7 +66,7 @@ def make_development_case(name: str, seed: int, known: Mapping[str, Any], folder
         path.unlink(missing_ok=True)
         write_case(case, some, path)
     if case.loads:
-        write_per_recording([f"{LOAD}.force"], case.nominal, first.with_suffix(".yaml"))
+        write_nominal(case.nominal, first.with_suffix(".yaml"), [f"{LOAD}.force"])
     sealed.parent.mkdir(exist_ok=True)
     sealed.write_text(answer_text(case), encoding="utf-8")
     return name

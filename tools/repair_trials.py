@@ -28,6 +28,7 @@ from eha_core.report.document import document
 from eha_core.signals import make_signal
 from eha_exam.case import Case
 from eha_exam.drawing import draw_case
+from eha_exam.errors import ExamError
 from eha_exam.files import recording_name, write_case
 from eha_exam.measuring import measure, simulate_case
 from eha_exam.truth.record import Effect
@@ -55,7 +56,7 @@ def try_rig(number: int, seed: int) -> dict[str, Any]:
     row: dict[str, Any] = {"number": number, "concealed": list(case.effect_ids)}
     try:
         rig = _diagnosed(case)
-    except EhaError as error:
+    except (EhaError, ExamError) as error:
         return row | {"why": str(error)}
     task = task_of(case)
     budget = error_budget(rig, task)

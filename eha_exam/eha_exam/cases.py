@@ -111,7 +111,7 @@ def _as_twin(case: Case, truth: dict[str, Array]) -> tuple[Case, dict[str, Array
 
 def _cache() -> Path:
     root = os.environ.get("EHA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
-    folder = (Path(root) if root else Path.home() / ".cache" / "eha_core") / "exam"
+    folder = (Path(root) if root else Path.home() / ".cache" / "eha_exam") / "exam"
     folder.mkdir(parents=True, exist_ok=True)
     return folder
 

@@ -4,23 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import yaml
 
-from eha_core.recording import RecordingWriter
 from eha_exam.case import Arrays, Case
-
-START = 1_700_000_000_000_000_000
-"""ns; stamp of the first sample of every recording."""
-
-FLOAT = "std_msgs/msg/Float64"
-JOINTS = "sensor_msgs/msg/JointState"
-PRESSURE = "sensor_msgs/msg/FluidPressure"
+from eha_exam.recordings import write_recording
 
 
 def recording_name(case: Case) -> str:
@@ -30,13 +22,7 @@ def recording_name(case: Case) -> str:
 
 def write_case(case: Case, arrays: Arrays, path: Path) -> None:
     """Write the recording of a case as MCAP, with the nominal parameters the diagnosis is given."""
-    atmosphere = case.nominal["atmospheric_pressure"]
-    messages = sorted(_messages(arrays, atmosphere), key=lambda message: message[0])
-    with RecordingWriter(path, parameters=case.nominal, flush_period=60.0) as writer:
-        for stamp, topic, kind, fields in messages:
-            if kind != FLOAT:
-                fields = fields | {"header": {"stamp": {"sec": stamp // 10**9, "nanosec": stamp % 10**9}}}
-            writer.write_fields(topic, kind, fields, stamp)
+    write_recording(path, arrays, case.nominal)
 
 
 def further_name(name: str, number: int) -> str:
@@ -44,23 +30,12 @@ def further_name(name: str, number: int) -> str:
     return name if number == 1 else name.replace(".mcap", f"-{number}.mcap")
 
 
-def write_per_recording(names: Sequence[str], nominal: Mapping[str, float], path: Path) -> None:
-    """Write the nominal file that a diagnosis of several recordings is given: it lists what differs between them."""
-    document = {"eha_sim": {"ros__parameters": dict(nominal)}, "per_recording": list(names)}
+def write_nominal(nominal: Mapping[str, float], path: Path, per_recording: Sequence[str] = ()) -> None:
+    """Write a nominal file: the parameters [SI], and the names of those that differ between several recordings."""
+    document: dict[str, Any] = {"eha_sim": {"ros__parameters": dict(nominal)}}
+    if per_recording:
+        document["per_recording"] = list(per_recording)
     path.write_text(yaml.safe_dump(document), encoding="utf-8")
-
-
-def _messages(arrays: Arrays, atmosphere: float) -> Iterator[tuple[int, str, str, dict[str, Any]]]:
-    for channel, (time, values) in arrays.items():
-        stamps = (START + np.round(time * 1e9).astype(np.int64)).tolist()
-        for stamp, value in zip(stamps, values.tolist(), strict=True):
-            if channel == "voltage_command":
-                yield stamp, "voltage_command", FLOAT, {"data": value}
-            elif channel == "position":
-                yield stamp, "joint_states", JOINTS, {"name": ["piston"], "position": [value]}
-            else:
-                chamber = channel.removeprefix("pressure_")
-                yield stamp, f"chamber_{chamber}/pressure", PRESSURE, {"fluid_pressure": value + atmosphere}
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.errors import EhaError
 from eha_exam.case import POSITION_NOISE, PRESSURE_NOISE, Case
+from eha_exam.errors import ExamError
 from eha_exam.truth import resume_truth
 from eha_exam.truth.laws import stiffness_of_oil
 from eha_exam.truth.record import Effect, neutral_record, with_effect
@@ -69,7 +69,7 @@ class Doubted:
 
     def simulated(self, first: int, changes: Array, shift: Array, more: Sequence[Effect] = ()) -> Array:
         """The same simulated from the true state, shifted by so many of SHIFTS, with the values changed and with `more`
-        effects. Raises EhaError where that cannot be integrated."""
+        effects. Raises ExamError where that cannot be integrated."""
         plant = dict(self.case.plant)
         for name, change in zip(self.names, changes[: len(self.names)].tolist(), strict=True):
             plant[name] *= 1.0 + change
@@ -137,7 +137,7 @@ def left_by_the_best(model: Doubted, starts: Sequence[int], begin: Array, enough
     changes `begin`, and may leave less where that is less than `enough`."""
     try:
         at = _imitation(model, starts, begin, np.zeros((len(starts), len(SHIFTS))))
-    except EhaError:  # no such rig can be integrated
+    except ExamError:  # no such rig can be integrated
         return np.inf
     for _ in range(STEPS):
         if at.misfit < enough:
@@ -145,7 +145,7 @@ def left_by_the_best(model: Doubted, starts: Sequence[int], begin: Array, enough
         pairs = zip(starts, at.shifts, strict=True)
         try:
             windows = [model.linearised(first, at.changes, shift) for first, shift in pairs]
-        except EhaError:  # nor one a little beside it
+        except ExamError:  # nor one a little beside it
             break
         better = _better(model, starts, at, *_step(windows, at.changes))
         if better is None:
@@ -169,7 +169,7 @@ def _better(model: Doubted, starts: Sequence[int], at: _Imitation, changes: Arra
         try:
             there = np.clip(at.changes + share * changes, LEAST, MOST)
             tried = _imitation(model, starts, there, at.shifts + share * shifts)
-        except EhaError:  # no such rig can be integrated
+        except ExamError:  # no such rig can be integrated
             continue
         if tried.misfit < LESS * at.misfit:
             return tried

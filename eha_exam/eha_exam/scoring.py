@@ -229,11 +229,12 @@ def _effect_intervals(case: Case, diagnosis: Mapping[str, Any]) -> tuple[bool, .
     truth = dict(case.effects)
     held = []
     for effect in diagnosis.get("effects") or ():
-        for name, fitted in effect["parameters"].items():
+        for name, fitted in (effect.get("parameters") or {}).items():
             # an equivalent law of the catalogue has parameters of its own, which the truth does not know
             value = truth.get(effect["id"], {}).get(name)
-            if isinstance(value, float) and abs(value) < 1.0e30 and fitted["std"]:
-                held.append(_holds(fitted["value"], fitted["std"], value))
+            found, std = fitted.get("value"), fitted.get("std")
+            if isinstance(value, float) and abs(value) < 1.0e30 and std and found is not None:
+                held.append(_holds(found, std, value))
     return tuple(held)
 
 
@@ -241,13 +242,14 @@ def _nominal_intervals(case: Case, diagnosis: Mapping[str, Any]) -> tuple[bool, 
     return tuple(
         _holds(row["fitted"], row["std"], case.plant[row["name"]])
         for row in diagnosis.get("parameters") or ()
-        if row["name"] in case.plant and row["std"]
+        if row["name"] in case.plant and row.get("std") and row.get("fitted") is not None
     )
 
 
 def _held_out_ratio(diagnosis: Mapping[str, Any]) -> float | None:
     channels = (diagnosis.get("fit") or {}).get("held_out") or {}
-    ratios = [fit["rmse_after"] / fit["noise"] for fit in channels.values() if fit.get("noise")]
+    fits = [fit for fit in channels.values() if fit.get("noise") and fit.get("rmse_after") is not None]
+    ratios = [fit["rmse_after"] / fit["noise"] for fit in fits]
     return max(ratios) if ratios else None
 
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from eha_core.errors import EhaError
-from eha_core.signals import make_signal, of_reference
 from eha_exam.case import POSITION_NOISE, Array, Arrays, Case
 from eha_exam.drawing import LOAD
+from eha_exam.errors import ExamError
 from eha_exam.measuring import measure, simulate_case
+from eha_exam.reference_signals import voltage_of
 from eha_exam.truth import simulate_truth
 
 DURATION = 10.0
@@ -23,11 +23,11 @@ LONGEST = 60.0
 def prescribed_voltage(reference: Mapping[str, Any], time: Array) -> Array:
     """The voltage [V] of a prescribed test, given as the reference generator's parameters.
 
-    EhaError when it is no voltage, or no signal the generator has.
+    ExamError when it is no voltage, or no signal that the exam knows.
     """
     if reference.get("mode", "voltage") != "voltage":
-        raise EhaError(f"the prescribed test is a reference of {reference['mode']}, and the exam drives voltages")
-    return np.asarray(make_signal(*of_reference(reference)).value(time), dtype=float)
+        raise ExamError(f"the prescribed test is a reference of {reference['mode']}, and the exam drives voltages")
+    return voltage_of(reference, time)
 
 
 def with_other_loads(case: Case) -> list[Arrays]:
@@ -45,11 +45,13 @@ def second_recording(case: Case, prescribed: Mapping[str, Any]) -> Arrays:
     more = [str(name) for name in prescribed.get("record") or ()]
     unknown = [name for name in more if name not in Case.channels]
     if unknown:
-        raise EhaError(f"the prescribed test wants {', '.join(unknown)} recorded, which this rig has no sensor for")
+        raise ExamError(f"the prescribed test wants {', '.join(unknown)} recorded, which this rig has no sensor for")
     channels = tuple(name for name in Case.channels if name in (*case.channels, *more))
-    duration = float(prescribed.get("duration", DURATION))
+    if not prescribed.get("reference"):
+        raise ExamError("the prescribed test has no reference; give the reference generator's parameters")
+    duration = float(prescribed.get("duration") or DURATION)
     if not 0.0 < duration <= LONGEST:
-        raise EhaError(f"the prescribed test lasts {duration:g} s, and the exam runs at most {LONGEST:g} s")
+        raise ExamError(f"the prescribed test lasts {duration:g} s, and the exam runs at most {LONGEST:g} s")
     again = replace(case, seed=case.seed + 1, duration=duration, windows={}, channels=channels)
     time = np.arange(round(duration * case.rate) + 1) / case.rate
     voltage = prescribed_voltage(prescribed["reference"], time)

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from eha_core.errors import EhaError
+from eha_exam.errors import ExamError
 from eha_exam.scoring import Mark
 
 SCHEMA = "eha.exam/1"
@@ -21,7 +21,7 @@ SAME = ("seed", "commit")
 def read_sittings(paths: Sequence[Path]) -> tuple[dict[str, list[Mark]], dict[str, Any]]:
     """The marks of each tool, by its name, over all tables; and what the sittings share.
 
-    EhaError when a file is no table of an exam, when two are not of one seed and commit, or when a case stands in two.
+    ExamError when a file is no table of an exam, when two are not of one seed and commit, or when a case stands in two.
     """
     tables = [_read(path) for path in paths]
     shared = {name: tables[0]["about"].get(name) for name in SAME}
@@ -29,13 +29,13 @@ def read_sittings(paths: Sequence[Path]) -> tuple[dict[str, list[Mark]], dict[st
     for path, table in zip(paths, tables, strict=True):
         other = {name: table["about"].get(name) for name in SAME}
         if other != shared:
-            raise EhaError(f"{path}: is of {_said(other)}, {paths[0]} of {_said(shared)}; pool sittings of one exam")
+            raise ExamError(f"{path}: is of {_said(other)}, {paths[0]} of {_said(shared)}; pool sittings of one exam")
         for tool, scored in table["tools"].items():
             taken = marks.setdefault(tool, {})
             for row in scored["marks"]:
                 mark = _mark(row)
                 if mark.name in taken:
-                    raise EhaError(f"{path}: {mark.name} stands in another of these tables too; give each case once")
+                    raise ExamError(f"{path}: {mark.name} stands in another of these tables too; give each case once")
                 taken[mark.name] = mark
     return {tool: list(taken.values()) for tool, taken in marks.items()}, shared
 
@@ -46,7 +46,7 @@ def _read(path: Path) -> dict[str, Any]:
     except (OSError, ValueError):
         table = None
     if not isinstance(table, dict) or table.get("schema") != SCHEMA:
-        raise EhaError(f"{path}: is not a table.json that eha exam wrote; give the paths of such files")
+        raise ExamError(f"{path}: is not a table.json that eha exam wrote; give the paths of such files")
     return table
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eha_core.errors import EhaError, remedy
+from eha_exam.errors import ExamError, remedy
 
 SHARES = {
     "single": 0.18,
@@ -52,9 +52,9 @@ MEANINGS = {
 
 
 def check_tier(tier: str) -> None:
-    """EhaError when there is no such tier."""
+    """ExamError when there is no such tier."""
     if tier not in SHARES:
-        raise EhaError(f"tier {tier!r} is none of the exam's; {remedy(tier, SHARES)}")
+        raise ExamError(f"tier {tier!r} is none of the exam's; {remedy(tier, SHARES)}")
 
 
 def plan(cases: int, tier: str | None = None) -> list[tuple[str, int]]:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import eha_core
+import eha_exam.version
 from eha_core.cli import main, verbs
 from eha_exam.tiers import MEANINGS
 
@@ -25,6 +26,7 @@ def test_says_which_version_it_is(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_the_actuator_s_packages_bear_one_version() -> None:
     here = eha_core.__version__
+    assert eha_exam.version.__version__ == here
     for path in ROOT.glob("*/package.xml"):
         assert f"<version>{here}</version>" in path.read_text(), path
     for path in ("eha_sim_node/setup.py", "eha_interfaces/setup.py"):  # rclpy_dds is released on its own

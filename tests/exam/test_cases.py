@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eha_core.errors import EhaError
 from eha_exam.case import Case
 from eha_exam.cases import make_case
 from eha_exam.concealed import DRAWS, SITES, draw_effect, scaled
 from eha_exam.drawing import WORN_RIG, draw_case
+from eha_exam.errors import ExamError
 from eha_exam.excitation import SHAPES, draw_reference
 from eha_exam.measuring import measure, simulate_case
 from eha_exam.oracle import consult, seen_beside_the_others
@@ -29,7 +29,7 @@ def short(tier: str, number: int, **changes: object) -> Case:
 def test_a_case_depends_on_its_own_seed_tier_and_number_alone() -> None:
     assert draw_case("single", 7, 0) == draw_case("single", 7, 0)
     assert draw_case("single", 7, 0).seed != draw_case("single", 7, 1).seed != draw_case("small", 7, 1).seed
-    with pytest.raises(EhaError, match="tier 'hard'"):
+    with pytest.raises(ExamError, match="tier 'hard'"):
         draw_case("hard", 0, 0)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eha_core.parameters import nominal_values
+from eha_core.parameters import NOMINAL
 from eha_exam.case import Case
 from eha_exam.drawing import draw_case
 from eha_exam.files import write_case
@@ -67,5 +67,5 @@ def test_as_a_command_it_writes_the_answer_or_one_line(tmp_path: Path, capsys: p
 
 def test_a_recording_that_knows_no_parameters_is_held_against_the_nominal_ones() -> None:
     path = Path(__file__).parents[2] / "bags" / "rig_coulomb_friction.mcap"
-    assert read_signals(path).nominal == nominal_values()
+    assert read_signals(path).nominal == {row.name: row.nominal for row in NOMINAL}
     assert "coulomb_friction" in {one["id"] for one in diagnose("sindy_stlsq", path)["effects"]}

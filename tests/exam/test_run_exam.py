@@ -10,14 +10,16 @@ import sys
 
 import pytest
 
-from eha_core.errors import EhaError
 from eha_core.recording import read_recording
-from eha_core.workers import Workers
+from eha_exam.errors import ExamError
+from eha_exam.exam_folder import Exam
 from eha_exam.files import read_answer
 from eha_exam.page import as_html
-from eha_exam.run_exam import Exam, open_answers, run_exam, run_tool
+from eha_exam.run_exam import open_answers, run_exam
 from eha_exam.shares import summarise
 from eha_exam.tables import as_json, as_markdown
+from eha_exam.tool import run_tool
+from eha_exam.workers import Workers
 
 SILENT = """
 import json, sys
@@ -113,25 +115,25 @@ def test_an_answer_that_was_changed_is_refused(exam: Exam, tools: dict[str, str]
     path = next(iter(sorted((exam.folder / "sealed").iterdir())))
     sealed = path.read_text()
     path.write_text(sealed.replace("null_parameters", "null"))
-    with pytest.raises(EhaError, match="not the answer that was sealed"):
+    with pytest.raises(ExamError, match="not the answer that was sealed"):
         open_answers(exam, "silent")
     path.write_text(sealed)
 
 
 def test_a_folder_with_another_exam_is_refused(exam: Exam, tools: dict[str, str]) -> None:
     run_exam(exam, {"silent": tools["silent"]}, Workers(), quiet)
-    with pytest.raises(EhaError, match="another exam"):
+    with pytest.raises(ExamError, match="another exam"):
         run_exam(Exam(exam.folder, 2, 6, exam.tier), tools, Workers(), quiet)
 
 
 def test_a_tool_that_does_not_exist_is_said_in_one_line(exam: Exam) -> None:
-    with pytest.raises(EhaError, match="cannot be started"):
+    with pytest.raises(ExamError, match="cannot be started"):
         run_exam(exam, {"ghost": f"{sys.executable}-none {{recording}} {{answer}}"}, Workers(), quiet)
 
 
 def test_a_tool_is_held_to_one_core() -> None:
-    source = "import json, os, sys; json.dump(os.environ['OMP_NUM_THREADS'], open(sys.argv[1], 'w'))"
-    assert run_tool([sys.executable, "-c", source, "{answer}"]).diagnosis == "1"
+    source = "import json, os, sys; json.dump({'verdict': os.environ['OMP_NUM_THREADS']}, open(sys.argv[1], 'w'))"
+    assert run_tool([sys.executable, "-c", source, "{answer}"]).diagnosis == {"verdict": "1"}
 
 
 def test_a_tool_is_charged_for_the_processor_and_not_for_waiting() -> None:
@@ -154,7 +156,7 @@ def test_a_tool_is_charged_for_what_it_starts_and_not_for_what_ends_meanwhile() 
 
 
 def test_a_tool_that_takes_too_long_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eha_exam.run_exam.LONGEST", 1.0)
+    monkeypatch.setattr("eha_exam.tool.LONGEST", 1.0)
     answer = run_tool([sys.executable, "-c", "import time; time.sleep(600.0)"])
     assert (answer.status, answer.message) == (-1, "took longer than 1 s")
 
@@ -162,7 +164,7 @@ def test_a_tool_that_takes_too_long_is_ended(monkeypatch: pytest.MonkeyPatch) ->
 @pytest.mark.parametrize("sent", ["SIGTERM", "SIGINT", "SIGHUP"])
 def test_a_tool_that_was_stopped_from_outside_has_not_answered(sent: str) -> None:
     source = f"import os, signal; signal.signal(signal.{sent}, signal.SIG_DFL); os.kill(os.getpid(), signal.{sent})"
-    with pytest.raises(EhaError, match="was stopped from outside; start the exam again"):
+    with pytest.raises(ExamError, match="was stopped from outside; start the exam again"):
         run_tool([sys.executable, "-c", source])
 
 

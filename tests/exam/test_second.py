@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eha_core.errors import EhaError
 from eha_exam.drawing import draw_case
+from eha_exam.errors import ExamError
 from eha_exam.second import prescribed_voltage, second_recording
 
 SINE = {"mode": "voltage", "signal": "sine", "sine.amplitude": 0.05, "sine.frequency": 2.0}
@@ -17,9 +17,9 @@ SINE = {"mode": "voltage", "signal": "sine", "sine.amplitude": 0.05, "sine.frequ
 def test_the_prescribed_voltage_is_the_reference_generators() -> None:
     time = np.arange(1001) / 1000.0
     np.testing.assert_allclose(prescribed_voltage(SINE, time), 0.05 * np.sin(4.0 * np.pi * time), atol=1e-12)
-    with pytest.raises(EhaError, match="reference of position"):
+    with pytest.raises(ExamError, match="reference of position"):
         prescribed_voltage({**SINE, "mode": "position"}, time)
-    with pytest.raises(EhaError, match="warble"):
+    with pytest.raises(ExamError, match="warble"):
         prescribed_voltage({"signal": "warble"}, time)
 
 
@@ -40,5 +40,5 @@ def test_channels_that_the_test_asks_for_are_recorded_too() -> None:
     assert set(second_recording(case, {"reference": SINE})) == {"voltage_command", "position"}
     more = second_recording(case, {"reference": SINE, "record": ["pressure_a", "pressure_b"]})
     assert tuple(more) == ("voltage_command", "position", "pressure_a", "pressure_b")
-    with pytest.raises(EhaError, match="temperature"):
+    with pytest.raises(ExamError, match="temperature"):
         second_recording(case, {"reference": SINE, "record": ["temperature"]})

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from eha_core.cli import main
-from eha_core.errors import EhaError
+from eha_exam.errors import ExamError
 from eha_exam.scoring import Mark
 from eha_exam.shares import summarise
 from eha_exam.sittings import read_sittings
@@ -79,13 +79,13 @@ def test_the_verb_writes_the_pooled_tables(tmp_path: Path, capsys: pytest.Captur
 @pytest.mark.parametrize("other", [{"seed": 8, "commit": "abc1234"}, {"seed": 9, "commit": "fff0000"}])
 def test_sittings_of_different_exams_are_refused(tmp_path: Path, other: dict[str, object]) -> None:
     paths = [table(tmp_path / "a.json", MARKS[:2]), table(tmp_path / "b.json", MARKS[2:], other)]
-    with pytest.raises(EhaError, match="b.json: is of seed .* pool sittings of one exam"):
+    with pytest.raises(ExamError, match="b.json: is of seed .* pool sittings of one exam"):
         read_sittings(paths)
 
 
 def test_a_case_in_two_sittings_is_refused(tmp_path: Path) -> None:
     paths = [table(tmp_path / "a.json", MARKS[:2]), table(tmp_path / "b.json", MARKS[1:])]
-    with pytest.raises(EhaError, match="single-0001 stands in another of these tables too"):
+    with pytest.raises(ExamError, match="single-0001 stands in another of these tables too"):
         read_sittings(paths)
 
 
@@ -94,5 +94,5 @@ def test_what_is_no_table_is_refused(tmp_path: Path, text: str | None) -> None:
     path = tmp_path / "a.json"
     if text is not None:
         path.write_text(text, encoding="utf-8")
-    with pytest.raises(EhaError, match="a.json: is not a table.json that eha exam wrote"):
+    with pytest.raises(ExamError, match="a.json: is not a table.json that eha exam wrote"):
         read_sittings([path])

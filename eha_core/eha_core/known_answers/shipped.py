@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from eha_core.errors import EhaError
-from eha_exam.run_exam import Progress, run_tool
+from eha_exam.exam_folder import Progress
+from eha_exam.tool import run_tool
 
 BAGS: dict[str, tuple[str, frozenset[str]]] = {
     "paper_leakage_levels.mcap": ("consistent", frozenset()),

@@ -6,7 +6,7 @@ import json
 import sys
 from pathlib import Path
 
-from eha_core.errors import EhaError
+from eha_exam.errors import ExamError
 from eha_exam.peers import METHODS
 from eha_exam.peers.methods import diagnose
 
@@ -20,7 +20,7 @@ def main(words: list[str]) -> int:
         return UNUSABLE
     try:
         answer = diagnose(words[0], Path(words[1]))
-    except EhaError as error:
+    except ExamError as error:
         print(f"{words[0]}: {error}", file=sys.stderr)
         return UNUSABLE
     Path(words[-1]).write_text(json.dumps(answer), encoding="utf-8")

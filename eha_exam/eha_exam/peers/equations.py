@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lsim, savgol_filter
 
-from eha_core.errors import EhaError
-from eha_core.parameters import nominal_values
-from eha_core.recording import read_recording
+from eha_exam.errors import ExamError
+from eha_exam.recordings import read_recording
+from eha_exam.truth.record import PLANT
 
 Array = NDArray[np.float64]
 
@@ -25,6 +25,9 @@ HALF_WIDTH = 0.06
 """s, of a bump."""
 HOP = 0.02
 """s, from one bump to the next."""
+
+NOMINAL = {name: value for name, value in PLANT.items() if name != "transition_pressure"}
+"""What a recording is held against that has no parameters: all of the plant but what no data sheet has."""
 
 
 @dataclass(frozen=True)
@@ -56,20 +59,21 @@ class Signals:
 
 
 def read_signals(path: Path) -> Signals:
-    """Read a recording with command, position and both pressures. EhaError where one of them is missing."""
+    """Read a recording with command, position and both pressures. ExamError where one of them is missing."""
     recording = read_recording(path)
     needed = ("voltage_command", "position", "pressure_a", "pressure_b")
     missing = [name for name in needed if name not in recording.channels]
     if missing:
-        raise EhaError(f"{path}: has no {', '.join(missing)}, which this method needs")
+        raise ExamError(f"{path}: has no {', '.join(missing)}, which this method needs")
     channels = [recording.channels[name] for name in needed]
-    start, stop = max(c.time[0] for c in channels), min(c.time[-1] for c in channels)
+    start, stop = max(times[0] for times, _ in channels), min(times[-1] for times, _ in channels)
     time = np.arange(start, stop, 1.0 / RATE)
-    voltage, position, a, b = (np.interp(time, c.time, c.values) for c in channels)
-    held = channels[0].values[np.searchsorted(channels[0].time, time, side="right") - 1]
+    voltage, position, a, b = (np.interp(time, times, values) for times, values in channels)
+    times, values = channels[0]
+    held = values[np.searchsorted(times, time, side="right") - 1]
     window = 2 * round(0.03 * RATE) + 1
     velocity = savgol_filter(position, window, 3, deriv=1, delta=1.0 / RATE)
-    nominal = {**nominal_values(), **recording.parameters}
+    nominal = {**NOMINAL, **recording.parameters}
     spool = _spool(time, held if len(held) else voltage, nominal)
     return Signals(time, position, velocity, a, b, spool, nominal)
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.errors import EhaError
 from eha_exam.concealed import SITES
+from eha_exam.errors import ExamError
 from eha_exam.peers.equations import Equation, equations, read_signals
 
 Array = NDArray[np.float64]
@@ -89,7 +89,7 @@ def _pysindy() -> Any:
     try:
         import pysindy
     except ImportError:
-        raise EhaError("the sindy methods need the package `pysindy`; install it, or leave --peers out") from None
+        raise ExamError("the sindy methods need the package `pysindy`; install it, or leave --peers out") from None
     return pysindy
 
 
@@ -118,7 +118,7 @@ def _predictable(row: Equation) -> float:
     try:
         from sklearn.ensemble import HistGradientBoostingRegressor
     except ImportError:
-        raise EhaError("the black box needs the package `scikit-learn`; install it, or leave --peers out") from None
+        raise ExamError("the black box needs the package `scikit-learn`; install it, or leave --peers out") from None
     target, _ = _left_over(row)
     blocks = (np.arange(len(target)) * 5 * FOLDS // len(target)) % FOLDS
     errors = np.zeros_like(target)

@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 from sksundae.cvode import CVODE
 
-from eha_core.errors import EhaError
+from eha_exam.errors import ExamError
 from eha_exam.truth.laws import (
     CONTACT,
     DIRECTION,
@@ -103,7 +103,7 @@ class Automaton:
         self._settle()
 
     def advance(self, stop: float) -> None:
-        """Integrate to `stop` [s] through every change of mode on the way; EhaError when the truth cannot be solved."""
+        """Integrate to `stop` [s] through every change of mode on the way; ExamError where that cannot be solved."""
         if stop - self.time < SHORTEST_SPAN:
             return
         for _ in range(EVENTS_PER_SAMPLE):
@@ -114,7 +114,7 @@ class Automaton:
             if self.mode[MOTION] == 0.0:
                 self.state[POSITION], self.state[VELOCITY] = self._rest, 0.0
             if not result.success or not np.all(np.isfinite(self.state)):
-                raise EhaError(f"the truth cannot be integrated past {self.time:.6f} s: {result.message}")
+                raise ExamError(f"the truth cannot be integrated past {self.time:.6f} s: {result.message}")
             if result.status != ROOT_FOUND:
                 return
             arrived = stop - self.time < SHORTEST_SPAN
@@ -122,7 +122,7 @@ class Automaton:
             self._settle(np.reshape(result.i_events, (-1, EVENTS))[-1])
             if arrived:
                 return
-        raise EhaError(f"the truth changes its mode without end at {self.time:.6f} s; the case is not physical")
+        raise ExamError(f"the truth changes its mode without end at {self.time:.6f} s; the case is not physical")
 
     def valve_state(self) -> tuple[float, float, float, float]:
         """Coil current, spool target and spool position [A], and spool rate [A/s], now."""

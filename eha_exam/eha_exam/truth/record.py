@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.errors import EhaError
+from eha_exam.errors import ExamError
 
 Effect = tuple[str, Mapping[str, float | str]]
 
@@ -141,9 +141,9 @@ RECORD_TYPE = np.dtype([(name, np.float64) for name in _field_names()])
 
 
 def effect_parameters(effect: str) -> tuple[str, ...]:
-    """Names of an effect's parameters, `window` and `law` apart; EhaError when there is no such effect."""
+    """Names of an effect's parameters, `window` and `law` apart; ExamError when there is no such effect."""
     if effect not in EFFECTS:
-        raise EhaError(f"effect {effect!r} is not one the truth knows; give one of {', '.join(EFFECTS)}")
+        raise ExamError(f"effect {effect!r} is not one the truth knows; give one of {', '.join(EFFECTS)}")
     return tuple(EFFECTS[effect])
 
 
@@ -156,7 +156,7 @@ def neutral_record(plant: Mapping[str, float]) -> NDArray[np.void]:
     known = PLANT | PUMP
     for name, value in (known | dict(plant)).items():
         if name not in known:
-            raise EhaError(f"plant parameter {name!r} is not one the truth knows; give one of {', '.join(known)}")
+            raise ExamError(f"plant parameter {name!r} is not one the truth knows; give one of {', '.join(known)}")
         record[name] = value
     return record
 
@@ -172,7 +172,7 @@ def with_effect(record: NDArray[np.void], effect: Effect) -> NDArray[np.void]:
         elif parameter in known:
             record[f"{name}_{parameter}"] = float(value)
         else:
-            raise EhaError(f"effect {name} has no parameter {parameter} = {value!r}; give {', '.join(known)}")
+            raise ExamError(f"effect {name} has no parameter {parameter} = {value!r}; give {', '.join(known)}")
     if name == "leakage_onset":
         record["internal_leakage"] = record["leakage_onset_internal_leakage"]
     if name == "unequal_piston_area":

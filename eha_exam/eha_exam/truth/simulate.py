@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from eha_core.errors import EhaError
+from eha_exam.errors import ExamError
 from eha_exam.truth.automaton import Automaton
 from eha_exam.truth.control import PositionController
 from eha_exam.truth.laws import (
@@ -87,7 +87,7 @@ def simulate_truth(
         Arrays of duration * rate + 1 samples; sample k is at k / rate. flow_a is into chamber A, flow_b out of B.
 
     Raises:
-        EhaError: an unknown parameter or effect, or a truth that cannot be integrated.
+        ExamError: an unknown parameter or effect, or a truth that cannot be integrated.
     """
     samples = round(duration * rate) + 1
     command = _commands(voltage, samples, rate)
@@ -239,7 +239,7 @@ def _commands(voltage: Voltage, samples: int, rate: float) -> Array | PositionCo
     else:
         given = len(voltage)
     if given < samples:
-        raise EhaError(f"the command has {given} samples and the recording {samples}; give one value a sample")
+        raise ExamError(f"the command has {given} samples and the recording {samples}; give one value a sample")
     return voltage
 
 

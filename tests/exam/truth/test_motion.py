@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
-from eha_core.errors import EhaError
+from eha_exam.errors import ExamError
 from eha_exam.truth import PositionController, resume_truth, simulate_truth
 
 AREA = 645e-6
@@ -171,14 +171,14 @@ def test_a_controller_closes_the_loop_on_the_measured_position() -> None:
 def test_what_the_truth_does_not_know_is_said(
     plant: dict[str, float], effects: list[tuple[str, dict[str, float]]], message: str
 ) -> None:
-    with pytest.raises(EhaError, match=message):
+    with pytest.raises(ExamError, match=message):
         simulate_truth(plant, effects, np.zeros(11), 0.01)
 
 
 def test_a_truth_that_cannot_be_integrated_says_so_once(capfd: pytest.CaptureFixture[str]) -> None:
     """A piston a metre beyond the end of its stroke; the solver's own messages would come between what is printed."""
     truth = simulate_truth({}, [], SINE, 1.0)
-    with pytest.raises(EhaError, match="cannot be integrated past 0"):
+    with pytest.raises(ExamError, match="cannot be integrated past 0"):
         resume_truth({}, [], truth, 500, 700, shift={"position": 1.0})
     assert capfd.readouterr() == ("", "")
 
@@ -187,5 +187,5 @@ def test_a_truth_that_runs_away_cannot_be_integrated() -> None:
     """At a pressure without bounds the volume of oil with air in it is nothing, and is divided by."""
     air = [("entrained_air", {"air_fraction": 0.02})]
     truth = simulate_truth({}, air, SINE, 1.0)
-    with pytest.raises(EhaError, match="cannot be integrated past 0.5"):
+    with pytest.raises(ExamError, match="cannot be integrated past 0.5"):
         resume_truth({}, air, truth, 500, 700, shift={"pressure_a": 1e148})

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eha_core.errors import EhaError
 from eha_core.plant import Plant, compose
 from eha_exam.case import PRESSURE_NOISE
+from eha_exam.errors import ExamError
 from eha_exam.truth import resume_truth, simulate_truth
 
 ROD = {"piston_area": 1.2e-3, "piston_area_b": 7.8e-4, "moving_mass": 30.0, "internal_leakage": 2e-12}
@@ -100,5 +100,5 @@ def test_a_pumped_truth_goes_on_from_any_sample() -> None:
 
 
 def test_a_parameter_that_the_truth_does_not_have_is_named() -> None:
-    with pytest.raises(EhaError, match="'tank_gain' is not one the truth knows"):
+    with pytest.raises(ExamError, match="'tank_gain' is not one the truth knows"):
         simulate_truth({"tank_gain": 1.0}, [], np.zeros(11), 0.01)
