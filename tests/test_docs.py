@@ -14,13 +14,16 @@ from nbclient import NotebookClient
 
 from eha_core.cli import main, verbs
 from eha_core.effects import effects
+from eha_exam.command import main as exam
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").glob("*.md"))]
 MADE = re.compile(r"catalogue/\w+\.md")
 """Pages that are made when the site is."""
 
-COMMAND = re.compile(r"^(?:    |\$ )?(?:\.venv/bin/)?((?:eha|make|ros2 (?:run|launch) eha_\w+) [^|\n]*)", re.MULTILINE)
+COMMAND = re.compile(
+    r"^(?:    |\$ )?(?:\.venv/bin/)?((?:eha|eha-exam|make|ros2 (?:run|launch) eha_\w+) [^|\n]*)", re.MULTILINE
+)
 """A command that a page tells to type: in a block, or after a console's prompt."""
 
 OPTION = re.compile(r"--[a-z][a-z-]*")
@@ -52,6 +55,11 @@ def test_every_command_has_a_verb_and_options_that_there_are(page: Path, capsys:
     for words in commands_of(page):
         if words[0] == "make":
             assert {word for word in words[1:] if "=" not in word} <= targets, words
+        elif words[0] == "eha-exam":
+            with pytest.raises(SystemExit):
+                exam(["--help"])
+            offered = set(OPTION.findall(capsys.readouterr().out))
+            assert {word for word in words[1:] if OPTION.fullmatch(word)} <= offered, words
         elif words[0] == "ros2":
             package, name = ROOT / words[2], words[3]
             there = [*package.glob("launch/*"), *(path.with_suffix("") for path in package.glob(f"{words[2]}/*.py"))]
@@ -67,7 +75,7 @@ def test_every_command_has_a_verb_and_options_that_there_are(page: Path, capsys:
 
 def test_commands_are_found_on_the_pages() -> None:
     found = [words for page in PAGES for words in commands_of(page)]
-    assert {words[0] for words in found} == {"eha", "make", "ros2"}
+    assert {words[0] for words in found} == {"eha", "eha-exam", "make", "ros2"}
     assert {words[1] for words in found if words[0] == "eha"} >= {"diagnose", "exam", "inspect", "paper", "simulate"}
 
 

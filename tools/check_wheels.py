@@ -119,7 +119,8 @@ def sit_an_exam(python: Path, folder: Path) -> None:
     command = [str(python.parent / "eha-exam"), "--cases", "3", "--tier", "null", "--seed", "1", "--out", "exam"]
     method = f"dry friction={{python}} {script} {{recordings}} {{answers}}"
     subprocess.run([*command, "--method", method, "--require", "1"], check=True, cwd=folder, env=environment)
-    print((folder / "exam" / "table.md").read_text(encoding="utf-8"))
+    table = (folder / "exam" / "table.md").read_text(encoding="utf-8")
+    print(table.partition("\n## ")[0])
 
 
 if __name__ == "__main__":
