@@ -21,6 +21,7 @@ from eha_core.diagnosis.result import (
     UnknownLaw,
 )
 from eha_core.report.document import as_json, document
+from eha_exam.document import fault_of
 
 STATEMENT = (
     "90 % of the recalibrated model's unexplained error is in the force balance of the piston, near zero speed,"
@@ -91,3 +92,7 @@ def test_what_is_not_finite_is_null_and_the_text_is_strict_json(diagnosis: Diagn
     assert found["fit"]["held_out"]["position"] == {
         "rmse_before": 3e-5, "rmse_calibrated": 2e-5, "rmse_after": None, "noise": 0.5,
     }  # fmt: skip
+
+
+def test_is_of_the_form_that_the_exam_reads(diagnosis: Diagnosis) -> None:
+    assert fault_of(json.loads(as_json(diagnosis))) == ""
