@@ -14,7 +14,7 @@ from eha_core.diagnosis.search import expansion
 from eha_core.diagnosis.search.course import at_the_noise
 from eha_core.diagnosis.search.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.search.pool import Pool, Trace
-from eha_core.identification.fit import exact, fit
+from eha_core.identification.fit import Ending, exact, fit
 from eha_core.identification.observation import observe
 from eha_core.identification.problem import objectives_at
 from eha_core.identification.short_windows import held
@@ -48,6 +48,14 @@ def test_two_effects_are_found_by_one_expansion_and_their_values_too(rig):
         assert at.values[name] == pytest.approx(value, abs=max(4.0 * at.deviation(name), 0.01 * value))
     assert search.pool.trace.expansions == 1 and len(search.pool.trace.steps) <= FITTED + 1
     assert said == [said[0]] and "constant_load + valve_deadband" in said[0]
+
+
+def test_no_proposal_is_left_while_it_may_come_below_the_best(rig):
+    search = searched(rig)
+    expand(search, NOTHING, "first")
+    proposed = {hypothesis: at for hypothesis, at in search.pool if hypothesis != NOTHING}
+    assert len(proposed) > 1
+    assert not any(at.ending is Ending.ITERATIONS for at in proposed.values())
 
 
 def test_a_search_expands_no_set_twice_and_ends_at_the_noise(rig):

@@ -130,7 +130,8 @@ def fit(
     """Minimise data, continuity defects and priors over `free` and the states of the windows in use, from `values`.
 
     Stops when an iteration gains less than SETTLED, when `in_a_row` iterations gain too little (WORTH), or when further
-    ones, at HOPE times the last gain, would not bring the objective below `give_up_above`.
+    ones, at HOPE times the last gain, would not bring the objective below `give_up_above`. Where derivatives at the
+    problem's slope step promise more than any step gains, it goes on with those at the simulation's own step.
     """
     shooting = problem.shooting
     free, values = in_each(free, values, shooting.per_recording, len(shooting.first_windows))
@@ -148,7 +149,7 @@ def fit(
         found = _descend(problem, values, free, _Point(q, states, rows, ends, objective), normal, gradient, damping)
         little_gained = found is None or objective - found[0].objective < SETTLED
         if little_gained and problem.slope_step > shooting.step_size and _promised(normal, gradient) > HOPE * SETTLED:
-            problem = exact(problem)  # what derivatives promise and no step gives, they do not know
+            problem = exact(problem)  # no step gains what these derivatives promise: they are too coarse
             continue
         if found is None:
             ending = Ending.NO_DESCENT
