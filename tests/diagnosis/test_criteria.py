@@ -73,6 +73,23 @@ THRESHOLDS = {
     "OUTSTANDING": 1.5,
     "COMPARED_WITHIN": 300.0,
     "IDENTIFIED": 2.0,
+    "OF_STATES": 6,
+    "ALONE": 16,
+    "RELEASED": 4,
+    "REACH": 1.0,
+    "SAME_NOISE": 0.01,
+    "FINER_REACH": 0.2,
+    "TO_THE_STEP": 4,
+    "MOST_SPANS": 100,
+    "HATS": 9,
+    "OF_SCALE": 0.1,
+    "SMALLEST": 0.03,
+    "MOVED": 0.1,
+    "MOST_OFF": 0.5,
+    "BARE_MENTION": 2.0,
+    "PARTS_ASKED": 3,
+    "HIGHER_AT_REST": 1.2,
+    "LAW_SIZE": 3,
 }
 
 

@@ -4,7 +4,8 @@ import pytest
 from made import LAWS, recorded
 
 from eha_core.diagnosis.characteristic_scales import QUANTITIES, Scales
-from eha_core.diagnosis.search.equations import ABOVE, KIND, KNOWN, friction_columns, friction_of
+from eha_core.diagnosis.criteria import HIGHER_AT_REST, MOVED
+from eha_core.diagnosis.search.equations import KIND, friction_columns, friction_of
 from eha_core.identification.observation import observe
 from eha_core.parameters import nominal_values
 
@@ -27,7 +28,7 @@ def test_clear_friction_is_held_and_every_form_begins_as_large():
     presliding = begun["presliding_friction"]
     assert presliding["presliding_friction.force"] == pytest.approx(250.0, rel=0.1)
     assert presliding["presliding_friction.static_force"] >= presliding["presliding_friction.force"]
-    assert ABOVE > 1.0
+    assert HIGHER_AT_REST > 1.0
     for start in found.forms:
         rows = dict(zip(start.effect.parameter_names(), start.effect.parameters, strict=True))
         assert all(rows[name].lower <= value <= rows[name].upper for name, value in start.values.items())
@@ -66,7 +67,7 @@ def test_what_the_friction_held_may_be_off_by_is_its_values_and_its_form():
     assert moved and all("shape" not in name for name in moved)
     for column in own:
         ((name, value),) = column.values.items()
-        assert value == pytest.approx((1.0 + KNOWN) * found.held.values[name])
+        assert value == pytest.approx((1.0 + MOVED) * found.held.values[name])
     others = [column for column in friction_columns(found) if column not in own]
     assert {column.effect.id for column in others} == FORMS - {found.held.effect.id}
     for column in others:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from made import LAWS, bench
 
-from eha_core.diagnosis.criteria import BLOCK, FAR_FROM_NOISE, NEAR_NOISE
+from eha_core.diagnosis.criteria import BLOCK, FAR_FROM_NOISE, NEAR_NOISE, REACH
 from eha_core.diagnosis.hypothesis import NOTHING
-from eha_core.diagnosis.search.pool import REACH, Pool, Trace, excess_of_block_means
+from eha_core.diagnosis.search.pool import Pool, Trace, excess_of_block_means
 from eha_core.identification.fit import fit
 from eha_core.parameters import nominal_values
 

@@ -193,6 +193,55 @@ Of effects that do always act, the best windows in a row are predicted to gain n
 COMPARED_WITHIN = 300.0
 """Chi^2, in units of the residual's variance, behind the best within which a rival is fitted to its end."""
 
+OF_STATES, ALONE, RELEASED = 6, 16, 4
+"""Iterations of windows' starts alone, and of friction that is free alone and together with others. With 8, 20 and 3,
+the numbers of other fits, a piston that sticks took another way to its law, three times as long."""
+
+REACH = 1.0
+"""s; how far a fit may move an instant from where the linear model has it."""
+
+SAME_NOISE = 0.01
+"""Share by which a channel's noise may seem to change before everything is weighed anew."""
+
+FINER_REACH = 0.2
+"""Share of how far an instant was tried within which it is tried once more: the places were an eleventh of that
+apart (assumed)."""
+
+TO_THE_STEP = 4
+"""How often instants are tried, the last time 0.7 ms apart. Where friction begins to act between two samples the
+objective has a valley at each break-away."""
+
+MOST_SPANS = 100
+"""Where there are more windows, neighbours are taken together to ask since when and until when an effect acts, for the
+answer has a number for each pair. A fit of the instants follows, so nothing hangs on a hundredth of the record."""
+
+HATS = 9
+"""Columns that draw a law coarsely: one for every third of a curve's knots."""
+
+OF_SCALE = 0.1
+"""Height of a column that draws a law, in units of the usual force, opening or leakage (assumed)."""
+
+SMALLEST = 0.03
+"""Share of the size guessed of an effect with which a fit begins at least: at nothing an effect has no slope of its
+shape."""
+
+MOVED, MOST_OFF = 0.1, 0.5
+"""Share of a value of the friction in the force balance by which it is moved to see what that does, and by which it may
+be off (assumed)."""
+
+BARE_MENTION = 2.0
+"""Difference of the information criterion up to which evidence is not worth more than a bare mention (R. E. Kass and A.
+E. Raftery, "Bayes factors", Journal of the American Statistical Association 90, 1995)."""
+
+PARTS_ASKED = 3
+"""Parts of a recording that are asked for friction by themselves, if the whole shows none (assumed)."""
+
+HIGHER_AT_REST = 1.2
+"""Share of the friction in motion that a law begins with at rest where the balance shows none higher (assumed)."""
+
+LAW_SIZE = 3
+"""Members that a recovered law counts as, because its curve is flexible (assumed)."""
+
 
 def chance_gain(samples: int, times_noise: float) -> float:
     """Chi^2 that one more effect must gain to be looked at, where the model leaves `times_noise` chi^2 a sample."""

@@ -9,14 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from eha_core.diagnosis.criteria import LAW_SIZE
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit
 from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.per_recording import base_name, is_one_of
 from eha_core.parameters import NOMINAL, acting_rows
-
-LAW_SIZE = 3
-"""Members that a recovered law counts as, because its curve is flexible (assumed)."""
 
 
 @dataclass(frozen=True, order=True)

@@ -10,6 +10,7 @@ import numpy as np
 
 from eha_core.curve import KNOTS
 from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.criteria import HATS, OF_SCALE
 from eha_core.diagnosis.effect_parameters import MOST_ABOVE
 from eha_core.effects import Effect
 from eha_core.identification.observation import Observation
@@ -22,12 +23,6 @@ LAWS = {
     "recovered_leakage": ("pressure difference",),
 }
 """What each curve can be over; a curve with several carries its choice in a parameter `variable`."""
-
-HATS = 9
-"""Columns that draw a law coarsely: of every third of a curve's knots."""
-
-OF_SCALE = 0.1
-"""Height of such a column, in units of the usual force, opening or leakage (assumed)."""
 
 SIZES = {1.0: 100.0, 0.1: 3.0}
 """Shares of a guess's size at which an effect is tried, and the largest factor on each: what an effect does is seldom

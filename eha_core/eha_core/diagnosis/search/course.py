@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration, at_step, filtered_channels, is_at_noise, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import CARRIED, EXPANSIONS, FURTHER, OF_FRICTION, UNFITTED
+from eha_core.diagnosis.criteria import ALONE, CARRIED, EXPANSIONS, FURTHER, OF_FRICTION, OF_STATES, RELEASED, UNFITTED
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.search.best_sets import objective_without, one_more
 from eha_core.diagnosis.search.columns import Column, columns_of, law_columns
@@ -27,10 +27,6 @@ from eha_core.identification.observation import Observation
 from eha_core.identification.problem import Problem, whole
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import held
-
-OF_STATES, ALONE, RELEASED = 6, 16, 4
-"""Iterations of windows' starts alone, and of friction that is free alone and together with others. With 8, 20 and 3,
-the numbers of other fits, a piston that sticks took another way to its law, three times as long."""
 
 
 @dataclass(frozen=True)

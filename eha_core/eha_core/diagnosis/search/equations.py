@@ -8,6 +8,7 @@ from itertools import pairwise
 from math import inf
 
 from eha_core.diagnosis.characteristic_scales import Scales
+from eha_core.diagnosis.criteria import BARE_MENTION, HIGHER_AT_REST, MOST_OFF, MOVED, PARTS_ASKED
 from eha_core.diagnosis.hypothesis import neutral
 from eha_core.diagnosis.search.columns import Column, columns_of
 from eha_core.effects import Effect
@@ -15,19 +16,6 @@ from eha_core.identification.observation import Observation
 from eha_core.weak_form.dry_friction import CLEAR, DryFriction, dry_friction
 
 KIND = "dry friction"
-
-KNOWN, MOST_OFF = 0.1, 0.5
-"""Share of a value of the force balance by which it is moved to see what it does, and by which it may be off."""
-
-MENTIONED = 2.0
-"""Difference of the information criterion up to which evidence is not worth more than a bare mention (R. E. Kass and A.
-E. Raftery, "Bayes factors", Journal of the American Statistical Association 90, 1995)."""
-
-PARTS = 3
-"""Parts of a recording that are asked for friction by themselves, if the whole shows none (assumed)."""
-
-ABOVE = 1.2
-"""Share of the friction in motion that a law begins with at rest where the balance shows none higher (assumed)."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +53,7 @@ def friction_of(
             continue
         frictions = _of_evidence(found)
         if not frictions or _over_none(found, frictions) < CLEAR:
-            excluded = _over_none(found, found) < -MENTIONED and not _in_a_part(observation, values)
+            excluded = _over_none(found, found) < -BARE_MENTION and not _in_a_part(observation, values)
             return Friction(excluded, None, ())
         starts = [FrictionStart(offered[form.form], _begun(offered[form.form], form, scales)) for form in frictions]
         sliding = next((form for form in frictions if form.form == "stribeck_friction"), frictions[0])
@@ -95,7 +83,7 @@ def _of_evidence(found: Sequence[DryFriction]) -> list[DryFriction]:
 
 def _in_a_part(observation: Observation, values: Mapping[str, float]) -> bool:
     """Whether a part of the recording shows friction clearly: the balance of the whole hides what acts for a while."""
-    edges = [observation.duration * k / PARTS for k in range(PARTS + 1)]
+    edges = [observation.duration * k / PARTS_ASKED for k in range(PARTS_ASKED + 1)]
     parts = [dry_friction(observation, values, within, speeds=()) for within in pairwise(edges)]
     return any(found and _over_none(found, _of_evidence(found)) >= CLEAR for found in parts)
 
@@ -105,7 +93,7 @@ def friction_columns(friction: Friction) -> tuple[Column, ...]:
     held, *others = friction.forms
     rows = dict(zip(held.effect.parameter_names(), held.effect.parameters, strict=True))
     own = [
-        Column(held.effect, {name: (1.0 + KNOWN) * held.values[name]}, (), 0, False, MOST_OFF / KNOWN)
+        Column(held.effect, {name: (1.0 + MOVED) * held.values[name]}, (), 0, False, MOST_OFF / MOVED)
         for name, row in rows.items()
         if held.values.get(name) and (row.switches or row.relative_to == "speed")
     ]
@@ -124,5 +112,5 @@ def _begun(effect: Effect, form: DryFriction, scales: Scales) -> dict[str, float
         if row.name in form.values:
             values[f"{effect.id}.{row.name}"] = form.values[row.name]
         elif row.above and force:
-            values[f"{effect.id}.{row.name}"] = ABOVE * force
+            values[f"{effect.id}.{row.name}"] = HIGHER_AT_REST * force
     return values

@@ -7,22 +7,14 @@ from itertools import product
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import CONVERGED
+from eha_core.diagnosis.criteria import CONVERGED, FINER_REACH, REACH, TO_THE_STEP
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.search.columns import Column
-from eha_core.diagnosis.search.pool import REACH, Pool
+from eha_core.diagnosis.search.pool import Pool
 from eha_core.diagnosis.search.quadratic import Derivatives, QuadraticModel, derivatives, with_columns
 from eha_core.identification.fit import HOPE
 from eha_core.identification.per_recording import base_name
 from eha_core.plant.lane_rows import LANES
-
-FINER = 0.2
-"""Share of how far an instant was tried within which it is tried once more: the places were an eleventh of that
-apart (assumed)."""
-
-TO_THE_STEP = 4
-"""How often instants are tried, the last time 0.7 ms apart. Where friction begins to act between two samples the
-objective has a valley at each break-away."""
 
 
 def shift_instants(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np.inf) -> None:
@@ -30,7 +22,7 @@ def shift_instants(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np
     times what is predicted of that would not bring the objective below `give_up_above`."""
     at, about = pool.found[hypothesis], None
     instants = [parameter.name for parameter in at.free if parameter.resolution]
-    for reach, name in product([REACH * FINER**k for k in range(TO_THE_STEP)], instants):
+    for reach, name in product([REACH * FINER_REACH**k for k in range(TO_THE_STEP)], instants):
         if about is None or at is not pool.found[hypothesis]:
             at = pool.found[hypothesis]
             about = derivatives(pool.posed(hypothesis), at, pool.plant)

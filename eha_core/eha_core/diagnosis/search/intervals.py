@@ -10,17 +10,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import OF_SIZE, OUTSTANDING
+from eha_core.diagnosis.criteria import MOST_SPANS, OF_SIZE, OUTSTANDING
 from eha_core.diagnosis.search.columns import Column
 from eha_core.identification.fit import Fit
 from eha_core.identification.normal_matrix import Eliminated
 from eha_core.identification.numbers import Array, Integers
 from eha_core.identification.problem import LINK, Linearised, Problem
 from eha_core.identification.shooting import STATE_SIZE
-
-MOST_SPANS = 100
-"""Where there are more windows, neighbours are taken together to ask since when and until when an effect acts, for the
-answer has a number for each pair. A fit of the instants follows, so nothing hangs on a hundredth of the record."""
 
 
 @dataclass(frozen=True)

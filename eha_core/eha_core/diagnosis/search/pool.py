@@ -14,6 +14,8 @@ from eha_core.diagnosis.criteria import (
     BLOCK,
     EXPANSIONS_IN_ALL,
     FAR_FROM_NOISE,
+    REACH,
+    SAME_NOISE,
     TO_THE_END,
     WHITE,
     chance_gain,
@@ -29,13 +31,6 @@ from eha_core.identification.per_recording import base_name, in_each
 from eha_core.identification.problem import Problem
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.short_windows import with_finer_slopes
-
-REACH = 1.0
-"""s; how far a fit may move an instant from where the linear model has it."""
-
-SAME_NOISE = 0.01
-"""Share by which a channel's noise may seem to change before everything is weighed anew."""
-
 
 Progress = Callable[[str], None]
 """Receives what is being tried."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cho_solve_banded
 
+from eha_core.diagnosis.criteria import SMALLEST
 from eha_core.diagnosis.hypothesis import Hypothesis, Member, neutral
 from eha_core.diagnosis.search.box import within_bounds
 from eha_core.diagnosis.search.columns import Column
@@ -29,9 +30,6 @@ a coefficient."""
 
 ITS_OWN = 1e-6
 """Share of a column's energy that the nominal parameters must not be able to imitate for it to be an option."""
-
-SMALLEST = 0.03
-"""Factor on a guess's size with which a fit begins at least: at nothing an effect has no slope of its shape."""
 
 
 @dataclass(frozen=True)
