@@ -12,30 +12,30 @@ from eha_exam.files import read_answer, recording_name, write_case
 from eha_exam.scoring import Answer
 from eha_exam.second import second_recording
 from eha_exam.tool import run_tool, words_of
-from eha_exam.workers import Workers
+from eha_exam.workers import in_parallel
 
 SECOND = "second"
 """Folder of a tool's answers to two recordings of one rig."""
 
 
-def answer_by_recording(exam: Exam, tool: str, command: str, workers: Workers, progress: Progress) -> None:
+def answer_by_recording(exam: Exam, tool: str, command: str, jobs: int, progress: Progress) -> None:
     """Have a tool diagnose every recording that it has not, and those of the tests that it prescribes."""
-    _diagnose(exam, tool, command, workers, progress)
-    _repeat(exam, tool, command, workers, progress)
+    _diagnose(exam, tool, command, jobs, progress)
+    _repeat(exam, tool, command, jobs, progress)
 
 
-def _diagnose(exam: Exam, tool: str, command: str, workers: Workers, progress: Progress) -> None:
+def _diagnose(exam: Exam, tool: str, command: str, jobs: int, progress: Progress) -> None:
     missing, total = exam.unanswered(tool), len(exam.names())
     answers = str(exam.answers(tool))
     calls = [(tuple(map(str, recordings_of(exam.recordings / name))), answers, command) for name in missing]
     done = total - len(calls)
     progress(tool, done, total)
-    for _ in workers.run(diagnose_recording, calls):
+    for _ in in_parallel(diagnose_recording, calls, jobs):
         done += 1
         progress(tool, done, total)
 
 
-def _repeat(exam: Exam, tool: str, command: str, workers: Workers, progress: Progress) -> None:
+def _repeat(exam: Exam, tool: str, command: str, jobs: int, progress: Progress) -> None:
     """Run the tests that ambiguous diagnoses prescribed, and have both recordings diagnosed together."""
     answers = exam.answers(tool)
     calls = []
@@ -47,7 +47,7 @@ def _repeat(exam: Exam, tool: str, command: str, workers: Workers, progress: Pro
         there = (answers / SECOND / f"{stem}.json").is_file()
         if given.get("verdict") == "ambiguous" and prescribed and not there:
             calls.append((str(sealed), str(exam.folder), tool, command, prescribed))
-    for done, _ in enumerate(workers.run(repeat_case, calls), 1):
+    for done, _ in enumerate(in_parallel(repeat_case, calls, jobs), 1):
         progress(f"{tool}, second recordings", done, len(calls))
 
 

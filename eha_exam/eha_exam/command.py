@@ -6,7 +6,6 @@ A tool is a command that is called once for each recording, a method one that is
 from __future__ import annotations
 
 import argparse
-import os
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -17,7 +16,6 @@ from eha_exam.errors import ExamError
 from eha_exam.peers import PEERS
 from eha_exam.tiers import MEANINGS
 from eha_exam.version import __version__
-from eha_exam.workers import Workers
 
 if TYPE_CHECKING:
     from eha_exam.scoring import Mark
@@ -29,7 +27,6 @@ BELOW_REQUIRED = 1
 UNUSABLE = 2
 """Exit status where the input or the arguments cannot be used."""
 _INTERRUPTED = 130
-_UNREAD = 141  # a shell's exit status of a program that SIGPIPE ended
 
 
 class _Parser(argparse.ArgumentParser):
@@ -54,7 +51,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--tier", metavar="T", help="one tier alone")
     parser.add_argument("--jobs", type=int, default=1, metavar="J", help="recordings diagnosed in parallel (default 1)")
-    parser.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler whose workers see --out")
     parser.add_argument("--out", type=Path, default=Path("out/exam"), metavar="DIR", help="folder (default out/exam)")
     parser.add_argument("--peers", action="store_true", help="score the other methods on the same recordings too")
     parser.add_argument(
@@ -115,7 +111,7 @@ def run(
     if not tools and not methods:
         raise ExamError("nothing to score; give --tool NAME=COMMAND, --method NAME=COMMAND or --peers")
     exam = Exam(arguments.out, arguments.cases, arguments.seed, arguments.tier, arguments.opened)
-    marks = run_exam(exam, tools, Workers(arguments.jobs, arguments.dask), show_progress, methods)
+    marks = run_exam(exam, tools, arguments.jobs, show_progress, methods)
     summaries = [summarise(name, marks[name]) for name in marks]
     reports = report_lost(exam, summaries[0].lost[: arguments.lost], report)
     about = {"commit": _commit(), "cases": arguments.cases, "seed": arguments.seed}
@@ -233,17 +229,12 @@ def main(words: Sequence[str] | None = None) -> int:
     arguments = parser.parse_args(words)
     try:
         status = run(arguments, PROGRAM, words, report=arguments.report)
-        sys.stdout.flush()
     except ExamError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return UNUSABLE
     except KeyboardInterrupt:
         print(f"{PROGRAM}: interrupted", file=sys.stderr)
         return _INTERRUPTED
-    except BrokenPipeError:
-        # The reader, such as `head`, has closed the pipe; flushing the buffer must not fail again when Python ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _UNREAD
     return status
 
 

@@ -28,13 +28,13 @@ from eha_exam.files import (
 from eha_exam.scoring import Mark, mark
 from eha_exam.second import with_other_loads
 from eha_exam.tool import run_command, words_of
-from eha_exam.workers import Workers
+from eha_exam.workers import in_parallel
 
 
 def run_exam(
     exam: Exam,
     tools: Mapping[str, str],
-    workers: Workers,
+    jobs: int,
     progress: Progress,
     methods: Mapping[str, str] | None = None,
 ) -> dict[str, list[Mark]]:
@@ -43,14 +43,14 @@ def run_exam(
     Args:
         exam: what is run.
         tools: commands that are called for each recording, by name.
-        workers: where recordings are made and tools are run.
+        jobs: processes that make recordings and run tools.
         progress: is told what is done.
         methods: commands that are called once for all recordings, by name.
     """
     _claim(exam)
-    _prepare(exam, exam.members, workers, progress)
+    _prepare(exam, exam.members, jobs, progress)
     for name, command in tools.items():
-        answer_by_recording(exam, name, command, workers, progress)
+        answer_by_recording(exam, name, command, jobs, progress)
     for name, command in (methods or {}).items():
         answer_by_folder(exam, name, command, progress)
     return {name: open_answers(exam, name) for name in (*tools, *(methods or {}))}
@@ -69,12 +69,12 @@ def _claim(exam: Exam) -> None:
     path.write_text(json.dumps(wanted), encoding="utf-8")
 
 
-def _prepare(exam: Exam, members: Sequence[tuple[str, int]], workers: Workers, progress: Progress) -> None:
+def _prepare(exam: Exam, members: Sequence[tuple[str, int]], jobs: int, progress: Progress) -> None:
     missing = [(tier, number) for tier, number in members if not exam.sealed(tier, number).is_file()]
     calls = [(tier, number, exam.seed, str(exam.folder)) for tier, number in missing]
     done = exam.cases - len(calls)
     progress("recordings", done, exam.cases)
-    for _ in workers.run(prepare_case, calls):
+    for _ in in_parallel(prepare_case, calls, jobs):
         done += 1
         progress("recordings", done, exam.cases)
     digests = {}

@@ -14,7 +14,6 @@ from eha_core.recording import read_recording
 from eha_exam.exam_folder import Exam
 from eha_exam.files import read_answer
 from eha_exam.run_exam import run_exam
-from eha_exam.workers import Workers
 
 ONE_OF_TWO = """
 import json, shutil, sys, time
@@ -45,7 +44,7 @@ def command(folder: Path, source: str, copy: str) -> str:
 
 def test_one_call_gets_all_recordings_and_what_it_leaves_out_has_failed(exam: Exam, tmp_path: Path) -> None:
     methods = {"one": command(tmp_path, ONE_OF_TWO, "copy")}
-    marks = run_exam(exam, {}, Workers(), quiet, methods)["one"]
+    marks = run_exam(exam, {}, 1, quiet, methods)["one"]
     assert sorted(mark.outcome for mark in marks) == ["failed", "right"]
     assert marks[0].seconds == marks[1].seconds and 0.5 <= marks[0].seconds < 5.0
     names = {path.name for path in exam.recordings.glob("*.mcap")}
@@ -59,12 +58,12 @@ def test_one_call_gets_all_recordings_and_what_it_leaves_out_has_failed(exam: Ex
         assert model.values["moving_mass"] == case.nominal["moving_mass"]
     assert not list(exam.folder.glob("method-*"))
     again = {"one": f"{sys.executable}-none {{recordings}} {{answers}}"}
-    assert run_exam(exam, {}, Workers(), quiet, again)["one"] == marks  # it is not called a second time
+    assert run_exam(exam, {}, 1, quiet, again)["one"] == marks  # it is not called a second time
 
 
 def test_a_method_that_breaks_down_has_failed_on_all_that_it_did_not_answer(exam: Exam, tmp_path: Path) -> None:
     source = "import sys; sys.exit('no licence')"
-    marks = run_exam(exam, {}, Workers(), quiet, {"broken": command(tmp_path, source, "broken")})["broken"]
+    marks = run_exam(exam, {}, 1, quiet, {"broken": command(tmp_path, source, "broken")})["broken"]
     assert [mark.outcome for mark in marks] == ["failed", "failed"]
     kept = [json.loads(path.read_text()) for path in exam.answers("broken").iterdir()]
     assert [answer["message"].strip() for answer in kept] == ["no licence"] * 2
@@ -72,7 +71,7 @@ def test_a_method_that_breaks_down_has_failed_on_all_that_it_did_not_answer(exam
 
 def test_recordings_of_one_rig_come_with_the_file_that_says_what_differs(tmp_path: Path) -> None:
     exam = Exam(tmp_path / "exam", 1, 2026, "recordings")
-    run_exam(exam, {}, Workers(), quiet, {"one": command(tmp_path, ONE_OF_TWO, "copy")})
+    run_exam(exam, {}, 1, quiet, {"one": command(tmp_path, ONE_OF_TWO, "copy")})
     first = exam.names()[0].removesuffix(".mcap")
     there = sorted(path.name for path in (tmp_path / "copy").iterdir())
     assert there == sorted([f"{first}.mcap", f"{first}-2.mcap", f"{first}.yaml"])

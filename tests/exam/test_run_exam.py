@@ -19,7 +19,6 @@ from eha_exam.run_exam import open_answers, run_exam
 from eha_exam.shares import summarise
 from eha_exam.tables import as_json, as_markdown
 from eha_exam.tool import run_tool
-from eha_exam.workers import Workers
 
 SILENT = """
 import json, sys
@@ -61,7 +60,7 @@ def tools(exam: Exam) -> dict[str, str]:
 
 def test_known_answers_get_the_marks_they_deserve(exam: Exam, tools: dict[str, str]) -> None:
     scored = {name: tools[name] for name in ("silent", "loud", "broken")}
-    marks = run_exam(exam, scored, Workers(), quiet)
+    marks = run_exam(exam, scored, 1, quiet)
     assert [m.outcome for m in marks["silent"]] == ["right", "right"]
     assert [(m.outcome, m.discovery) for m in marks["loud"]] == [("wrong", True)] * 2
     assert [m.outcome for m in marks["broken"]] == ["failed", "failed"]
@@ -76,7 +75,7 @@ def test_known_answers_get_the_marks_they_deserve(exam: Exam, tools: dict[str, s
 
 
 def test_recordings_say_nothing_of_what_is_concealed(exam: Exam, tools: dict[str, str]) -> None:
-    run_exam(exam, {"silent": tools["silent"]}, Workers(), quiet)
+    run_exam(exam, {"silent": tools["silent"]}, 1, quiet)
     names = sorted(path.name for path in (exam.folder / "recordings").iterdir())
     assert all("null" not in name for name in names)
     answers = [read_answer(path.read_text()) for path in sorted((exam.folder / "sealed").iterdir())]
@@ -93,25 +92,25 @@ def test_recordings_say_nothing_of_what_is_concealed(exam: Exam, tools: dict[str
 
 def test_an_interrupted_exam_goes_on_where_it_stopped(exam: Exam, tools: dict[str, str]) -> None:
     only = {"silent": tools["silent"]}
-    run_exam(exam, only, Workers(), quiet)
+    run_exam(exam, only, 1, quiet)
     kept, lost = sorted((exam.folder / "answers" / "silent").iterdir())
     before = kept.stat().st_mtime_ns
     lost.unlink()
     stages = []
-    run_exam(exam, only, Workers(), lambda stage, done, of: stages.append((stage, done, of)))
+    run_exam(exam, only, 1, lambda stage, done, of: stages.append((stage, done, of)))
     assert stages == [("recordings", 2, 2), ("silent", 1, 2), ("silent", 2, 2)]
     assert kept.stat().st_mtime_ns == before
 
 
 def test_a_prescribed_test_is_run_and_both_recordings_are_diagnosed(exam: Exam, tools: dict[str, str]) -> None:
-    marks = run_exam(exam, {"unsure": tools["unsure"]}, Workers(), quiet)["unsure"]
+    marks = run_exam(exam, {"unsure": tools["unsure"]}, 1, quiet)["unsure"]
     assert [(m.outcome, m.resolved) for m in marks] == [("abstained", True)] * 2
     second = sorted((exam.folder / "answers" / "unsure" / "second").glob("*.mcap"))
     assert [read_recording(path).duration for path in second] == [10.0, 10.0]
 
 
 def test_an_answer_that_was_changed_is_refused(exam: Exam, tools: dict[str, str]) -> None:
-    run_exam(exam, {"silent": tools["silent"]}, Workers(), quiet)
+    run_exam(exam, {"silent": tools["silent"]}, 1, quiet)
     path = next(iter(sorted((exam.folder / "sealed").iterdir())))
     sealed = path.read_text()
     path.write_text(sealed.replace("null_parameters", "null"))
@@ -121,14 +120,14 @@ def test_an_answer_that_was_changed_is_refused(exam: Exam, tools: dict[str, str]
 
 
 def test_a_folder_with_another_exam_is_refused(exam: Exam, tools: dict[str, str]) -> None:
-    run_exam(exam, {"silent": tools["silent"]}, Workers(), quiet)
+    run_exam(exam, {"silent": tools["silent"]}, 1, quiet)
     with pytest.raises(ExamError, match="another exam"):
-        run_exam(Exam(exam.folder, 2, 6, exam.tier), tools, Workers(), quiet)
+        run_exam(Exam(exam.folder, 2, 6, exam.tier), tools, 1, quiet)
 
 
 def test_a_tool_that_does_not_exist_is_said_in_one_line(exam: Exam) -> None:
     with pytest.raises(ExamError, match="cannot be started"):
-        run_exam(exam, {"ghost": f"{sys.executable}-none {{recording}} {{answer}}"}, Workers(), quiet)
+        run_exam(exam, {"ghost": f"{sys.executable}-none {{recording}} {{answer}}"}, 1, quiet)
 
 
 def test_a_tool_is_held_to_one_core() -> None:

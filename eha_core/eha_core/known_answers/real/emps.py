@@ -13,7 +13,6 @@ from typing import Any
 
 from scipy.io import loadmat
 
-from eha_core.errors import EhaError
 from eha_core.known_answers.real.axis import (
     Array,
     Axis,
@@ -24,6 +23,7 @@ from eha_core.known_answers.real.axis import (
     rms,
     simulate,
 )
+from eha_core.known_answers.real.originals import original
 from eha_core.known_answers.real.question import Question
 from eha_core.known_answers.real.sealing import seal, write_csv
 from eha_core.known_answers.shipped import diagnose, named
@@ -80,10 +80,7 @@ def read(data: Path, name: str, *wanted: str) -> list[Array]:
     Raises:
         EhaError: the file is not there.
     """
-    path = data / f"{name}.mat"
-    if not path.is_file():
-        raise EhaError(f"{path}: is not there; --real takes the folder that holds emps/ with the published files")
-    found = loadmat(path, variable_names=["vir" if key == "force" else key for key in wanted])
+    found = loadmat(original(data, f"{name}.mat"), variable_names=["vir" if key == "force" else key for key in wanted])
     return [
         MOTOR_GAIN * found["vir"].ravel().astype(float) if key == "force" else found[key].ravel().astype(float)
         for key in wanted

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eha_core.errors import EhaError
+from eha_core.known_answers.real.originals import original
 from eha_core.known_answers.real.question import Question
 from eha_core.known_answers.real.sealing import Array, seal, write_csv
 from eha_core.motion_given import Law, Motion, find_law, motion_of, predict
@@ -48,10 +48,7 @@ def read(data: Path, test: str, current: str, columns: tuple[int, ...]) -> Array
     Raises:
         EhaError: the file is not there.
     """
-    path = data / f"{test}{current}.txt"
-    if not path.is_file():
-        raise EhaError(f"{path}: is not there; --real takes the folder that holds mr_damper/ with its original files")
-    return np.asarray(np.loadtxt(path, usecols=columns).T)
+    return np.asarray(np.loadtxt(original(data, f"{test}{current}.txt"), usecols=columns).T)
 
 
 def _motion(data: Path, test: str, current: str, with_force: bool = True) -> Motion:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eha_core.errors import EhaError
+from eha_core.known_answers.real.originals import original
 from eha_core.known_answers.real.question import Question
 from eha_core.known_answers.real.sealing import Array, seal, write_csv
 from eha_core.motion_given import Motion, find_law, fit_law, motion_of, predict
@@ -66,10 +66,7 @@ def read(data: Path, name: str, pressure: int, columns: tuple[int, ...]) -> Arra
     Raises:
         EhaError: the file is not there.
     """
-    path = data / f"{name}_{pressure}bar.csv"
-    if not path.is_file():
-        raise EhaError(f"{path}: is not there; --real takes the folder that holds pneumatic_seal/ as published")
-    return np.asarray(np.loadtxt(path, usecols=columns)[DROPPED:].T)
+    return np.asarray(np.loadtxt(original(data, f"{name}_{pressure}bar.csv"), usecols=columns)[DROPPED:].T)
 
 
 def friction(data: Path, name: str, pressure: int) -> Array:
