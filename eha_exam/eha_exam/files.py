@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -36,17 +36,6 @@ def write_nominal(nominal: Mapping[str, float], path: Path, per_recording: Seque
     if per_recording:
         document["per_recording"] = list(per_recording)
     path.write_text(yaml.safe_dump(document), encoding="utf-8")
-
-
-@dataclass(frozen=True)
-class Seal:
-    """What is published before the diagnosis starts: a digest for each answer, by the recording's name."""
-
-    digests: Mapping[str, str]
-
-    def holds(self, name: str, answer: str) -> bool:
-        """Whether an opened answer is the one that was sealed."""
-        return self.digests.get(name) == digest_of(answer)
 
 
 def answer_text(case: Case) -> str:

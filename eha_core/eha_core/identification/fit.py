@@ -38,6 +38,9 @@ HOPE = 4.0
 """Times its last gain that a fit may still gain: gains that halve add up to one more, and some do not halve
 (assumed)."""
 
+UNDAMPED = 1e-10
+"""The least damping, of the full step: columns that are one and the same still have one (assumed)."""
+
 TRIALS = REGISTER
 """Dampings that an iteration tries where its own leads no lower, in lock-step; the last is 2e13 times the first, which
 gives a negligible step."""
@@ -158,7 +161,7 @@ def fit(
         gain = objective - new.objective
         q, states, rows, ends, objective = new.q, new.states, new.rows, new.ends, new.objective
         ratio = gain / max(float(move @ (2.0 * gradient - normal.times(move))), 1e-300)
-        damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), 1e-10)
+        damping = max(damping * (0.05 if ratio > 0.75 else 0.5 if ratio > 0.25 else 4.0), UNDAMPED)
         spread = np.sqrt(1.0 / np.maximum(np.diag(normal.parameters), 1e-12))
         steps = np.maximum(np.clip(0.3 * spread, 1e-6, 1e-2), resolution)
         little = little + 1 if gain < max(SETTLED, WORTH * (objective - problem.count())) else 0
@@ -175,7 +178,7 @@ def fit(
 def _promised(normal: NormalMatrix, gradient: Array) -> float:
     """What the full step is predicted to gain, bounds aside."""
     try:
-        return float(gradient @ normal.eliminate(1e-10).solve(gradient))
+        return float(gradient @ normal.eliminate(UNDAMPED).solve(gradient))
     except (LinAlgError, ValueError):
         return np.inf
 
