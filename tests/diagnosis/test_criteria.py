@@ -80,6 +80,7 @@ THRESHOLDS = {
     "SAME_NOISE": 0.01,
     "FINER_REACH": 0.2,
     "TO_THE_STEP": 4,
+    "FEW_SPANS": 25,
     "MOST_SPANS": 100,
     "HATS": 9,
     "OF_SCALE": 0.1,

@@ -76,8 +76,8 @@ def test_a_column_in_an_interval_is_the_whole_one_with_zeros_elsewhere():
 
 
 def test_spans_keep_to_their_recordings_and_are_few():
-    assert np.array_equal(intervals._spans([range(40)]), np.arange(41))
-    spans = intervals._spans([range(3), range(3, 703), range(703, 2003)])
+    assert np.array_equal(intervals._spans([range(40)], 100), np.arange(41))
+    spans = intervals._spans([range(3), range(3, 703), range(703, 2003)], 100)
     assert {0, 3, 703, 2003} <= set(spans.tolist())
-    assert len(spans) - 1 <= intervals.MOST_SPANS + 1
+    assert len(spans) - 1 <= 101
     assert np.max(np.diff(spans)) <= 21

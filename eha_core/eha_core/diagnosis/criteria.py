@@ -211,6 +211,10 @@ TO_THE_STEP = 4
 """How often instants are tried, the last time 0.7 ms apart. Where friction begins to act between two samples the
 objective has a valley at each break-away."""
 
+FEW_SPANS = 25
+"""Over so many spans every effect is asked since when and until when it acts, and those that lead over MOST_SPANS: an
+interval's gain is little less where its ends are off by a fiftieth of the record."""
+
 MOST_SPANS = 100
 """Where there are more windows, neighbours are taken together to ask since when and until when an effect acts, for the
 answer has a number for each pair. A fit of the instants follows, so nothing hangs on a hundredth of the record."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import MOST_SPANS, OF_SIZE, OUTSTANDING
+from eha_core.diagnosis.criteria import FEW_SPANS, MOST_SPANS, OF_SIZE, OUTSTANDING
 from eha_core.diagnosis.search.columns import Column
 from eha_core.identification.fit import Fit
 from eha_core.identification.normal_matrix import Eliminated
@@ -41,34 +41,36 @@ def best_intervals(
 ) -> list[Interval]:
     """For each of a few effects the column and interval that gain most; none where no gain stands out.
 
-    `moved` (samples, columns) and `shifts` of the windows' ends: what each column changes.
+    `moved` (samples, columns) and `shifts` of the windows' ends: what each column changes. All columns are asked over
+    few spans, and those that lead there over many.
     """
-    spans = _spans(problem.shooting.recordings)
-    if len(spans) < 3:
+    if problem.shooting.windows < 2:
         return []
     towards = system.solve(gradient)
-    found = _by_span(problem, at, linear, moved, shifts, spans)
-    recordings = [range(*np.searchsorted(spans, (w.start, w.stop))) for w in problem.shooting.recordings]
-    limited: dict[str, Interval] = {}
-    onsets: dict[str, Interval] = {}
-    always = 0.0
-    for place, column in enumerate(columns):
-        if not column.effect.acting_names():
-            continue
-        overlap = found.overlap(place)
-        along = found.along[:, place] - towards @ overlap
-        sets_in = onset_of(column) is not None
-        whole, interval = _best_interval(
-            column, spans, found.energy[:, place], along, system.energy(overlap), recordings, to_the_end=sets_in
-        )
-        best = onsets if sets_in else limited
-        always = always if sets_in else max(always, whole)
-        known = best.get(column.effect.id)
-        if interval is not None and (known is None or interval[1] > known.gain):
-            best[column.effect.id] = Interval(place, *interval)
-    leading = sorted(limited.values(), key=lambda interval: -interval.gain)[:OF_SIZE]
-    stands_out = bool(leading) and leading[0].gain > OUTSTANDING * always
-    return [*onsets.values(), *(leading if stands_out else [])]
+
+    def asked(places: Sequence[int], most: int) -> tuple[float, list[Interval], list[Interval]]:
+        spans = _spans(problem.shooting.recordings, most)
+        recordings = [range(*np.searchsorted(spans, (w.start, w.stop))) for w in problem.shooting.recordings]
+        by_span = _by_span(problem, at, linear, moved[:, places], shifts[:, :, places], spans)
+        always, limited, onsets = 0.0, dict[str, Interval](), dict[str, Interval]()
+        for k, place in enumerate(places):
+            column, overlap = columns[place], by_span.overlap(k)
+            along, imitated = by_span.along[:, k] - towards @ overlap, system.energy(overlap)
+            sets_in = onset_of(column) is not None
+            whole, interval = _best_interval(
+                column, spans, by_span.energy[:, k], along, imitated, recordings, to_the_end=sets_in
+            )
+            best = onsets if sets_in else limited
+            always = always if sets_in else max(always, whole)
+            known = best.get(column.effect.id)
+            if interval is not None and (known is None or interval[1] > known.gain):
+                best[column.effect.id] = Interval(place, *interval)
+        leading = sorted(limited.values(), key=lambda interval: -interval.gain)[:OF_SIZE]
+        return always, leading, list(onsets.values())
+
+    always, limited, onsets = asked([k for k, column in enumerate(columns) if column.effect.acting_names()], FEW_SPANS)
+    _, limited, onsets = asked([interval.column for interval in (*limited, *onsets)], MOST_SPANS)
+    return [*onsets, *(limited if limited and limited[0].gain > OUTSTANDING * always else [])]
 
 
 def in_interval(problem: Problem, column: Column, windows: tuple[int, int]) -> Column:
@@ -104,14 +106,14 @@ def restricted(problem: Problem, moved: Array, shifts: Array, windows: tuple[int
     return moved * inside[:, None], ends
 
 
-def _spans(recordings: Sequence[range]) -> Integers:
+def _spans(recordings: Sequence[range], most: int) -> Integers:
     """The windows at which spans begin, and the end. A span is a window where there are few, and of one recording."""
     windows = recordings[-1].stop
     edges = [
         np.linspace(
             recording.start,
             recording.stop,
-            min(len(recording), max(1, round(MOST_SPANS * len(recording) / windows))) + 1,
+            min(len(recording), max(1, round(most * len(recording) / windows))) + 1,
         )
         for recording in recordings
     ]
