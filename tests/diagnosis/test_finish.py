@@ -7,7 +7,7 @@ from made import LAWS, bench, explanation
 
 from eha_core.diagnosis import criteria
 from eha_core.diagnosis.calibrate import is_at_noise
-from eha_core.diagnosis.criteria import UNLIKELY
+from eha_core.diagnosis.criteria import CHANCE, CLEARLY, UNLIKELY
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.finish import (
     as_large,
@@ -136,9 +136,9 @@ def test_a_set_with_a_member_that_was_not_needed_is_no_rival_of_another_set(rig,
     assert needed in compared and whole not in compared
 
 
-def test_every_member_is_tried_whatever_the_curvature_says(rig, pool, monkeypatch):
-    curvature = "eha_core.diagnosis.search.finish.predicted_costs"
-    monkeypatch.setattr(curvature, lambda _, one, __: dict.fromkeys(one.members, 1e9))
+def test_every_member_is_tried_if_the_curvature_does_not_need_it_by_far(rig, pool, monkeypatch):
+    much, curvature = 0.9 * CLEARLY * CHANCE, "eha_core.diagnosis.search.finish.predicted_costs"
+    monkeypatch.setattr(curvature, lambda _, one, __: dict.fromkeys(one.members, much))
     rig = replace(rig, pool=pool)
     rig.fitted({**PLANTED, "hardening_spring.coefficient": 1e6, "command_delay.delay": 2e-4})
     whole = rig.set_of("constant_load", "valve_deadband", "hardening_spring", "command_delay")
@@ -148,7 +148,20 @@ def test_every_member_is_tried_whatever_the_curvature_says(rig, pool, monkeypatc
     at = pool.found[best]
     for member in best.members:
         lost = pool.found[best.without(member)].objective - at.objective
-        assert gains[member] == pytest.approx(lost / required_of(pool, member, dict.fromkeys(best.members, 1e9), at))
+        assert gains[member] == pytest.approx(lost / required_of(pool, member, dict.fromkeys(best.members, much), at))
+
+
+def test_what_the_curvature_needs_by_far_costs_no_fit():
+    planted = {name: 5.0 * value for name, value in PLANTED.items()}
+    rig = bench(planted, duration=4.0)
+    rig.fitted({**planted, "hardening_spring.coefficient": 1e6})
+    best, gains = finish(rig.pool, rig.set_of("constant_load", "valve_deadband", "hardening_spring"), lambda _: None)
+    tried = [step.effects for step in rig.pool.trace.steps if step.step == "without a member"]
+    assert tried == [best.ids] == [("constant_load", "valve_deadband")]
+    for member in best.members:  # and a fit without it shows the same
+        rest = rig.fitted({name: value for name, value in planted.items() if not name.startswith(member.id)})
+        needed = CHANCE + criteria.OF_SAMPLES * rest.count
+        assert rest.objective - rig.pool.found[best].objective > CLEARLY * needed and gains[member] > CLEARLY
 
 
 def test_the_costs_of_members_are_those_of_refits(rig, pool):

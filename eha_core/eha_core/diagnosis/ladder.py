@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from eha_core.diagnosis.calibrate import corrected_noise, filtered_channels
-from eha_core.diagnosis.criteria import FURTHER
+from eha_core.diagnosis.criteria import TO_THE_END
 from eha_core.diagnosis.evidence import Evidence
 from eha_core.diagnosis.hypothesis import Member, without_effect
 from eha_core.diagnosis.result import AUGMENTED, NOMINAL, RECALIBRATED, Correlation, Residual, Step
@@ -50,7 +50,7 @@ def _without(evidence: Evidence, winner: Entry, member: Member) -> Fit:
     else:
         values, free = without_effect(winner.fit, member.effect)
         states = winner.fit.states
-    return fit(evidence.calibration.problem, values, free, states, iterations=FURTHER)
+    return fit(evidence.calibration.problem, values, free, states, iterations=TO_THE_END)
 
 
 def _scales(evidence: Evidence) -> list[float]:

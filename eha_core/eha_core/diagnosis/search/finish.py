@@ -11,6 +11,7 @@ from eha_core.diagnosis.calibrate import is_at_noise
 from eha_core.diagnosis.criteria import (
     AT_FIRST,
     CHANCE,
+    CLEARLY,
     COMPARED_WITHIN,
     CONTENDING,
     CONVERGED,
@@ -69,6 +70,9 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
         # a law in no catalogue first: what names explain must not be left to its curve
         rest = costs.keys() - gains.keys()
         member = min(rest, key=lambda member: (not member.variable, costs[member] / needed[member], member))
+        if not member.variable and costs[member] > CLEARLY * needed[member]:
+            gains[member] = costs[member] / needed[member]
+            continue
         simpler = _without(pool, hypothesis, member, at, needed[member])
         lost = simpler.objective - at.objective
         progress(f"without {member.id}: chi^2 rises by {lost:.4g}, {needed[member]:.4g} is required")
