@@ -8,6 +8,7 @@ from made import LAWS, bench
 
 from eha_core.diagnosis.criteria import BLOCK, FAR_FROM_NOISE, NEAR_NOISE, REACH
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.search import derivatives
 from eha_core.diagnosis.search.pool import Pool, Trace, excess_of_block_means
 from eha_core.identification.fit import fit
 from eha_core.parameters import nominal_values
@@ -97,6 +98,32 @@ def test_a_fit_moves_the_plant_its_members_and_when_a_limited_one_acts(pool):
     longest = float(pool.problem.shooting.local_edges.max())
     spans = [(free[name].lower, free[name].upper) for name in sorted(instants)]
     assert spans == [(0.0, pytest.approx(0.4 + REACH)), (pytest.approx(1.5), pytest.approx(min(3.5, longest)))]
+
+
+def test_about_one_fit_nothing_is_simulated_twice(rig, pool, monkeypatch):
+    both = rig.set_of("constant_load", "valve_deadband")
+    simulated = []
+
+    def counted(*given):
+        simulated.append(len(given[2]))
+        return changes(*given)
+
+    changes = derivatives.changes
+    monkeypatch.setattr(derivatives, "changes", counted)
+    about = pool.about(both, pool.found[both])
+    first = about.secants(rig.columns[:3])
+    assert pool.about(both, pool.found[both]) is about
+    again = about.secants(rig.columns[:3])
+    assert simulated == [3] and all(np.array_equal(one, other) for one, other in zip(first[1:], again[1:], strict=True))
+    about.secants(rig.columns[3:5])
+    assert simulated == [3, 2]
+    # another fit, other bounds and another noise are others
+    assert pool.about(NOTHING, pool.found[NOTHING]) is not about
+    pool.problem = replace(pool.problem)
+    assert pool.about(both, pool.found[both]) is not about
+    about = pool.about(both, pool.found[both])
+    pool.released = frozenset({pool.believed[0].name})
+    assert pool.about(both, pool.found[both]) is not about
 
 
 def test_fits_of_another_pool_are_kept_where_they_are_better(rig, pool):

@@ -13,8 +13,9 @@ from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.hypothesis import Hypothesis
 from eha_core.diagnosis.search.box import within_bounds
 from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.derivatives import Derivatives
 from eha_core.diagnosis.search.pool import Pool
-from eha_core.diagnosis.search.quadratic import Derivatives, QuadraticModel, derivatives, with_columns
+from eha_core.diagnosis.search.quadratic import QuadraticModel, with_columns
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.observation import Observation
@@ -47,7 +48,7 @@ class FittedModel:
     @cached_property
     def derivatives(self) -> Derivatives:
         """The derivatives about the fit."""
-        return derivatives(self.pool.posed(self.hypothesis), self.fit, self.pool.plant)
+        return self.pool.about(self.hypothesis, self.fit)
 
     @property
     def variance(self) -> float:

@@ -18,7 +18,7 @@ from eha_core.diagnosis.search.equations import Friction, friction_columns, fric
 from eha_core.diagnosis.search.expansion import Search, cost, expand, leader, required, search_sets
 from eha_core.diagnosis.search.finish import converge, finish, refit_nominal, rivals
 from eha_core.diagnosis.search.pool import Pool, Progress, Trace, in_noise_of
-from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.quadratic import QuadraticModel, with_columns
 from eha_core.effects import Effect
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter
@@ -61,7 +61,10 @@ def find_sets(
     friction = friction_of(observations, calibration.nominal.values, effects, scales)
     calibration, pool = _over_growing_windows(observations, calibration, friction, material)
     progress("searching sets over long windows")
-    search_sets(Search(_with_nominal(pool, calibration), columns, progress))
+    pool = _with_nominal(pool, calibration)
+    if at_the_noise(pool):
+        converge(pool, leader(pool))
+    search_sets(Search(pool, columns, progress))
     calibration, pool = at_step_needed(observations, calibration, pool, material)
     return finished(pool, calibration, material)
 
@@ -191,7 +194,7 @@ def is_due_to(friction: Friction, pool: Pool) -> bool:
         return False
     best = leader(pool)
     at = pool.found[best]
-    model = quadratic_model(pool.posed(best), at, best, pool.plant, friction_columns(friction))
+    model = with_columns(pool.about(best, at), best, friction_columns(friction))
     present = [option for option in model.options if option.present]
     left = [model.empty - model.gain((*present, option))[0] for option in model.options if not option.present]
     return bool(left) and min(left) - at.count < (1.0 - OF_FRICTION) * (at.objective - at.count)

@@ -28,7 +28,7 @@ from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.search.best_sets import Proposal, best_sets
 from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.pool import Pool, Progress
-from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.quadratic import QuadraticModel, with_columns
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.problem import objectives_at
@@ -101,7 +101,7 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     pool.trace.expansions += 1
     addable = [c for c in search.columns if c.effect.id not in base.ids and c.effect.kind not in base.kinds]
     in_time = base in (lead, NOTHING) and not base.limited
-    model = quadratic_model(pool.posed(base), at, base, pool.plant, addable, in_time)
+    model = with_columns(pool.about(base, at), base, addable, in_time)
     tried = 0
     near: Hypothesis | None = None
     for start in _starts(pool, base, model):

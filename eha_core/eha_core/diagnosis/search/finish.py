@@ -33,7 +33,7 @@ from eha_core.diagnosis.search.comparison import Entry, rank
 from eha_core.diagnosis.search.instants import shift_instants
 from eha_core.diagnosis.search.intervals import in_span
 from eha_core.diagnosis.search.pool import Pool, Progress
-from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model
+from eha_core.diagnosis.search.quadratic import QuadraticModel, quadratic_model, with_columns
 from eha_core.identification.fit import Ending, Fit, exact, fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.per_recording import base_name
@@ -234,7 +234,7 @@ def _ranked(pool: Pool, compared: Sequence[Hypothesis]) -> tuple[Entry, ...]:
 def _about(pool: Pool, hypothesis: Hypothesis, columns: Sequence[Column]) -> QuadraticModel:
     """The quadratic model about a set, with all that can be added to it."""
     addable = [c for c in columns if c.effect.id not in hypothesis.ids and c.effect.kind not in hypothesis.kinds]
-    return quadratic_model(pool.posed(hypothesis), pool.found[hypothesis], hypothesis, pool.plant, addable)
+    return with_columns(pool.about(hypothesis, pool.found[hypothesis]), hypothesis, addable)
 
 
 def _set_of(proposal: Proposal) -> Hypothesis:

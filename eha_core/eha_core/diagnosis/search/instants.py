@@ -10,8 +10,9 @@ import numpy as np
 from eha_core.diagnosis.criteria import CONVERGED, FINER_REACH, REACH, TO_THE_STEP
 from eha_core.diagnosis.hypothesis import Hypothesis, Member
 from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.derivatives import Derivatives
 from eha_core.diagnosis.search.pool import Pool
-from eha_core.diagnosis.search.quadratic import Derivatives, QuadraticModel, derivatives, with_columns
+from eha_core.diagnosis.search.quadratic import QuadraticModel, with_columns
 from eha_core.identification.fit import HOPE
 from eha_core.identification.per_recording import base_name
 from eha_core.plant.lane_rows import LANES
@@ -25,7 +26,7 @@ def shift_instants(pool: Pool, hypothesis: Hypothesis, give_up_above: float = np
     for reach, name in product([REACH * FINER_REACH**k for k in range(TO_THE_STEP)], instants):
         if about is None or at is not pool.found[hypothesis]:
             at = pool.found[hypothesis]
-            about = derivatives(pool.posed(hypothesis), at, pool.plant)
+            about = pool.about(hypothesis, at)
         member = next(one for one in hypothesis.members if base_name(name) in _names_of(one))
         model = _elsewhere(about, hypothesis, member, name, reach)
         present = [option for option in model.options if option.present]

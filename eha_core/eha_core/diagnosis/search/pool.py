@@ -23,6 +23,7 @@ from eha_core.diagnosis.criteria import (
 from eha_core.diagnosis.effect_parameters import free_instants, with_effects
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis
 from eha_core.diagnosis.result import TraceStep
+from eha_core.diagnosis.search.derivatives import Derivatives, derivatives
 from eha_core.health.noise import block_means
 from eha_core.identification.fit import Fit, fit, with_noise
 from eha_core.identification.free_parameters import FreeParameter, not_believed
@@ -57,6 +58,16 @@ class Trace:
         self.steps.append(row)
 
 
+@dataclass(frozen=True)
+class _About:
+    """Derivatives, and what they were computed for."""
+
+    problem: Problem
+    fit: Fit
+    released: frozenset[str]
+    derivatives: Derivatives
+
+
 @dataclass
 class Pool:
     """The best fit so far of each set over windows of one length.
@@ -76,6 +87,7 @@ class Pool:
     settled: dict[Hypothesis, float] = field(default_factory=dict)
     hopeless: set[Hypothesis] = field(default_factory=set)
     excessive: set[Hypothesis] = field(default_factory=set)
+    _about: _About | None = None
 
     @property
     def plant(self) -> tuple[FreeParameter, ...]:
@@ -122,7 +134,7 @@ class Pool:
 
     def fresh(self) -> Pool:
         """A pool of the same windows, noise and bounds that has no fits yet."""
-        return replace(self, found={}, settled={}, hopeless=set(), excessive=set())
+        return replace(self, found={}, settled={}, hopeless=set(), excessive=set(), _about=None)
 
     def adopt(self, other: Pool) -> None:
         """Keep the fits of another pool of the same windows, in the noise of this one."""
@@ -132,6 +144,14 @@ class Pool:
     def posed(self, hypothesis: Hypothesis) -> Problem:
         """The problem with derivatives taken as finely as the set needs."""
         return with_finer_slopes(self.problem) if hypothesis.kinds else self.problem
+
+    def about(self, hypothesis: Hypothesis, at: Fit) -> Derivatives:
+        """The derivatives about a fit of a set, as finely as the set needs; of the last fit asked they are known."""
+        known = self._about
+        if known is None or known.fit is not at or known.problem is not self.problem or known.released != self.released:
+            linear = derivatives(self.posed(hypothesis), at, self.plant)
+            self._about = known = _About(self.problem, at, self.released, linear)
+        return known.derivatives
 
     def keep(self, hypothesis: Hypothesis, result: Fit) -> Fit:
         """Keep a fit if it is the best of its set; the best fit of the set."""

@@ -17,12 +17,13 @@ from eha_core.diagnosis.criteria import SMALLEST
 from eha_core.diagnosis.hypothesis import Hypothesis, Member, neutral
 from eha_core.diagnosis.search.box import within_bounds
 from eha_core.diagnosis.search.columns import Column
+from eha_core.diagnosis.search.derivatives import Derivatives, derivatives
 from eha_core.diagnosis.search.intervals import best_intervals, in_interval, restricted
 from eha_core.identification.fit import Fit
-from eha_core.identification.free_parameters import FreeParameter, coordinates
+from eha_core.identification.free_parameters import FreeParameter
 from eha_core.identification.numbers import Array, Integers
-from eha_core.identification.per_recording import base_name, in_each
-from eha_core.identification.problem import Linearised, Problem, changes, linearise, normal_equations
+from eha_core.identification.per_recording import base_name
+from eha_core.identification.problem import Linearised, Problem, normal_equations
 
 RIDGE = 1e-7
 """Of the unit diagonal, on moves from where the model was made: columns that are one and the same to seven digits share
@@ -139,29 +140,6 @@ def _drawn(option: Option, factors: Mapping[int, float]) -> dict[str, float]:
     return made | {name: sum(factors[place] * column.values[name] for place, column in pairs) for name in sizes}
 
 
-@dataclass(frozen=True)
-class Derivatives:
-    """The derivatives about a fit, by the `nominal` parameters that come first in its `free`, by the others and by the
-    states."""
-
-    problem: Problem
-    at: Fit
-    nominal: int
-    linear: Linearised
-
-
-def derivatives(problem: Problem, at: Fit, plant: Sequence[FreeParameter]) -> Derivatives:
-    """Linearise about a fit of a set, over the parameters of the `plant` and its members'."""
-    shooting = problem.shooting
-    nominal, _ = in_each(plant, at.values, shooting.per_recording, len(shooting.first_windows))
-    own, _ = in_each(at.free, at.values, shooting.per_recording, len(shooting.first_windows))
-    names = {parameter.name for parameter in nominal}
-    free = (*nominal, *(parameter for parameter in own if parameter.name not in names))
-    q = coordinates(free, at.values)
-    linear = linearise(problem, at.values, free, q, at.states)
-    return Derivatives(problem, replace(at, free=free, q=q), len(nominal), linear)
-
-
 def quadratic_model(
     problem: Problem,
     at: Fit,
@@ -183,15 +161,10 @@ def with_columns(
     """The quadratic model about a fit of `hypothesis` whose derivatives are known, with a secant for each column."""
     problem, at, count, linear = about.problem, about.at, about.nominal, about.linear
     free, q = at.free, at.q
-    columns = [column.beside(at.values) for column in columns]
-    moved, shifts = changes(
-        problem, (at.values, at.states), [({**at.values, **column.values}, at.states) for column in columns]
-    )
-    usable = np.all(np.isfinite(moved), axis=0) & np.any(moved != 0.0, axis=0)
-    moved[:, ~usable], shifts[:, :, ~usable] = 0.0, 0.0
+    columns, moved, shifts = about.secants(columns)
     if in_time:
         columns, moved, shifts = _with_intervals(problem, at, linear, columns, moved, shifts)
-        usable = np.any(moved != 0.0, axis=0)
+    usable = np.any(moved != 0.0, axis=0)
     extended = (
         *free, *(FreeParameter(f"column {k}", 0.0, False, 1.0, 30.0, -np.inf, np.inf) for k in range(len(columns)))
     )  # fmt: skip
