@@ -175,10 +175,10 @@ def test_each_channels_error_is_told_on_the_windows_fitted_to_and_on_those_held_
 
 
 def test_remarks_name_their_recording_where_there_are_several_and_the_units_of_what_turns():
-    def remarks(*observations, cut_short=False, begun_anew=False, effects=("one",)):
+    def remarks(*observations, begun_anew=False, effects=("one",)):
         decision = SimpleNamespace(winner=SimpleNamespace(effects=effects))
         evidence = SimpleNamespace(observations=observations, observation=observations[0], decision=decision)
-        searched = SimpleNamespace(cut_short=cut_short, begun_anew=begun_anew)
+        searched = SimpleNamespace(begun_anew=begun_anew)
         return conclude._remarks(replace_in(evidence, comparison=searched))
 
     assert remarks(observed()) == ("late",)
@@ -186,8 +186,6 @@ def test_remarks_name_their_recording_where_there_are_several_and_the_units_of_w
     vane = compose(cylinder="rotary_vane")
     units, late = remarks(observed(composition=vane))
     assert late == "late" and "rad/s and N m" in units
-    cut, late = remarks(observed(), cut_short=True)
-    assert late == "late" and "ended at its limit" in cut
     anew, late = remarks(observed(), begun_anew=True)
     assert late == "late" and "sought anew over longer ones" in anew
     assert remarks(observed(), begun_anew=True, effects=()) == ("late",)

@@ -8,7 +8,7 @@ import pytest
 from made import bench, bench_of
 
 from eha_core.api import known_model
-from eha_core.diagnosis.criteria import FITTED, NEAR_NOISE
+from eha_core.diagnosis.criteria import EXPANSIONS, FITTED, NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search import expansion
 from eha_core.diagnosis.search.course import at_the_noise
@@ -46,7 +46,7 @@ def test_two_effects_are_found_by_one_expansion_and_their_values_too(rig):
     assert at.data < NEAR_NOISE * at.count
     for name, value in PLANTED.items():
         assert at.values[name] == pytest.approx(value, abs=max(4.0 * at.deviation(name), 0.01 * value))
-    assert search.pool.trace.expansions == 1 and len(search.pool.trace.steps) <= FITTED + 1
+    assert len(search.pool.trace.steps) <= FITTED + 1
     assert said == [said[0]] and "constant_load + valve_deadband" in said[0]
 
 
@@ -64,6 +64,19 @@ def test_a_search_expands_no_set_twice_and_ends_at_the_noise(rig):
     assert best == rig.set_of("constant_load", "valve_deadband")
     assert search.expanded.keys() == {NOTHING, best}
     assert search.next() is None
+
+
+def test_a_search_ends_after_a_few_expansions_however_much_each_gains(rig, monkeypatch):
+    search, begun = searched(rig), []
+
+    def halved(search, base, step, at=None):
+        begun.append(step)
+        at = search.pool.found[NOTHING]
+        search.pool.keep(NOTHING, replace(at, objective=0.5 * at.objective, data=0.5 * at.data))
+
+    monkeypatch.setattr(expansion, "expand", halved)
+    search_sets(search)
+    assert begun == ["expansion 1", "expansion 2", "expansion 3"] and len(begun) == EXPANSIONS
 
 
 def test_on_the_way_to_long_windows_nothing_is_expanded_at_the_noise(rig):

@@ -211,12 +211,10 @@ def zeros_to_correct(effects: Iterable[NamedEffect], recording: Recording) -> It
 
 
 def _remarks(evidence: Evidence) -> tuple[str, ...]:
-    """Corrections made to each recording, of several with its path; and a search that was cut short."""
+    """Corrections made to each recording, of several with its path; and a search that began anew."""
     what = []
     if evidence.observation.composition.cylinder.motion == "rad":
         what.append("the actuator is rotary: read rad, rad/s and N m in place of the channels' m, m/s and N")
-    if evidence.comparison.cut_short:
-        what.append("the search for sets of effects ended at its limit; another set may explain more")
     if evidence.decision.winner.effects and (not_found := missed(evidence.comparison)):
         what.append(
             "short windows did not show what is missing, and it was sought anew over longer ones: in simulated"

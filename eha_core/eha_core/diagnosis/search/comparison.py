@@ -49,7 +49,6 @@ class ModelComparison:
         smaller: fits of the best set without one of its members, by the set.
         gain_over_required: of each member of the best set, what it gains over what is required of it.
         trace: every fit of the search.
-        cut_short: whether the search ended at its limit.
         begun_anew: whether it began anew over longer windows, because what short ones showed explained too little.
     """
 
@@ -61,7 +60,6 @@ class ModelComparison:
     smaller: Mapping[Hypothesis, Fit] = field(default_factory=dict)
     gain_over_required: Mapping[Member, float] = field(default_factory=dict)
     trace: tuple[TraceStep, ...] = ()
-    cut_short: bool = False
     begun_anew: bool = False
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from eha_core.diagnosis.calibrate import Calibration, at_step, filtered_channels, is_at_noise, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
-from eha_core.diagnosis.criteria import ALONE, CARRIED, EXPANSIONS, FURTHER, OF_FRICTION, OF_STATES, RELEASED, UNFITTED
+from eha_core.diagnosis.criteria import ALONE, CARRIED, FURTHER, OF_FRICTION, OF_STATES, RELEASED, UNFITTED
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
 from eha_core.diagnosis.search.best_sets import objective_without, one_more
 from eha_core.diagnosis.search.columns import Column, columns_of, law_columns
@@ -155,7 +155,7 @@ def searched(pool: Pool, begin: Fit, friction: Friction, material: Material, law
         base = NOTHING.with_effects([friction.held.effect])
         pool = _around_friction(pool, begin, friction, material)
         begin = pool.at_rest(base, begin.values, begin.states)
-    if laws and not at_the_noise(pool) and not pool.trace.is_over:
+    if laws and not at_the_noise(pool):
         _search_laws(pool, base, begin, material)
     return pool
 
@@ -205,7 +205,7 @@ def _on_the_way(
 ) -> Search:
     """A search that another follows over long windows: the noise is enough, for what is small beside it costs less to
     find there."""
-    return Search(pool, columns, material.progress, EXPANSIONS, content)
+    return Search(pool, columns, material.progress, content)
 
 
 def _search(search: Search, begin: Fit) -> None:
@@ -284,7 +284,6 @@ def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[
         {h: result for h, result in pool if h in {best.without(member) for member in best.members}},
         gains,
         tuple(material.trace.steps),
-        material.trace.is_over,
         material.trace.begun_anew,
     )
     return calibration, comparison

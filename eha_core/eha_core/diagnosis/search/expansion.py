@@ -10,7 +10,7 @@ import numpy as np
 from eha_core.diagnosis.calibrate import is_at_noise
 from eha_core.diagnosis.criteria import (
     ADDED,
-    EXPANSIONS_LATER,
+    EXPANSIONS,
     FITTED,
     IDLE,
     IMPROVES,
@@ -52,13 +52,12 @@ def leader(pool: Pool) -> Hypothesis:
 
 @dataclass
 class Search:
-    """A search over windows of one length: its pool, what can be added, how many sets it goes on from at `most`, when
-    it is content before the noise is reached, and the sets that it has gone on from."""
+    """A search over windows of one length: its pool, what can be added, when it is content before the noise is reached,
+    and the sets that it has gone on from."""
 
     pool: Pool
     columns: Sequence[Column]
     say: Progress = lambda _: None
-    most: int = EXPANSIONS_LATER
     content: Callable[[Pool], bool] = lambda _: False
     expanded: dict[Hypothesis, float] = field(default_factory=dict)
 
@@ -80,9 +79,9 @@ class Search:
 def search_sets(search: Search) -> Hypothesis:
     """The best set over the pool's windows; every set that was fitted stays in the pool."""
     pool, idle = search.pool, 0
-    for number in range(search.most):
+    for number in range(EXPANSIONS):
         base = search.next()
-        if base is None or idle == IDLE or pool.trace.is_over or search.content(pool):
+        if base is None or idle == IDLE or search.content(pool):
             break
         before = pool.found[leader(pool)]
         expand(search, base, f"expansion {number + 1}")
@@ -98,7 +97,6 @@ def expand(search: Search, base: Hypothesis, step: str, at: Fit | None = None) -
     pool, lead = search.pool, leader(search.pool)
     at = pool.found[base] if at is None else at
     search.expanded[base] = at.objective
-    pool.trace.expansions += 1
     addable = [c for c in search.columns if c.effect.id not in base.ids and c.effect.kind not in base.kinds]
     in_time = base in (lead, NOTHING) and not base.limited
     model = with_columns(pool.about(base, at), base, addable, in_time)

@@ -12,7 +12,6 @@ import numpy as np
 from eha_core.diagnosis.calibrate import corrected_noise, is_at_noise
 from eha_core.diagnosis.criteria import (
     BLOCK,
-    EXPANSIONS_IN_ALL,
     FAR_FROM_NOISE,
     REACH,
     SAME_NOISE,
@@ -39,18 +38,12 @@ Progress = Callable[[str], None]
 
 @dataclass
 class Trace:
-    """Every fit of a diagnosis, in order, how often the channels were linearised in order to propose sets, and whether
-    the search began anew over longer windows, because what short ones showed explains too little."""
+    """Every fit of a diagnosis, in order, and whether the search began anew over longer windows, because what short
+    ones showed explains too little."""
 
     began: float = field(default_factory=time.process_time)
     steps: list[TraceStep] = field(default_factory=list)
-    expansions: int = 0
     begun_anew: bool = False
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the search has had its share."""
-        return self.expansions >= EXPANSIONS_IN_ALL
 
     def add(self, step: str, hypothesis: Hypothesis, result: Fit) -> None:
         """Note a fit."""
