@@ -102,10 +102,10 @@ def diagnose(
         recording: a recording or its path; several are one rig, fitted with one set of parameters and effects. Of
             one longer than two minutes stretches are fitted, and the whole judges the result.
         nominal: the model: parameter values that differ from the catalogue's ("unknown" where nobody knows one; parts
-            as {"plant": {"source": "switched_pump"}}), a parameters file, or a `NominalModel`. By default the parts
-            and values that the recording carries, effects left out, or else the catalogue's nominal actuator. Where
-            position and force are all that was recorded and there is no model, the motion is taken as given and the
-            law of the force is found.
+            as {"plant": {"source": "switched_pump"}}), a parameters file, an FMU, or a `NominalModel`. By default the
+            parts and values that the recording carries, effects left out, or else the catalogue's nominal actuator.
+            Where position and force are all that was recorded and there is no model, the motion is taken as given and
+            the law of the force is found.
         jobs: threads that simulate side by side.
         progress: receives each stage as it begins.
         tests: recordings that nothing is fitted to, only predicted.
@@ -187,10 +187,19 @@ def given_parts(nominal: Nominal) -> Composition | None:
     return model.composition if model is not None else None
 
 
+def _read_model(path: Path) -> NominalModel:
+    """The model of a parameters file or of an FMU."""
+    if path.suffix.lower() != ".fmu":
+        return load_nominal(path)
+    from eha_core.export.read_fmu import read_fmu  # what compiles the plant takes a while to import
+
+    return read_fmu(path)
+
+
 def given_model(nominal: Nominal, parts: Mapping[str, str] | None = None) -> NominalModel | None:
     """The model that was given, of these parts where it names none; None where it is left to the recording."""
     if isinstance(nominal, (str, Path)):
-        nominal = load_nominal(nominal)
+        nominal = _read_model(Path(nominal))
     if isinstance(nominal, NominalModel):
         return nominal
     if nominal is None:

@@ -39,7 +39,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("--within", type=Path, metavar="FILE", help="limits of the designed test in SI units: position, speed,"
         " pressure, energy, voltage (default: 85 %% of the stroke, 1.2 times the supply pressure, and the voltage at"
         " which the coil saturates)")  # fmt: skip
-    add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
+    add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form, or an FMU")
     add("--topics", type=Path, metavar="FILE", help="topics file that says where the voltage is recorded")
     add("--channels", default="position,pressure_a,pressure_b", metavar="NAMES", help="channels to be recorded"
         " (default %(default)s)")  # fmt: skip

@@ -37,7 +37,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add = parser.add_argument
     add("recordings", nargs="+", type=Path, metavar="RECORDING", help="a bag or a table: .mcap, .csv, .mat ...")
-    add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form")
+    add("--nominal", type=Path, metavar="FILE", help="the model: a parameters file in ROS 2's YAML form, or an FMU")
     add("--topics", type=Path, metavar="FILE", help="which topics, fields and units are which channels")
     add(
         "--assume",

@@ -33,14 +33,23 @@ def describe(model: ExportedModel, name: str, identifier: str, version: int) -> 
     _add_units(SubElement(root, "UnitDefinitions"), model)
     SubElement(SubElement(root, "LogCategories"), "Category", {"name": "logStatusError"})
     SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": "10", "stepSize": "0.001"})
+    if version == 2:
+        _add_parts(SubElement(SubElement(root, "VendorAnnotations"), "Tool", {"name": "eha"}), model)
     variables, structure = SubElement(root, "ModelVariables"), SubElement(root, "ModelStructure")
     for reference, variable in enumerate(model.variables):
         (_add_variable_2 if version == 2 else _add_variable_3)(variables, variable, str(reference))
     _add_structure(structure, model, version)
+    if version == 3:
+        _add_parts(SubElement(SubElement(root, "Annotations"), "Annotation", {"type": "eha"}), model)
     token = str(uuid.uuid5(uuid.NAMESPACE_URL, ElementTree.tostring(root, "unicode")))
     root.set(TOKEN[version], token)
     ElementTree.indent(root)
     return ElementTree.tostring(root, "unicode", xml_declaration=True) + "\n", token
+
+
+def _add_parts(parent: Element, model: ExportedModel) -> None:
+    """What no variable tells: the plant's parts."""
+    SubElement(parent, "Plant", model.composition.names)
 
 
 def _add_units(parent: Element, model: ExportedModel) -> None:
