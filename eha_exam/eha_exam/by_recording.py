@@ -19,9 +19,11 @@ SECOND = "second"
 
 
 def answer_by_recording(exam: Exam, tool: str, command: str, jobs: int, progress: Progress) -> None:
-    """Have a tool diagnose every recording that it has not, and those of the tests that it prescribes."""
+    """Have a tool diagnose every recording that it has not, and those of the tests that it prescribes; those of a set
+    that is made already are not run."""
     _diagnose(exam, tool, command, jobs, progress)
-    _repeat(exam, tool, command, jobs, progress)
+    if exam.source is None:
+        _repeat(exam, tool, command, jobs, progress)
 
 
 def _diagnose(exam: Exam, tool: str, command: str, jobs: int, progress: Progress) -> None:

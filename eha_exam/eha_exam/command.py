@@ -50,6 +50,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--opened", type=int, default=0, metavar="N", help="skip the first N cases of the seed: their results are known"
     )
     parser.add_argument("--tier", metavar="T", help="one tier alone")
+    parser.add_argument(
+        "--set", type=Path, metavar="FOLDER", help="score the sealed set in this folder; nothing is simulated"
+    )
     parser.add_argument("--jobs", type=int, default=1, metavar="J", help="recordings diagnosed in parallel (default 1)")
     parser.add_argument("--out", type=Path, default=Path("out/exam"), metavar="DIR", help="folder (default out/exam)")
     parser.add_argument("--peers", action="store_true", help="score the other methods on the same recordings too")
@@ -101,6 +104,7 @@ def run(
     # The truth's integrator and compiler load slowly; nothing else should wait for them.
     from eha_exam.exam_folder import Exam
     from eha_exam.run_exam import report_lost, run_exam
+    from eha_exam.sealed_set import exam_of
     from eha_exam.shares import summarise
 
     _check(arguments, report)
@@ -110,11 +114,14 @@ def run(
         raise ExamError(f"--method {', '.join(both)}: is the name of a tool too; give another")
     if not tools and not methods:
         raise ExamError("nothing to score; give --tool NAME=COMMAND, --method NAME=COMMAND or --peers")
-    exam = Exam(arguments.out, arguments.cases, arguments.seed, arguments.tier, arguments.opened)
+    if arguments.set is None:
+        exam = Exam(arguments.out, arguments.cases, arguments.seed, arguments.tier, arguments.opened)
+    else:
+        exam = exam_of(arguments.set, arguments.out)
     marks = run_exam(exam, tools, arguments.jobs, show_progress, methods)
     summaries = [summarise(name, marks[name]) for name in marks]
     reports = report_lost(exam, summaries[0].lost[: arguments.lost], report)
-    about = {"commit": _commit(), "cases": arguments.cases, "seed": arguments.seed}
+    about = {"commit": _commit(), "cases": exam.cases, "seed": exam.seed}
     return _tell(arguments, called, summaries, marks, about, reports)
 
 
@@ -123,6 +130,8 @@ def _check(arguments: argparse.Namespace, report: str) -> None:
         raise ExamError(f"--cases {arguments.cases} --jobs {arguments.jobs}: give 1 or more of each")
     if arguments.opened < 0:
         raise ExamError(f"--opened {arguments.opened}: give 0 or more")
+    if arguments.set is not None and (arguments.tier or arguments.opened):
+        raise ExamError("--set is scored whole; leave --tier and --opened out")
     if arguments.lost and not report:
         raise ExamError(f"--lost {arguments.lost}: no command writes reports; give --report COMMAND, or leave it out")
 

@@ -20,13 +20,14 @@ Progress = Callable[[str, int, int], None]
 @dataclass(frozen=True)
 class Exam:
     """What is run: how many cases, from which seed, of one tier or (None) of all, in which folder; after the `opened`
-    first of that seed, whose outcome is known."""
+    first of that seed, whose outcome is known. Or (`source`) a set that is made already, in a folder of its own."""
 
     folder: Path
     cases: int
     seed: int
     tier: str | None = None
     opened: int = 0
+    source: Path | None = None
 
     @property
     def members(self) -> list[tuple[str, int]]:
@@ -41,6 +42,12 @@ class Exam:
     def sealed(self, tier: str, number: int) -> Path:
         """The sealed answer of a case."""
         return self.folder / "sealed" / f"{tier}-{number:04d}.json"
+
+    def sealed_files(self) -> list[Path]:
+        """The sealed answers of all cases; those of a set that is made already are here when all is answered."""
+        if self.source is not None:
+            return sorted((self.folder / "sealed").glob("*.json"))
+        return [self.sealed(tier, number) for tier, number in self.members]
 
     def answers(self, tool: str) -> Path:
         """Folder of a tool's or a method's answers."""

@@ -20,9 +20,9 @@ def recording_name(case: Case) -> str:
     return f"recording-{case.seed:012x}.mcap"
 
 
-def write_case(case: Case, arrays: Arrays, path: Path) -> None:
+def write_case(case: Case, arrays: Arrays, path: Path, compressed: bool = True) -> None:
     """Write the recording of a case as MCAP, with the nominal parameters the diagnosis is given."""
-    write_recording(path, arrays, case.nominal)
+    write_recording(path, arrays, case.nominal, compressed)
 
 
 def further_name(name: str, number: int) -> str:

@@ -70,16 +70,18 @@ def _types() -> Typestore:
     return get_typestore(Stores.ROS2_JAZZY)
 
 
-def write_recording(path: Path, arrays: Arrays, parameters: Mapping[str, float]) -> None:
+def write_recording(path: Path, arrays: Arrays, parameters: Mapping[str, float], compressed: bool = True) -> None:
     """Write the channels `arrays` with the nominal `parameters`, which hold `atmospheric_pressure` [Pa].
 
+    One that is not `compressed` takes less space once the whole file is, for then its indexes are too.
     The folder is made where it is missing. ExamError where the file exists or cannot be written.
     """
     messages = sorted(_messages(arrays, parameters["atmospheric_pressure"]), key=lambda message: message[0])
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("xb") as stream:
-            _write(Writer(stream, compression=CompressionType.ZSTD), messages, parameters)
+            compression = CompressionType.ZSTD if compressed else CompressionType.NONE
+            _write(Writer(stream, compression=compression), messages, parameters)
     except OSError as error:
         raise ExamError(f"{path}: cannot be written ({error.strerror}); give another folder") from error
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from eha_exam.by_folder import answer_by_folder
@@ -26,6 +27,7 @@ from eha_exam.files import (
     write_nominal,
 )
 from eha_exam.scoring import Mark, mark
+from eha_exam.sealed_set import open_set, take_set
 from eha_exam.second import with_other_loads
 from eha_exam.tool import run_command, words_of
 from eha_exam.workers import in_parallel
@@ -48,11 +50,16 @@ def run_exam(
         methods: commands that are called once for all recordings, by name.
     """
     _claim(exam)
-    _prepare(exam, exam.members, jobs, progress)
+    if exam.source is None:
+        _prepare(exam, exam.members, jobs, progress)
+    else:
+        take_set(exam.source, exam)
     for name, command in tools.items():
         answer_by_recording(exam, name, command, jobs, progress)
     for name, command in (methods or {}).items():
         answer_by_folder(exam, name, command, progress)
+    if exam.source is not None:
+        open_set(exam.source, exam)
     return {name: open_answers(exam, name) for name in (*tools, *(methods or {}))}
 
 
@@ -61,10 +68,10 @@ def _claim(exam: Exam) -> None:
     exam.folder.mkdir(parents=True, exist_ok=True)
     path = exam.folder / "exam.json"
     wanted = {"cases": exam.cases, "seed": exam.seed, "tier": exam.tier, "opened": exam.opened}
+    wanted["set"] = exam.source is not None
     if path.is_file():
         there = json.loads(path.read_text(encoding="utf-8"))
-        same = there.get("seed") == exam.seed and there.get("tier") == exam.tier
-        if not same:
+        if any(there.get(name, False) != wanted[name] for name in ("seed", "tier", "set")):
             raise ExamError(f"{exam.folder}: holds another exam ({there}); give another --out")
     path.write_text(json.dumps(wanted), encoding="utf-8")
 
@@ -84,16 +91,16 @@ def _prepare(exam: Exam, members: Sequence[tuple[str, int]], jobs: int, progress
     (exam.folder / "seal.json").write_text(json.dumps(digests, indent=1), encoding="utf-8")
 
 
-def prepare_case(tier: str, number: int, seed: int, folder: str) -> None:
+def prepare_case(tier: str, number: int, seed: int, folder: str, compressed: bool = True) -> None:
     """Make one recording and seal its answer; the answer is written last and says that the recording is whole."""
     case, arrays = make_case(tier, number, seed)
     recording = Path(folder) / "recordings" / recording_name(case)
     recording.unlink(missing_ok=True)
-    write_case(case, arrays, recording)
+    write_case(case, arrays, recording, compressed)
     for further, more in enumerate(with_other_loads(case), 2):
         path = recording.with_name(further_name(recording.name, further))
         path.unlink(missing_ok=True)
-        write_case(case, more, path)
+        write_case(case, more, path, compressed)
     if case.loads:
         write_nominal(case.nominal, recording.with_suffix(".yaml"), [f"{LOAD}.force"])
     write_whole(Path(folder) / "sealed" / f"{tier}-{number:04d}.json", answer_text(case))
@@ -104,8 +111,7 @@ def open_answers(exam: Exam, tool: str) -> list[Mark]:
     digests = json.loads((exam.folder / "seal.json").read_text(encoding="utf-8"))
     answers = exam.answers(tool)
     marks = []
-    for tier, number in exam.members:
-        path = exam.sealed(tier, number)
+    for path in exam.sealed_files():
         text = path.read_text(encoding="utf-8")
         case = read_answer(text)
         name = recording_name(case)
@@ -114,7 +120,7 @@ def open_answers(exam: Exam, tool: str) -> list[Mark]:
         stem = Path(name).stem
         second = answers / SECOND / f"{stem}.json"
         marks.append(mark(case, read_kept(answers / f"{stem}.json"), read_kept(second) if second.is_file() else None))
-    return marks
+    return marks if exam.source is None else [replace(one, resolved=None) for one in marks]
 
 
 def report_lost(exam: Exam, lost: Sequence[Mark], command: str) -> dict[str, str]:
