@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.signal import lsim, savgol_filter
 
 from eha_exam.errors import ExamError
-from eha_exam.recordings import read_recording
+from eha_exam.recordings import Arrays, read_recording
 from eha_exam.truth.record import PLANT
 
 Array = NDArray[np.float64]
@@ -25,6 +25,9 @@ HALF_WIDTH = 0.06
 """s, of a bump."""
 HOP = 0.02
 """s, from one bump to the next."""
+
+NEEDED = ("voltage_command", "position", "pressure_a", "pressure_b")
+"""Channels that the equations are written in."""
 
 NOMINAL = {name: value for name, value in PLANT.items() if name != "transition_pressure"}
 """What a recording is held against that has no parameters: all of the plant but what no data sheet has."""
@@ -61,11 +64,15 @@ class Signals:
 def read_signals(path: Path) -> Signals:
     """Read a recording with command, position and both pressures. ExamError where one of them is missing."""
     recording = read_recording(path)
-    needed = ("voltage_command", "position", "pressure_a", "pressure_b")
-    missing = [name for name in needed if name not in recording.channels]
+    missing = [name for name in NEEDED if name not in recording.channels]
     if missing:
         raise ExamError(f"{path}: has no {', '.join(missing)}, which this method needs")
-    channels = [recording.channels[name] for name in needed]
+    return signals_of(recording.channels, recording.parameters)
+
+
+def signals_of(recorded: Arrays, parameters: Mapping[str, float]) -> Signals:
+    """The signals of recorded channels, all of NEEDED among them, and of the nominal `parameters` [SI]."""
+    channels = [recorded[name] for name in NEEDED]
     start, stop = max(times[0] for times, _ in channels), min(times[-1] for times, _ in channels)
     time = np.arange(start, stop, 1.0 / RATE)
     voltage, position, a, b = (np.interp(time, times, values) for times, values in channels)
@@ -73,7 +80,7 @@ def read_signals(path: Path) -> Signals:
     held = values[np.searchsorted(times, time, side="right") - 1]
     window = 2 * round(0.03 * RATE) + 1
     velocity = savgol_filter(position, window, 3, deriv=1, delta=1.0 / RATE)
-    nominal = {**NOMINAL, **recording.parameters}
+    nominal = {**NOMINAL, **parameters}
     spool = _spool(time, held if len(held) else voltage, nominal)
     return Signals(time, position, velocity, a, b, spool, nominal)
 
@@ -108,6 +115,14 @@ def _weigh(signals: Array, weight: Array) -> Array:
     starts = np.arange(0, len(signals) - length, round(HOP * RATE))
     windows = np.lib.stride_tricks.sliding_window_view(signals, length, axis=0)[starts]
     return np.asarray(windows @ weight) / RATE
+
+
+def left_over(row: Equation) -> tuple[Array, Array]:
+    """What the nominal terms leave of the target (n,) and of the candidates (n, k), all of unit length."""
+    stacked = np.column_stack([row.target, row.candidates])
+    left = stacked - row.nominal @ np.linalg.lstsq(row.nominal, stacked, rcond=None)[0]
+    left /= np.linalg.norm(left, axis=0) + 1e-300
+    return left[:, 0], left[:, 1:]
 
 
 def _force(s: Signals, bump: Array, slope: Array, curve: Array, features: Array) -> Equation:
