@@ -1,7 +1,7 @@
 """A small exam that is made already: recordings in a folder, and their answers sealed beside them.
 
-The folder holds each recording as `recordings/<name>.mcap.xz`, a rig's nominal file as `recordings/<name>.yaml`, the
-answers as `answers.bin`, and `seal.json` with the SHA-256 of every recording and of every answer's text. The answers
+The folder holds recordings and, where there are some, nominal files as `recordings/<name>.xz`, the answers as
+`answers.bin`, and `seal.json` with the SHA-256 of every recording and of every answer's text. The answers
 are compressed and combined with a keystream whose key is below: nobody reads them by accident, and whoever wants to
 read them can.
 """
@@ -22,15 +22,14 @@ from eha_exam.files import digest_of, read_answer, recording_name
 
 SCHEMA = "eha.exam_set/1"
 ANSWERS = "answers.bin"
-PACKED = ".xz"
 KEY = b"eha_exam: answers of a sealed set, to be opened by the scorer"
 REMEDY = "take the set anew from where it came"
 
 
 @dataclass(frozen=True)
 class Seal:
-    """What `seal.json` says: the seed that the cases were drawn from, and SHA-256 of the files in `recordings/` as they
-    are unpacked, and of the answers' texts by the name of the first recording."""
+    """What `seal.json` says: the seed that the cases were drawn from, and SHA-256 of the files in `recordings/`,
+    unpacked, and of the answers' texts by the name of the first recording."""
 
     seed: int
     recordings: Mapping[str, str]
@@ -41,9 +40,7 @@ def write_set(folder: Path, seed: int, files: Sequence[Path], texts: Sequence[st
     """Write a sealed set of recordings with their nominal files, and of answers as `answer_text` makes them."""
     (folder / "recordings").mkdir(parents=True)
     for path in files:
-        packed = path.suffix == ".mcap"
-        content = lzma.compress(path.read_bytes(), preset=9) if packed else path.read_bytes()
-        (folder / "recordings" / (path.name + PACKED * packed)).write_bytes(content)
+        _packed(folder, path.name).write_bytes(lzma.compress(path.read_bytes(), preset=9))
     (folder / ANSWERS).write_bytes(_combined(zlib.compress(json.dumps(list(texts)).encode(), 9)))
     recordings = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
     answers = {recording_name(read_answer(text)): digest_of(text) for text in texts}
@@ -86,18 +83,21 @@ def open_set(folder: Path, exam: Exam) -> None:
         write_whole(exam.folder / "sealed" / f"{read_answer(text).name}.json", text)
 
 
+def _packed(folder: Path, name: str) -> Path:
+    return folder / "recordings" / f"{Path(name).name}.xz"
+
+
 def _unpack(folder: Path, seal: Seal, exam: Exam) -> None:
     exam.recordings.mkdir(parents=True, exist_ok=True)
     for name, digest in seal.recordings.items():
-        path = folder / "recordings" / name
-        path = path if path.is_file() else path.with_name(name + PACKED)
+        path = _packed(folder, name)
         try:
-            content = lzma.decompress(path.read_bytes()) if path.suffix == PACKED else path.read_bytes()
+            content = lzma.decompress(path.read_bytes())
         except (OSError, lzma.LZMAError) as error:
             raise ExamError(f"{path}: cannot be unpacked ({error}); {REMEDY}") from None
         if hashlib.sha256(content).hexdigest() != digest:
             raise ExamError(f"{path}: is not the recording that was sealed; {REMEDY}")
-        (exam.recordings / name).write_bytes(content)
+        (exam.recordings / Path(name).name).write_bytes(content)
 
 
 def _answers(folder: Path, seal: Seal) -> list[str]:

@@ -17,7 +17,7 @@ from eha_exam.tiers import SHARES
 CASES = 40
 """Each tier has its share of these, and one at least."""
 MOST_SAMPLES = 8000.0
-"""Of one channel, which keeps a packed recording below half a megabyte: 500 Hz for at most 16 s."""
+"""Of one channel, which keeps a packed recording below 0.6 MB: 500 Hz for at most 16 s."""
 
 
 def members_of(seed: int) -> Iterator[tuple[str, int]]:

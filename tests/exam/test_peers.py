@@ -43,6 +43,8 @@ def test_the_weak_equations_hold_on_the_truth_and_give_its_parameters_back(tmp_p
 def test_each_method_says_what_it_can(tmp_path: Path) -> None:
     _, path = recording(tmp_path, ("hardening_spring", {"coefficient": 3e8}))
     assert diagnose("calibration", path)["verdict"] == "parameters"
+    for method in ("forward_bic", "localising_regression"):
+        assert [effect["id"] for effect in diagnose(method, path)["effects"]] == ["hardening_spring"], method
     pytest.importorskip("pysindy")
     for method in ("sindy_stlsq", "sindy_frols"):
         found = diagnose(method, path)

@@ -17,12 +17,12 @@ Array = NDArray[np.float64]
 
 BLOCKS = 10
 NEARLY_ALL = 9
-"""Blocks in which a term must lower the squared error ..."""
+"""Blocks (assumed), and in how many of them a term must lower the squared error ..."""
 MARGIN = 0.2
 """... and the share by which it must do so. This, CLEAR and RIVAL had the most right and the fewest wrong on recordings
 that no result is stated of."""
 MOST_TERMS = 3
-"""Of one balance."""
+"""Of one balance (assumed)."""
 CLEAR = 0.5
 """Share of the held-out squared residual that all terms together must explain for the balance to be a site."""
 RIVAL = 0.1
