@@ -115,7 +115,7 @@ def open_domain(domain_id: int) -> int | None:
     if domain < 0:
         raise RuntimeError(
             f"Cyclone DDS cannot open domain {domain_id} ({str(DDSException(domain)).rstrip('. ')}): check that a "
-            "network interface is up and that CYCLONEDDS_URI is valid"
+            "network interface is up, that CYCLONEDDS_URI is valid, and that 32 programs at most are in it here"
         )
     # Python starts no thread any more when the interpreter ends, so the one that is needed then starts here.
     thread = threading.Thread(target=_delete_at_end, args=(domain,), name="rclpy_dds_domain", daemon=True)

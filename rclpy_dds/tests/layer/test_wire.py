@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from contract.conftest import Graph, Program
-from contract.test_environment import NODE, Start
+from contract.test_environment import NODE, OTHER_DOMAIN, Start
 
 # A plain Cyclone DDS process with a type declared by hand, as rmw_cyclonedds_cpp would announce it.
 PEER = """
@@ -61,6 +61,9 @@ sample.name[0] += " seen"
 writer.write(sample)
 time.sleep(1.0)
 """
+
+
+REFUSED = "import rclpy\ntry:\n    rclpy.init()\nexcept RuntimeError as error:\n    print('refused:', error)"
 
 
 def test_a_plain_cyclone_dds_peer_reads_and_answers(graph: Graph, program: type[Program]) -> None:
@@ -176,5 +179,12 @@ def test_what_cannot_be_joined_is_an_error_that_says_why(
     program: Start, monkeypatch: pytest.MonkeyPatch, name: str, value: str, expected: str
 ) -> None:
     monkeypatch.setenv(name, value)
-    source = "import rclpy\ntry:\n    rclpy.init()\nexcept RuntimeError as error:\n    print('refused:', error)"
-    assert expected in program(source).wait_for("refused")
+    assert expected in program(REFUSED).wait_for("refused")
+
+
+def test_one_program_too_many_in_a_domain_is_told(program: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", OTHER_DOMAIN)
+    one = "<Discovery><MaxAutoParticipantIndex>1</MaxAutoParticipantIndex></Discovery>"
+    monkeypatch.setenv("CYCLONEDDS_URI", f"<CycloneDDS><Domain>{one}</Domain></CycloneDDS>")
+    program(NODE).wait_for("ready")
+    assert "32 programs at most are in it" in program(REFUSED).wait_for("refused")
