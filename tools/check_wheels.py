@@ -110,7 +110,8 @@ def outside() -> dict[str, str]:
 
 
 def sit_an_exam(python: Path, folder: Path) -> None:
-    """Have a method of forty lines sit a short exam where there is nothing of the library that is examined."""
+    """Have a method of forty lines sit a short exam, and that of the shipped set, where there is nothing of the library
+    that is examined."""
     folder.mkdir()
     environment = outside() | {"EHA_CACHE_DIR": str(folder / "cache")}
     absent = "import importlib.util as util, sys; sys.exit(util.find_spec('eha_core') is not None)"
@@ -119,6 +120,8 @@ def sit_an_exam(python: Path, folder: Path) -> None:
     command = [str(python.parent / "eha-exam"), "--cases", "3", "--tier", "null", "--seed", "1", "--out", "exam"]
     method = f"dry friction={{python}} {script} {{recordings}} {{answers}}"
     subprocess.run([*command, "--method", method, "--require", "1"], check=True, cwd=folder, env=environment)
+    shipped = [command[0], "--set", str(ROOT / "eha_exam" / "shipped"), "--out", "shipped", "--method", method]
+    subprocess.run(shipped, check=True, cwd=folder, env=environment)
     table = (folder / "exam" / "table.md").read_text(encoding="utf-8")
     print(table.partition("\n## ")[0])
 
