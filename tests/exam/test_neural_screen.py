@@ -13,12 +13,15 @@ from eha_exam.drawing import draw_case
 from eha_exam.errors import ExamError
 from eha_exam.measuring import measure, simulate_case
 from eha_exam.peers import neural_screen
+from eha_exam.peers.__main__ import main
 from eha_exam.peers.equations import Signals, signals_of
 from eha_exam.peers.neural_screen import (
+    CASES,
     HIDDEN,
     LABELS,
     PENALTY,
     ROUNDS,
+    SEED,
     UNSUITABLE,
     WEIGHTS,
     Network,
@@ -75,6 +78,14 @@ def test_weights_are_numbers_in_a_file_and_nothing_is_unpickled(tmp_path: Path) 
         load(tmp_path / "objects.npz")
     with pytest.raises(ExamError, match=r"none.npz: is no trained network"):
         load(tmp_path / "none.npz")
+
+
+def test_training_is_a_command_that_writes_the_weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("eha_exam.peers.__main__.recorded", lambda cases, seed: (cases, seed))
+    monkeypatch.setattr("eha_exam.peers.__main__.train", lambda asked: of_biases(sum(asked)))
+    for words, inputs in ((["--cases", "4", "--seed", "7"], 11), ([], CASES + SEED)):
+        assert main(["train", str(tmp_path / "weights.npz"), *words]) == 0
+        assert load(tmp_path / "weights.npz").mean.shape == (inputs,)
 
 
 def test_the_weights_that_come_with_the_exam_fit_its_inputs_and_are_small(signals: Signals) -> None:
