@@ -1,15 +1,19 @@
 """A whole search: what is planted is named and nothing else, and its cost is in the trace."""
 
+from dataclasses import replace
+
 import pytest
-from made import LAWS, bench, recorded
+from made import LAWS, bench, explanation, recorded
 
 from eha_core.diagnosis.calibrate import calibrate
 from eha_core.diagnosis.characteristic_scales import characteristic_scales
 from eha_core.diagnosis.criteria import NEAR_NOISE
 from eha_core.diagnosis.hypothesis import NOTHING
+from eha_core.diagnosis.search import course
 from eha_core.diagnosis.search.columns import applicable_effects
-from eha_core.diagnosis.search.course import find_sets, is_due_to
+from eha_core.diagnosis.search.course import Material, ended, find_sets, is_due_to
 from eha_core.diagnosis.search.equations import Friction, FrictionStart, friction_of
+from eha_core.diagnosis.search.pool import Pool, Trace
 from eha_core.identification.fit import fit
 from eha_core.identification.observation import observe
 from eha_core.identification.parallel import side_by_side
@@ -151,3 +155,27 @@ def test_friction_is_released_where_what_is_left_may_be_its_own():
         values = {**nominal_values(), **held.values, "constant_load.force": load}
         rig.pool.found = {hypothesis: fit(rig.pool.problem, values, (), iterations=12)}
         assert is_due_to(Friction(False, held, (held,)), rig.pool) == due
+
+
+def test_the_end_is_repeated_while_the_comparison_leaves_another_set_in_the_lead(monkeypatch):
+    coulomb, stribeck = (NOTHING.with_effects([LAWS[f"{form}_friction"]]) for form in ("coulomb", "stribeck"))
+    begun, fitted = [], {coulomb: [1010.0, 1005.0], stribeck: [1006.0]}
+    pool = Pool(None, (), Trace(), {coulomb: replace(explanation({}), objective=1010.0)})
+
+    def finish(pool, hypothesis, _):
+        begun.append(hypothesis)
+        return hypothesis, {}
+
+    def rivals(pool, best, *_):
+        """Stribeck's law comes lower at first, and from there Coulomb's again; at last nothing does."""
+        other = stribeck if best == coulomb else coulomb
+        if len(begun) < 3:
+            pool.found[other] = replace(explanation({}), objective=fitted[other].pop())
+            return other, [best, other], None
+        return best, [best, other], None
+
+    monkeypatch.setattr(course, "finish", finish)
+    monkeypatch.setattr(course, "rivals", rivals)
+    best, _, compared, _ = ended(pool, Material((), (), (), (), pool.trace, lambda _: None, frozenset()))
+    assert begun == [coulomb, stribeck, coulomb]
+    assert best == coulomb and compared == [coulomb, stribeck] and pool.found[best].objective == 1005.0

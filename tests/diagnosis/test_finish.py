@@ -234,16 +234,25 @@ def test_another_form_of_a_law_begins_as_large(rig):
     assert back["stribeck_friction.stribeck_velocity"] == stribeck.values["stribeck_friction.stribeck_velocity"]
 
 
-@pytest.mark.parametrize(("coulomb_leaves", "again"), [(None, True), (900.0, False), (1100.0, True)])
-def test_another_form_is_tried_from_the_best_unless_it_was_fitted_near_it(rig, coulomb_leaves, again):
-    columns = rig.columns_of("coulomb_friction", "stribeck_friction")
-    best, coulomb = rig.set_of("stribeck_friction"), rig.set_of("coulomb_friction")
-    (stribeck,) = {column.effect.id: column for column in columns if column.effect.id == "stribeck_friction"}.values()
-    found = {best: explanation(dict(stribeck.values))}
-    if coulomb_leaves:
-        found[coulomb] = replace(explanation({}), objective=coulomb_leaves)
+@pytest.mark.parametrize(
+    ("best", "other", "leaves", "again"),
+    [
+        ("coulomb_friction", "stribeck_friction", None, True),
+        ("coulomb_friction", "stribeck_friction", 900.0, False),
+        ("coulomb_friction", "stribeck_friction", 1100.0, True),
+        ("stribeck_friction", "coulomb_friction", 700.0, False),
+        ("stribeck_friction", "coulomb_friction", 900.0, True),
+    ],
+)  # fmt: skip
+def test_another_form_is_tried_from_the_best_unless_it_was_fitted_near_it(rig, best, other, leaves, again):
+    columns = rig.columns_of(best, other)
+    (own,) = {column.effect.id: column for column in columns if column.effect.id == best}.values()
+    best, other = rig.set_of(best), rig.set_of(other)
+    found = {best: replace(explanation(dict(own.values)), objective=800.0)}
+    if leaves:
+        found[other] = replace(explanation({}), objective=leaves)
     tried = [hypothesis for hypothesis, _ in in_a_members_place(Pool(None, (), Trace(), found), best, columns, 1000.0)]
-    assert tried == ([coulomb] if again else [])
+    assert tried == ([other] if again else [])
 
 
 def test_what_was_fitted_to_its_end_is_not_fitted_again(rig, pool):

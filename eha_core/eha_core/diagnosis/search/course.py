@@ -10,7 +10,7 @@ import numpy as np
 from eha_core.diagnosis.calibrate import Calibration, at_step, filtered_channels, is_at_noise, step_needed
 from eha_core.diagnosis.characteristic_scales import Scales
 from eha_core.diagnosis.criteria import ALONE, CARRIED, FURTHER, OF_FRICTION, OF_STATES, RELEASED, UNFITTED
-from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, neutral
+from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
 from eha_core.diagnosis.search.best_sets import objective_without, one_more
 from eha_core.diagnosis.search.columns import Column, columns_of, law_columns
 from eha_core.diagnosis.search.comparison import Entry, ModelComparison, rank, residual_variance
@@ -259,17 +259,26 @@ def _ahead(pool: Pool) -> list[Hypothesis]:
     return [h for h in ahead if cost(h, pool.found[h]) < cost(ahead[0], best) + 3.0 * required(best)]
 
 
-def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[Calibration, ModelComparison]:
-    """The best set fitted to its end, without what is not significant, with its rivals and the nominal model."""
-    material.progress("fitting the best set to its end")
+def ended(pool: Pool, material: Material) -> tuple[Hypothesis, dict[Member, float], list[Hypothesis], QuadraticModel]:
+    """The best set at its end, what its members gain, all that was compared with it, and the model about it: once more
+    wherever the comparison leaves another set in the lead."""
     best, gains = finish(pool, leader(pool), material.progress)
     if pool.released:
         pool.believe(best)
         converge(pool, best)
     leading, compared, model = rivals(pool, best, material.columns, material.progress)
-    if leading != best:
+    seen = {best: pool.found[best].objective}
+    while seen.get(leading) != pool.found[leading].objective:
         best, gains = finish(pool, leading, material.progress)
-        _, compared, model = rivals(pool, best, material.columns, material.progress)
+        seen[best] = pool.found[best].objective
+        leading, compared, model = rivals(pool, best, material.columns, material.progress)
+    return best, gains, compared, model
+
+
+def finished(pool: Pool, calibration: Calibration, material: Material) -> tuple[Calibration, ModelComparison]:
+    """The best set fitted to its end, without what is not significant, with its rivals and the nominal model."""
+    material.progress("fitting the best set to its end")
+    best, gains, compared, model = ended(pool, material)
     found = {hypothesis: pool.found[hypothesis] for hypothesis in compared if hypothesis.members}
     nominal = refit_nominal(pool, pool.found[NOTHING], list(found.values()))
     before, shooting = calibration.shooting, pool.problem.shooting

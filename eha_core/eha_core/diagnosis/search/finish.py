@@ -231,7 +231,11 @@ def in_a_members_place(
     pool: Pool, best: Hypothesis, columns: Sequence[Column], within: float
 ) -> Iterator[tuple[Hypothesis, dict[str, float]]]:
     """The set with another effect in a member's place: another form of its law, as large as it is; and of one that acts
-    in an interval only, whatever else may act there; unless it was fitted to within so much of the best."""
+    in an interval only, whatever else may act there; unless it was fitted to within so much of the best.
+
+    A form of fewer parameters is tried wherever it leaves more than the best: beside friction that sticks chi^2 is
+    rugged, and such a form may rest in a worse minimum.
+    """
     at = pool.found[best]
     first = {column.effect.id: column for column in reversed(columns)}
     for member in best.members:
@@ -244,7 +248,9 @@ def in_a_members_place(
             there = in_span(column, span) if span else column
             hypothesis = rest.with_effects([effect], there.limited)
             values = as_large(there, member, at) if is_form else there.values
-            if hypothesis not in pool.found or pool.found[hypothesis].objective > within:
+            simpler = is_form and len(effect.parameters) < len(member.effect.parameters)
+            known = pool.found.get(hypothesis)
+            if known is None or known.objective > (at.objective if simpler else within):
                 yield hypothesis, {**at.values, **neutral(member.effect), **values}
 
 
