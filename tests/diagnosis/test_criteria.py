@@ -50,6 +50,7 @@ THRESHOLDS = {
     "LEFT_OVER": 0.05,
     "NOTICEABLE": 4.0,
     "RELEVANT": 0.01,
+    "UNLIKELY": 2.0,
     "EXPANSIONS": 3,
     "IDLE": 2,
     "IMPROVES": 0.05,

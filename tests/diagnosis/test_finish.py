@@ -7,14 +7,16 @@ from made import LAWS, bench, explanation
 
 from eha_core.diagnosis import criteria
 from eha_core.diagnosis.calibrate import is_at_noise
-from eha_core.diagnosis.criteria import CHANCE, CLEARLY
+from eha_core.diagnosis.criteria import CHANCE, CLEARLY, UNLIKELY
 from eha_core.diagnosis.hypothesis import NOTHING
 from eha_core.diagnosis.search.finish import (
     as_large,
     converge,
     finish,
+    from_nominal_values,
     in_a_members_place,
     meet,
+    of_simpler_form,
     predicted_costs,
     refit_nominal,
     required_of,
@@ -265,6 +267,33 @@ def test_what_was_fitted_to_its_end_is_not_fitted_again(rig, pool):
     pool.found[both] = replace(first, objective=first.objective + 1.0)
     converge(pool, both)
     assert len(pool.trace.steps) > fits
+
+
+@pytest.mark.parametrize(("deviations", "again"), [(0.9 * UNLIKELY, False), (1.1 * UNLIKELY, True)])
+def test_a_set_with_an_unlikely_nominal_value_is_fitted_from_the_nominal_ones_too(rig, pool, deviations, again):
+    """As one that rests in a minimum to which another set led."""
+    both = rig.set_of("constant_load", "valve_deadband")
+    replace(rig, pool=pool).fitted(PLANTED)
+    at = converge(pool, both)
+    fits = len(pool.trace.steps)
+    mass = next(one for one in at.free if one.name == "moving_mass")
+    far = {**at.values, "moving_mass": mass.value(deviations * mass.prior_deviation)}
+    pool.found[both] = replace(at, values=far, objective=2.0 * at.objective)
+    from_nominal_values(pool, both)
+    assert [step.step for step in pool.trace.steps[fits:]] == (["from nominal values", "converge"] if again else [])
+    if again:
+        assert pool.found[both].objective == pytest.approx(at.objective, rel=1e-3)
+        assert pool.found[both].values["moving_mass"] == pytest.approx(at.values["moving_mass"], rel=0.02)
+
+
+@pytest.mark.parametrize(("left", "asked"), [(10.0, False), (100.0, True)])
+def test_beside_a_form_of_fewer_parameters_one_more_effect_is_looked_for_where_it_explains_less(rig, left, asked):
+    """Damping beside Coulomb friction is not taken for Stribeck's curve."""
+    best, coulomb = (rig.set_of(form, "turbulent_leakage") for form in ("stribeck_friction", "coulomb_friction"))
+    at = fit_that_leaves(1.0)
+    found = {best: at, coulomb: replace(at, objective=at.objective + left), rig.set_of("coulomb_friction"): at}
+    assert of_simpler_form(Pool(None, (), Trace(), found), best) == ([coulomb] if asked else [])
+    assert of_simpler_form(Pool(None, (), Trace(), {coulomb: at, best: replace(at, objective=1e9)}), coulomb) == []
 
 
 def test_a_nominal_fit_in_a_flat_valley_is_led_out_of_it(rig, pool):

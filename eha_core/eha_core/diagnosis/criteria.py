@@ -145,6 +145,10 @@ NOTICEABLE = 4.0
 RELEVANT = 0.01
 """... and by this share of itself (or, where the nominal value is zero, of the scale on which it is free)."""
 
+UNLIKELY = 2.0
+"""Standard deviations of what is believed beyond which a nominal value may belong to a minimum to which another set
+led: the best set is fitted once more from the nominal values then. Outside lies one sound value in twenty."""
+
 EXPANSIONS = 3
 """Sets about which the channels are linearised at most in a search. In development cases the set was found with the
 first in 138, with the second in 7, with the third in 2, and with none of the five that followed."""

@@ -23,9 +23,11 @@ from eha_core.diagnosis.criteria import (
     OF_ITS_FORM,
     OF_SAMPLES,
     OF_SAMPLES_BESIDE_A_FORM,
+    UNLIKELY,
+    chance_gain,
 )
 from eha_core.diagnosis.hypothesis import NOTHING, Hypothesis, Member, neutral
-from eha_core.diagnosis.search.best_sets import Proposal, best_sets, objective_without
+from eha_core.diagnosis.search.best_sets import Proposal, best_sets, objective_without, one_more
 from eha_core.diagnosis.search.columns import Column
 from eha_core.diagnosis.search.comparison import Entry, rank
 from eha_core.diagnosis.search.instants import shift_instants
@@ -55,6 +57,7 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
     """The set fitted to its end, without the members whose removal raises chi^2 by no more than is required of them;
     and what each that stays gains over what is required."""
     converge(pool, hypothesis)
+    from_nominal_values(pool, hypothesis)
     shift_instants(pool, hypothesis)
     at, gains = pool.found[hypothesis], dict[Member, float]()
     while len(gains) < len(hypothesis.members):
@@ -82,6 +85,20 @@ def finish(pool: Pool, hypothesis: Hypothesis, progress: Progress) -> tuple[Hypo
             near = hypothesis.members and simpler.data < FAR_FROM_NOISE * simpler.count
             at = converge(pool, hypothesis) if near else simpler
     return hypothesis, gains
+
+
+def from_nominal_values(pool: Pool, hypothesis: Hypothesis) -> None:
+    """Fit a set that was fitted to its end once more from the plant's nominal values, where one has gone unlikely far:
+    it may rest in a minimum to which another set led."""
+    at = pool.found[hypothesis]
+    names = {one.name for one in pool.plant}
+    plant = [one for one in at.free if base_name(one.name) in names]
+    if not any(abs(one.coordinate(at.values[one.name])) > UNLIKELY * one.prior_deviation for one in plant):
+        return
+    values = {**at.values, **{one.name: one.reference for one in plant}}
+    states = fit(pool.problem, values, (), at.states, iterations=FURTHER).states
+    pool.try_set("from nominal values", hypothesis, values, states, CONVERGED, at.free, 2)
+    converge(pool, hypothesis)
 
 
 def predicted_costs(pool: Pool, hypothesis: Hypothesis, at: Fit) -> dict[Member, float]:
@@ -168,7 +185,19 @@ def rivals(
         values, states = model.start(proposal.options)
         _compare(pool, "rival", hypothesis, values, states, at.objective + within, progress)
     for hypothesis, values in in_a_members_place(pool, best, columns, at.objective + within):
-        _compare(pool, "in its place", hypothesis, values, at.states, at.objective + within, progress)
+        if hypothesis not in pool.found and has_simpler_form(hypothesis, best):
+            pool.try_set("in its place", hypothesis, values, at.states, FURTHER)  # what it lacks may be one more effect
+        else:
+            _compare(pool, "in its place", hypothesis, values, at.states, at.objective + within, progress)
+    for base in of_simpler_form(pool, best):
+        beside = _about(pool, base, columns)
+        more: dict[Hypothesis, Proposal] = {}
+        for proposal in sorted(one_more(beside), key=lambda proposal: proposal.predicted)[:FITTED]:
+            if proposal.predicted < at.objective + within:
+                more.setdefault(_set_of(proposal), proposal)
+        for hypothesis, proposal in more.items():
+            values, states = beside.start(proposal.options)
+            _compare(pool, "simpler form", hypothesis, values, states, at.objective + within, progress)
     for hypothesis in _near_the_noise(pool, best):
         progress(f"comparing with {' + '.join(hypothesis.ids)}")
         pool.go_on("rival", hypothesis, FURTHER, give_up_above=at.objective + within)
@@ -210,6 +239,23 @@ def _about(pool: Pool, hypothesis: Hypothesis, columns: Sequence[Column]) -> Qua
 
 def _set_of(proposal: Proposal) -> Hypothesis:
     return Hypothesis(tuple(sorted(option.member for option in proposal.options)))
+
+
+def of_simpler_form(pool: Pool, best: Hypothesis) -> list[Hypothesis]:
+    """The sets that were fitted with a form of fewer parameters of a member's law, and explain less: what the other
+    parameters take up may be one more effect beside it."""
+    at = pool.found[best]
+    enough = at.objective + chance_gain(at.count, at.data / at.count)
+    return [one for one, result in pool if result.objective >= enough and has_simpler_form(one, best)]
+
+
+def has_simpler_form(hypothesis: Hypothesis, best: Hypothesis) -> bool:
+    """Whether a set is the best one with a form of fewer parameters in the place of one member's law."""
+    own, replaced = (set(one.members) - set(other.members) for one, other in ((hypothesis, best), (best, hypothesis)))
+    if len(own) != 1 or len(replaced) != 1:
+        return False
+    form, law = own.pop().effect, replaced.pop().effect
+    return bool(form.kind) and form.kind == law.kind and len(form.parameters) < len(law.parameters)
 
 
 def _compare(
