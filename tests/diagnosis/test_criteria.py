@@ -90,6 +90,22 @@ THRESHOLDS = {
     "PARTS_ASKED": 3,
     "HIGHER_AT_REST": 1.2,
     "LAW_SIZE": 3,
+    "ENOUGH_WINDOWS": 6,
+    "MOST_OF_AN_EVENT": 0.34,
+    "LOUD_WINDOW": 2.0,
+    "SLICE": 0.25,
+    "LOUD_SLICE": 4.0,
+    "SCALED_ALIKE": 3,
+    "COMMON_FACTOR": 0.999,
+    "NOWHERE_ELSE": 0.8,
+    "AT_ALL": 50.0,
+    "BEHIND_A_FILTER": 16.0,
+    "COMBINED_PRECISION": 4.0,
+    "SIMPLE_FORMULA": 0.95,
+    "EXPRESSED": 0.9,
+    "WORTH_A_FORMULA": 0.5,
+    "VIOLATED": 1.5,
+    "BETTER_LAW": 0.02,
 }
 
 

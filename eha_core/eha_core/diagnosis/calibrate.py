@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import ENOUGH, NEAR_NOISE, NOTICEABLE, RELEVANT
+from eha_core.diagnosis.criteria import AT_ALL, BEHIND_A_FILTER, ENOUGH, NEAR_NOISE, NOTICEABLE, NOWHERE_ELSE, RELEVANT
 from eha_core.health.noise import residual_noise
 from eha_core.identification.colour import colour_of
 from eha_core.identification.fit import WORTH, Fit, fit, fit_in_stages, with_noise
@@ -27,17 +27,6 @@ order; large flows or a fast valve can need the others."""
 SAMPLES_A_WINDOW = 45.0
 """Samples of all channels in the shortest window: eleven for each free initial state. With fewer, the initial states
 fit anything (assumed)."""
-
-NOWHERE_ELSE = 0.8
-AT_ALL = 50.0
-"""A last window with at least this share of the nominal equations' excess chi^2, and this much chi^2, is removed: nodes
-shut down one after the other there, and commands still recorded no longer act. Nor could a law of that window be tested
-on held-out data."""
-
-
-BEHIND_A_FILTER = 16.0
-"""Largest ratio of the noise before a low-pass filter to the noise in the channel's differences: that of a first-order
-filter whose corner is a 50th of the sampling rate. The residual of a wrong model may be larger."""
 
 
 @dataclass(frozen=True)

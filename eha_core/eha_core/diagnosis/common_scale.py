@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.stats import chi2
 
-from eha_core.diagnosis.criteria import NOTICEABLE, RELEVANT
+from eha_core.diagnosis.criteria import COMMON_FACTOR, NOTICEABLE, RELEVANT, SCALED_ALIKE
 from eha_core.diagnosis.result import CommonScale, FittedParameter
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
@@ -42,10 +42,6 @@ POWERS: Mapping[str, Mapping[str, float]] = {
 the true piston area over the nominal one. From the equations: A_p (P1 - P2) = M_p x'' + B_s x' + K_s x, Q = K I
 (P_s - P1)^(1/2), P1' V / beta = Q - A_p x' - K_Lin (P1 - P2), L_c I' = V - R_c I, V = A_p (x_s + x)."""
 
-FEWEST = 3
-"""Parameters that must have changed: any two changes fit the powers of some factor."""
-SURE = 0.999
-"""Level of the chi-squared test of what the common factor does not explain."""
 CLOSE = RELEVANT
 """Relative deviation allowed of each parameter: the volumes that are held do not scale with the factor."""
 
@@ -53,7 +49,7 @@ CLOSE = RELEVANT
 def common_scale(final: Fit, changed: Sequence[FittedParameter]) -> CommonScale | None:
     """The one factor that explains every change, the best of POWERS; None where there is none."""
     names = [parameter.name for parameter in changed if parameter.changed]
-    if len(names) < FEWEST:
+    if len(names) < SCALED_ALIKE:
         return None
     places = [
         place
@@ -70,7 +66,7 @@ def common_scale(final: Fit, changed: Sequence[FittedParameter]) -> CommonScale 
             continue
         direction = np.array([powers.get(final.free[place].name, 0.0) for place in places])
         factor, deviation, left = _along(moved, direction, spread)
-        if left > float(chi2.ppf(SURE, max(1, len(places) - 1))) or abs(factor) < NOTICEABLE * deviation:
+        if left > float(chi2.ppf(COMMON_FACTOR, max(1, len(places) - 1))) or abs(factor) < NOTICEABLE * deviation:
             continue
         times = float(np.exp(factor))
         if best is None or left < best[0]:

@@ -247,6 +247,56 @@ HIGHER_AT_REST = 1.2
 LAW_SIZE = 3
 """Members that a recovered law counts as, because its curve is flexible (assumed)."""
 
+ENOUGH_WINDOWS = 6
+"""Windows that a recording needs for one of them to be an exception."""
+
+MOST_OF_AN_EVENT = 0.34
+"""Largest share of the windows that an event may take; above it, it is unclear which is the exception (assumed)."""
+
+LOUD_WINDOW = 2.0
+"""Chi^2 per sample of a window above which the nominal model fails in it: noise gives 1.0 +- 0.1 over a window's
+hundreds of samples. Windows between this and UNFITTED may belong to the event at its edges."""
+
+SLICE = 0.25
+"""s; resolution in time of "when"."""
+
+LOUD_SLICE = 4.0
+"""Mean squared residual, in units of noise, above which a slice of the record is reported."""
+
+SCALED_ALIKE = 3
+"""Parameters that must have changed: any two changes fit the powers of some factor."""
+
+COMMON_FACTOR = 0.999
+"""Level of the chi-squared test of what the common factor does not explain."""
+
+NOWHERE_ELSE = 0.8
+AT_ALL = 50.0
+"""A last window with at least this share of the nominal equations' excess chi^2, and this much chi^2, is removed: nodes
+shut down one after the other there, and commands still recorded no longer act. Nor could a law of that window be tested
+on held-out data."""
+
+BEHIND_A_FILTER = 16.0
+"""Largest ratio of the noise before a low-pass filter to the noise in the channel's differences: that of a first-order
+filter whose corner is a 50th of the sampling rate. The residual of a wrong model may be larger."""
+
+COMBINED_PRECISION = 4.0
+"""Factor by which the difference or sum of two values must be more precise than either, to be reported instead."""
+
+SIMPLE_FORMULA = 0.95
+"""R^2 required of an expression."""
+
+EXPRESSED = 0.9
+"""R^2 from which a law of the residuals is written as an expression; noise in its variable lowers R^2."""
+
+WORTH_A_FORMULA = 0.5
+"""An expression is sought only if a curve explains this share of what the best law so far explains."""
+
+VIOLATED = 1.5
+"""Chi^2 per degree of freedom above which a law is sought in an equation's residual."""
+
+BETTER_LAW = 0.02
+"""Increase of R^2 required of a law over a simpler one."""
+
 
 def chance_gain(samples: int, times_noise: float) -> float:
     """Chi^2 that one more effect must gain to be looked at, where the model leaves `times_noise` chi^2 a sample."""

@@ -10,23 +10,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from eha_core.diagnosis.criteria import ENOUGH, NEARLY_ALL, UNFITTED
+from eha_core.diagnosis.criteria import ENOUGH, ENOUGH_WINDOWS, LOUD_WINDOW, MOST_OF_AN_EVENT, NEARLY_ALL, UNFITTED
 from eha_core.identification.fit import Fit
 from eha_core.identification.shooting import Shooting
-
-FEWEST = 6
-"""Windows that a recording needs for one of them to be an exception."""
-MOST = 0.34
-"""Largest share of the windows that an event may take; above it, it is unclear which is the exception (assumed)."""
-LOUD = 2.0
-"""Chi^2 per sample of a window above which the nominal model fails in it: noise gives 1.0 +- 0.1 over a window's
-hundreds of samples. Windows between this and UNFITTED may belong to the event at its edges."""
 
 
 def event(shooting: Shooting, nominal: Fit, winner: Fit) -> tuple[float, float] | None:
     """The interval [s] in which the nominal model fails; None unless it is at the noise in all other windows and the
     effects found do not improve the fit there."""
-    if shooting.windows < FEWEST:
+    if shooting.windows < ENOUGH_WINDOWS:
         return None
     left, gained = np.zeros(shooting.windows), np.zeros(shooting.windows)
     for sampling, residual, after in zip(shooting.samplings, nominal.residuals, winner.residuals, strict=True):
@@ -34,11 +26,11 @@ def event(shooting: Shooting, nominal: Fit, winner: Fit) -> tuple[float, float] 
         squares = np.bincount(sampling.window, weights=residual**2, minlength=shooting.windows)
         left = np.maximum(left, squares / np.maximum(counts, 1))
         gained += np.bincount(sampling.window, weights=residual**2 - after**2, minlength=shooting.windows)
-    loud, above = np.flatnonzero(left > LOUD), np.flatnonzero(left > UNFITTED)
+    loud, above = np.flatnonzero(left > LOUD_WINDOW), np.flatnonzero(left > UNFITTED)
     if not len(loud):
         return None
     first, last = int(above[0]), int(above[-1])
-    if last - first + 1 > MOST * shooting.windows or first < loud[0] - 1 or last > loud[-1] + 1:
+    if last - first + 1 > MOST_OF_AN_EVENT * shooting.windows or first < loud[0] - 1 or last > loud[-1] + 1:
         return None
     inside = float(np.sum(gained[first : last + 1]))
     elsewhere = float(np.sum(gained)) - inside

@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from eha_core.diagnosis.calibrate import has_changed, identifiable
-from eha_core.diagnosis.criteria import IDENTIFIED
+from eha_core.diagnosis.criteria import COMBINED_PRECISION, IDENTIFIED
 from eha_core.diagnosis.hypothesis import neutral
 from eha_core.diagnosis.posterior import probability
 from eha_core.diagnosis.result import FittedParameter, FittedValue, NamedEffect, ProbableSet
@@ -22,9 +22,6 @@ from eha_core.identification.profile import Ends
 from eha_core.parameter import Parameter
 from eha_core.plant import Composition
 from eha_core.quantities import Quantity
-
-COMBINED_PRECISION = 4.0
-"""Factor by which the difference or sum of two values must be more precise than either, to be reported instead."""
 
 
 def fitted_parameters(

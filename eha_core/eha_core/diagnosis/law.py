@@ -13,23 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from eha_core.curve import KNOTS
+from eha_core.diagnosis.criteria import BETTER_LAW, EXPRESSED, SIMPLE_FORMULA, VIOLATED, WORTH_A_FORMULA
 from eha_core.diagnosis.result import UnknownLaw
 from eha_core.identification.numbers import Array
 from eha_core.weak_form.equation_residuals import EquationResidual
 from eha_core.weak_form.library import best_wave, powers, searched
 from eha_core.weak_form.terms import RegressionData, Sum, Term, sparsest
 
-SIMPLE = 0.95
-"""R^2 required of an expression."""
-
 PERIODIC = (0.5, 10.0)
 """Hz; frequencies searched for a periodic force over time."""
-
-EXPRESSED = 0.9
-"""R^2 from which a law of the residuals is written as an expression; noise in its variable lowers R^2."""
-
-WORTH_A_FORMULA = 0.5
-"""An expression is sought only if a curve explains this share of what the best law so far explains."""
 
 FEWEST_WAVES = 1.5
 """Fewest cycles over the range of the variable: fewer cannot be distinguished from a power."""
@@ -39,12 +31,6 @@ MOST_WAVES = 0.25
 
 MOST_RIPPLES = 15.0
 """Most cycles over the variable's range that are sought in a residual."""
-
-VIOLATED = 1.5
-"""Chi^2 per degree of freedom above which a law is sought in an equation's residual."""
-
-MORE = 0.02
-"""Increase of R^2 required of a law over a simpler one."""
 
 OWN = 1e-4
 """A function counts as a combination of the equation's own terms if at most this share of it is orthogonal to them."""
@@ -114,7 +100,7 @@ force balance has that term, with a free coefficient."""
 def express(x: Array, y: Array, name: str, unit_y: str) -> Expression:
     """The simplest expression of a curve y(x) over the variable `name`, one of SYMBOLS; y in `unit_y`, x in SI.
 
-    Its text is empty with fewer than eight points, or where no simple expression reaches an R^2 of SIMPLE.
+    Its text is empty with fewer than eight points, or where no simple expression reaches an R^2 of SIMPLE_FORMULA.
     """
     total = float(np.sum((y - y.mean()) ** 2)) if len(y) else 0.0
     if len(x) < 8 or not total > 0.0:
@@ -124,7 +110,7 @@ def express(x: Array, y: Array, name: str, unit_y: str) -> Expression:
     reach = float(np.ptp(x))
     waves = (FEWEST_WAVES / reach, MOST_WAVES * len(x) / reach)
     found = sparsest(data, _library(data, name, waves))
-    if found.r_squared < SIMPLE:
+    if found.r_squared < SIMPLE_FORMULA:
         return Expression("", max(found.r_squared, 0.0))
     return Expression(f"{found.written()} [{unit_y}], {symbol.strip('()')} in {unit}", found.r_squared)
 
@@ -156,7 +142,7 @@ def weak_law(alternatives: Sequence[Sequence[EquationResidual]]) -> UnknownLaw |
         for chosen, energy in zip(sides, energies, strict=True):
             law = _law(form, chosen, WORTH_A_FORMULA * most / energy)
             explained = lacking - 1.0 - (energy - 1.0) * (1.0 - law.r_squared) if law else 0.0
-            if explained > most + MORE * lacking:
+            if explained > most + BETTER_LAW * lacking:
                 best, most = law, explained
     return best
 
@@ -176,7 +162,7 @@ def _law(form: Form, residuals: Sequence[EquationResidual], least_share: float =
         return None
     beyond = data.total / max(data.total - len(data.seen), 1.0)
     explained, drawn = min(found.r_squared * beyond, 1.0), min(share * beyond, 1.0)
-    if explained < SIMPLE * drawn:
+    if explained < SIMPLE_FORMULA * drawn:
         return UnknownLaw(form.site, form.title, "", drawn, curve)
     text = _text(form, found) if explained >= EXPRESSED else ""
     return UnknownLaw(form.site, form.title, text, explained, _drawn(data, found))

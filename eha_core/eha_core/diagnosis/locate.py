@@ -7,16 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from eha_core.diagnosis.characteristic_scales import Scales, scales_alone
+from eha_core.diagnosis.criteria import LOUD_SLICE, SLICE
 from eha_core.identification.fit import Fit
 from eha_core.identification.numbers import Array
 from eha_core.identification.shooting import Shooting
 from eha_core.identification.together import fit_alone, recording_alone
-
-SLICE = 0.25
-"""s; resolution in time of "when"."""
-
-LOUD = 4.0
-"""Mean squared residual, in units of noise, above which a slice of the record is reported."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +45,7 @@ def _when(shooting: Shooting, result: Fit) -> tuple[tuple[float, float], ...]:
     place = np.clip(np.digitize(times, edges) - 1, 0, len(edges) - 2)
     counts = np.bincount(place, minlength=len(edges) - 1)
     means = np.bincount(place, weights=energy, minlength=len(edges) - 1) / np.maximum(counts, 1)
-    loud = means > max(LOUD, 0.1 * float(means.max()))
+    loud = means > max(LOUD_SLICE, 0.1 * float(means.max()))
     if not loud.any():
         return ()
     if loud.mean() > 0.6:
