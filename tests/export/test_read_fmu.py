@@ -20,6 +20,7 @@ UNITS = """<UnitDefinitions>
   <Unit name="degC"><BaseUnit K="1" offset="273.15"/></Unit>
   <Unit name="cm2"><BaseUnit m="2" factor="1e-4"/></Unit>
   <Unit name="slug"/>
+  <Unit name="oz"><BaseUnit kg="1" factor="little"/></Unit>
 </UnitDefinitions>"""
 
 
@@ -86,10 +87,11 @@ def test_of_fmi_3_too(tmp_path):
         (real("cylinder.mass", "12"), "no parameter of this FMU has a name of the catalogue"),
         (real("moving_mass", "1", 'unit="slug"'), "moving_mass = 1 slug: the FMU does not state this unit as"),
         (real("moving_mass", "1", 'unit="bar"'), "moving_mass = 1 bar: the FMU does not state this unit as"),
+        (real("moving_mass", "1", 'unit="oz"'), "moving_mass = 1 oz: the FMU does not state this unit as"),
         (real("moving_mass", "heavy"), "moving_mass = heavy"),
         (real("moving_mass", "-3"), "moving_mass"),
     ],
-    ids=["no name", "no base unit", "another quantity", "no number", "no mass"],
+    ids=["no name", "no base unit", "another quantity", "no factor", "no number", "no mass"],
 )  # fmt: skip
 def test_what_cannot_be_taken_is_said(tmp_path, variables, said):
     with pytest.raises(ParameterError, match=said) as error:

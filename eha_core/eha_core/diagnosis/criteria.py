@@ -264,10 +264,10 @@ LOUD_SLICE = 4.0
 """Mean squared residual, in units of noise, above which a slice of the record is reported."""
 
 SCALED_ALIKE = 3
-"""Parameters that must have changed: any two changes fit the powers of some factor."""
+"""Parameters that must have changed for a common factor to be the cause: any two changes fit the powers of some."""
 
 COMMON_FACTOR = 0.999
-"""Level of the chi-squared test of what the common factor does not explain."""
+"""Level of the chi-squared test of what a common factor of several parameters does not explain."""
 
 NOWHERE_ELSE = 0.8
 AT_ALL = 50.0

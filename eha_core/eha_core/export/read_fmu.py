@@ -29,10 +29,8 @@ def read_fmu(path: str | Path) -> NominalModel:
             can be converted, or a value that does not fit.
     """
     root = _description(path)
-    annotation = root.find(".//Plant")
-    composition = composition_of({} if annotation is None else annotation.attrib)
     units = {unit.get("name", ""): _Unit.of(unit) for unit in root.iterfind("UnitDefinitions/Unit")}
-    known = {}
+    composition, known = composition_of(_parts(root)), {}
     for name, start, unit in _parameters(root):
         row = composition.rows.get(name)
         if row is None:
@@ -64,11 +62,25 @@ def _description(path: str | Path) -> Element:
             root = ElementTree.fromstring(unit.read(entry))
     except OSError as error:
         raise ParameterError(f"{path}: cannot be read ({error.strerror}); check the path") from error
-    except (BadZipFile, KeyError, ElementTree.ParseError, NotImplementedError, RuntimeError) as error:
+    except (
+        BadZipFile,
+        KeyError,
+        ElementTree.ParseError,
+        RuntimeError,
+    ) as error:  # the last: encrypted, or packed oddly
         raise ParameterError(f"{path}: is no FMU that can be read; give one of FMI 2.0 or 3.0") from error
     if root.tag != "fmiModelDescription" or root.get("fmiVersion", "")[:1] not in ("2", "3"):
         raise ParameterError(f"{path}: is no FMU of FMI 2.0 or 3.0; give one, or a parameters file")
     return root
+
+
+def _parts(root: Element) -> Mapping[str, str]:
+    """The plant's parts by kind, as `model_description` annotates them; none in an FMU of another tool."""
+    for place in ("VendorAnnotations/Tool[@name='eha']/Plant", "Annotations/Annotation[@type='eha']/Plant"):
+        annotation = root.find(place)
+        if annotation is not None:
+            return annotation.attrib
+    return {}
 
 
 def _parameters(root: Element) -> Iterator[tuple[str, str, str]]:
@@ -96,13 +108,16 @@ class _Unit:
 
     @classmethod
     def of(cls, unit: Element) -> _Unit | None:
-        """The unit of an element; None of one whose base units are not stated."""
+        """The unit of an element; None of one whose base units are not stated as numbers."""
         base = unit.find("BaseUnit")
         if base is None:
             return None
         said = dict(base.attrib)
-        factor, offset = (float(said.pop(name, default)) for name, default in (("factor", 1.0), ("offset", 0.0)))
-        return cls({name: int(power) for name, power in said.items() if int(power)}, factor, offset)
+        try:
+            factor, offset = (float(said.pop(name, default)) for name, default in (("factor", 1.0), ("offset", 0.0)))
+            return cls({name: int(power) for name, power in said.items() if int(power)}, factor, offset)
+        except ValueError:
+            return None
 
 
 def _in_si(value: float, unit: str, wanted: str, units: Mapping[str, _Unit | None]) -> float:

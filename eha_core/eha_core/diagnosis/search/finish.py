@@ -294,9 +294,8 @@ def in_a_members_place(
             there = in_span(column, span) if span else column
             hypothesis = rest.with_effects([effect], there.limited)
             values = as_large(there, member, at) if is_form else there.values
-            simpler = is_form and len(effect.parameters) < len(member.effect.parameters)
             known = pool.found.get(hypothesis)
-            if known is None or known.objective > (at.objective if simpler else within):
+            if known is None or known.objective > (at.objective if has_simpler_form(hypothesis, best) else within):
                 yield hypothesis, {**at.values, **neutral(member.effect), **values}
 
 
